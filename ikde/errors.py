@@ -1,0 +1,41 @@
+"""The one family of exceptions that ikde raises.
+
+A target that cannot be reached is not an error: it is a `SolveResult` with a `StopReason`.
+"""
+
+
+class IkdeError(Exception):
+    """Anything ikde raises on purpose."""
+
+
+class InputError(IkdeError):
+    """What the caller gave cannot be used; one line says what, where and what was expected.
+
+    `where` is the path to the offending value inside what was given, such as `("frames", "O1", "parent")`.
+    """
+
+    def __init__(self, message: str, where: tuple[str | int, ...] = ()) -> None:
+        self.message = message
+        self.where = where
+        super().__init__(f"{format_path(where)}: {message}" if where else message)
+
+
+class FileError(InputError):
+    """A file cannot be used: `robots/a.yaml:14 → frames.O1.parent: ...`."""
+
+    def __init__(
+        self, path: object, message: str, where: tuple[str | int, ...] = (), line: int | None = None
+    ) -> None:
+        super().__init__(message, where)
+        place = f"{path}:{line}" if line else f"{path}"
+        self.args = (f"{place} → {self.args[0]}" if where else f"{place}: {message}",)
+
+
+class VerificationError(IkdeError):
+    """A kernel and the independent check disagree: a bug in ikde, never a property of the target."""
+
+
+def format_path(where: tuple[str | int, ...]) -> str:
+    """Write `("spheres", "typical", 2, "radius")` as `spheres.typical[2].radius`."""
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in where)
+    return text.removeprefix(".")

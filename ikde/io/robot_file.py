@@ -1,0 +1,230 @@
+"""The robot file: its schema, and how it becomes a `Robot`."""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+
+from ikde.errors import InputError
+from ikde.io.schema import as_file_error
+from ikde.io.yaml_file import Document, Where
+from ikde.model.robot import NO_DETECTOR, Detector, Frame, Joint, Provenance, Robot, SphereRow
+from ikde.model.rotation import rotation_from_rpy
+from ikde.model.validate import NON_ADJACENT, check_robot, nearest
+
+Name = Annotated[str, StringConstraints(min_length=1)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Vector = tuple[Number, Number, Number]
+Source = Name | dict[Name, Name]
+"""The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
+
+LENGTHS_M = {"mm": 1e-3, "m": 1.0}
+ANGLES_RAD = {"deg": np.pi / 180.0, "rad": 1.0}
+
+
+class Entry(BaseModel):
+    """An entry of the file: unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    source: Source | None = None
+
+
+class Units(BaseModel):
+    """Units of this file's lengths and angles."""
+
+    model_config = ConfigDict(extra="forbid")
+    length: Literal["mm", "m"] = "m"
+    angle: Literal["deg", "rad"] = "rad"
+
+
+class SourceEntry(BaseModel):
+    """Where numbers come from."""
+
+    model_config = ConfigDict(extra="forbid")
+    kind: Literal["published", "derived", "calibrated"]
+    text: Name
+
+
+class JointEntry(Entry):
+    """One coordinate of q."""
+
+    kind: Literal["revolute", "prismatic"]
+    lower: Number
+    upper: Number
+    home: Number = 0.0
+
+
+class FrameEntry(Entry):
+    """A frame: first `xyz`, then `rpy` about the fixed axes of the parent, then the joint about or along `axis`."""
+
+    parent: Name
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rpy: Vector = (0.0, 0.0, 0.0)
+    joint: Name | None = None
+    axis: Vector | None = None
+
+
+class SphereEntry(Entry):
+    """A row of equal spheres between two key points."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+    component: Name
+    start: Name = Field(alias="from")
+    end: Name | None = Field(None, alias="to")
+    radius: Number
+    count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
+    spacing: Literal["touching", "even"] = "touching"
+
+
+class PairEntry(Entry):
+    """A pair list: pairs of its own, other lists included, or both."""
+
+    pairs: dict[Name, list[Name]] = {}
+    include: list[Name] = []
+
+
+class AdjacentEntry(Entry):
+    """Pairs that are adjacent although the tree does not show it."""
+
+    pairs: dict[Name, list[Name]]
+
+
+class DetectorEntry(Entry):
+    """An approximation, a pair list and a safe distance."""
+
+    spheres: Name
+    pairs: Name = NON_ADJACENT
+    safe_distance: Number = 0.0
+
+
+class ConventionEntry(Entry):
+    """Another way to count the joints: q_other = q + offset."""
+
+    offsets: dict[Name, Number]
+
+
+class RobotFile(BaseModel):
+    """The whole file."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: Name
+    title: str = ""
+    units: Units = Units()
+    convention: Name = "own"
+    sources: dict[Name, SourceEntry] = {}
+    joints: dict[Name, JointEntry]
+    frames: dict[Name, FrameEntry]
+    tool: Name
+    conventions: dict[Name, ConventionEntry] = {}
+    spheres: dict[Name, list[SphereEntry]] = {}
+    adjacent: AdjacentEntry | None = None
+    pairs: dict[Name, PairEntry] = {}
+    detectors: dict[Name, DetectorEntry] = {}
+    default_detector: Name = NO_DETECTOR
+
+
+def parse_robot(document: Document) -> Robot:
+    """Turn a YAML document into a checked `Robot`, SI inside; raises `FileError` with line and key."""
+    try:
+        file = RobotFile.model_validate(document.data)
+    except ValidationError as error:
+        raise as_file_error(document, error, RobotFile) from None
+    try:
+        return check_robot(_to_robot(file))
+    except InputError as error:
+        raise document.at(error) from None
+
+
+def _to_robot(file: RobotFile) -> Robot:
+    length, angle = LENGTHS_M[file.units.length], ANGLES_RAD[file.units.angle]
+    unit = {"revolute": angle, "prismatic": length}
+    return Robot(
+        name=file.name,
+        title=file.title,
+        joints=tuple(_to_joint(name, entry, unit[entry.kind]) for name, entry in file.joints.items()),
+        frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
+        tool=file.tool,
+        approximations={name: tuple(_to_row(e, length) for e in rows) for name, rows in file.spheres.items()},
+        pair_lists={name: _to_pairs(file, name, ()) for name in file.pairs},
+        adjacent=_flatten(file.adjacent.pairs) if file.adjacent else (),
+        detectors={
+            name: Detector(name=name, spheres=e.spheres, pairs=e.pairs, safe_distance_m=e.safe_distance * length)
+            for name, e in file.detectors.items()
+        },
+        default_detector=file.default_detector,
+        convention=file.convention,
+        conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
+        provenance=_provenance(file),
+    )
+
+
+def _to_joint(name: str, entry: JointEntry, unit: float) -> Joint:
+    lower, upper, home = entry.lower * unit, entry.upper * unit, entry.home * unit
+    return Joint(name=name, kind=entry.kind, lower=lower, upper=upper, home=home)
+
+
+def _to_frame(name: str, entry: FrameEntry, length: float, angle: float) -> Frame:
+    return Frame(
+        name=name,
+        parent=entry.parent,
+        p_parent_frame=np.array(entry.xyz) * length,
+        R_parent_frame=rotation_from_rpy(np.array(entry.rpy) * angle),
+        joint=entry.joint,
+        axis=None if entry.axis is None else _unit(name, np.array(entry.axis)),
+    )
+
+
+def _unit(name: str, axis: np.ndarray) -> np.ndarray:
+    norm = np.linalg.norm(axis)
+    if not 1e-9 < norm < np.inf:
+        raise InputError("expected an axis that is not zero", ("frames", name, "axis"))
+    return axis / norm
+
+
+def _to_row(entry: SphereEntry, length: float) -> SphereRow:
+    return SphereRow(
+        component=entry.component,
+        start=entry.start,
+        end=entry.end or entry.start,
+        radius_m=entry.radius * length,
+        count=entry.count,
+        spacing=entry.spacing,
+    )
+
+
+def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """Pairs of a list with those of the lists it includes, each once."""
+    if name in seen:
+        raise InputError("this list includes itself", ("pairs", seen[0], "include"))
+    if name not in file.pairs:
+        raise InputError(f"no pair list is called {name!r}{nearest(name, file.pairs)}", ("pairs", seen[-1], "include"))
+    entry = file.pairs[name]
+    pairs = [pair for other in entry.include for pair in _to_pairs(file, other, (*seen, name))]
+    return tuple(dict.fromkeys([*pairs, *_flatten(entry.pairs)]))
+
+
+def _flatten(pairs: dict[str, list[str]]) -> tuple[tuple[str, str], ...]:
+    return tuple((a, b) for a, others in pairs.items() for b in others)
+
+
+def _provenance(file: RobotFile) -> dict[Where, Provenance]:
+    """Path of every entry (or of every key of it) that names a source -> that source."""
+    found: dict[Where, Provenance] = {}
+    sections: dict[str, dict[str, Any]] = {
+        key: getattr(file, key) for key in ("joints", "frames", "conventions", "pairs", "detectors")
+    }
+    entries = [((section, name), entry) for section, named in sections.items() for name, entry in named.items()]
+    if file.adjacent:
+        entries.append((("adjacent",), file.adjacent))
+    entries += [(("spheres", n, i), e) for n, rows in file.spheres.items() for i, e in enumerate(rows)]
+    for where, entry in entries:
+        named = entry.source if isinstance(entry.source, dict) else {None: entry.source}
+        for key, source in named.items():
+            if source is None:
+                continue
+            if source not in file.sources:
+                message = f"no source is called {source!r}{nearest(source, file.sources)}"
+                raise InputError(message, (*where, "source"))
+            place = where if key is None else (*where, key)
+            found[place] = Provenance(kind=file.sources[source].kind, text=file.sources[source].text)
+    return found

@@ -1,0 +1,89 @@
+"""Pydantic's complaints as ikde says them: one line, with the file, the line, the key and what was expected."""
+
+from types import UnionType
+from typing import Any, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from ikde.errors import FileError
+from ikde.io.yaml_file import Document, Where
+from ikde.model.validate import nearest
+
+EXPECTED = {
+    "missing": "this key is missing",
+    "float_type": "expected a number",
+    "int_type": "expected a whole number",
+    "string_type": "expected text",
+    "dict_type": "expected keys with values",
+    "list_type": "expected a list",
+    "tuple_type": "expected a list",
+    "model_type": "expected keys with values",
+    "model_attributes_type": "expected keys with values",
+    "finite_number": "expected a finite number",
+    "string_too_short": "expected text that is not empty",
+}
+
+
+def as_file_error(document: Document, error: ValidationError, model: type[BaseModel]) -> FileError:
+    """The first complaint of pydantic, placed in the file."""
+    first = error.errors()[0]
+    where = _real_path(document.data, first["loc"])
+    kind, context = first["type"], first.get("ctx", {})
+    if kind == "extra_forbidden":
+        key = str(first["loc"][-1])
+        keys = _keys_at(model, where[:-1])
+        return document.error(f"unknown key{nearest(key, keys) or '; expected one of ' + ', '.join(keys)}", where)
+    if kind == "too_short" and "actual_length" in context:
+        message = f"expected {context['min_length']} values, got {context['actual_length']}"
+    elif kind == "too_long" and "actual_length" in context:
+        message = f"expected {context['max_length']} values, got {context['actual_length']}"
+    elif kind == "literal_error":
+        message = f"expected {context['expected']}, got {first['input']!r}"
+    elif kind in EXPECTED:
+        got = "" if kind == "missing" else f", got {_shorten(first['input'])}"
+        message = f"{EXPECTED[kind]}{got}"
+    else:
+        message = first["msg"][0].lower() + first["msg"][1:]
+    if kind == "missing" and isinstance(where[-1] if where else None, int):
+        message = f"expected 3 values, got {where[-1]}"
+        where = where[:-1]
+    return document.error(message, where)
+
+
+def _shorten(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else f"{text[:37]}..."
+
+
+def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:
+    """Pydantic's location without the union branches it adds, which are no keys of the file."""
+    where: list[str | int] = []
+    for position, key in enumerate(loc):
+        if isinstance(data, dict) and (key in data or position == len(loc) - 1):
+            where.append(key)
+            data = data.get(key)
+        elif isinstance(data, list) and isinstance(key, int):
+            where.append(key)
+            data = data[key] if key < len(data) else None
+    return tuple(where)
+
+
+def _keys_at(model: type[BaseModel], where: Where) -> list[str]:
+    """Valid keys of the entry at a path."""
+    kind: Any = model
+    for key in where:
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            fields = {field.alias or name: field.annotation for name, field in kind.model_fields.items()}
+            kind = _strip(fields.get(str(key)))
+        else:
+            kind = _strip(get_args(kind)[-1])
+    if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
+        return []
+    return [field.alias or name for name, field in kind.model_fields.items()]
+
+
+def _strip(kind: Any) -> Any:
+    """`X | None` as X."""
+    if get_origin(kind) in (Union, UnionType):
+        return next(arg for arg in get_args(kind) if arg is not type(None))
+    return kind

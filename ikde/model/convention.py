@@ -1,0 +1,38 @@
+"""Joint conventions: the same configuration, counted from other zero angles.
+
+qiao2021 keeps q in the key-point convention of Table 1(b); Table 5 of the paper prints the classical one, where q5
+is larger by pi. A shifted joint is brought to (-pi, pi], so both directions give one answer.
+"""
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import Robot
+
+
+def convention_offsets(robot: Robot, convention: str | None) -> Floats:
+    """Offsets [N] in rad with q_convention = q + offset; all 0 for the robot's own convention (or None)."""
+    if convention is None or convention == robot.convention:
+        return np.zeros(len(robot.joints))
+    if convention not in robot.conventions:
+        known = ", ".join([robot.convention, *robot.conventions])
+        raise InputError(f"{robot.name} has no convention {convention!r}; it has {known}")
+    offsets = robot.conventions[convention]
+    return np.array([offsets.get(name, 0.0) for name in robot.joint_names])
+
+
+def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
+    """From the named convention to the robot's own. `q` [..., N]."""
+    return _shift(q, -convention_offsets(robot, convention))
+
+
+def to_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
+    """From the robot's own convention to the named one. `q` [..., N]."""
+    return _shift(q, convention_offsets(robot, convention))
+
+
+def _shift(q: Floats, offsets: Floats) -> Floats:
+    shifted = q + offsets
+    wrapped = shifted - 2.0 * np.pi * np.ceil((shifted - np.pi) / (2.0 * np.pi))
+    return np.where(offsets == 0.0, q, wrapped)

@@ -1,0 +1,138 @@
+"""A robot as data: joints, a tree of frames, sphere approximations, pair lists and detectors. SI units."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+
+WORLD = "world"
+NO_DETECTOR = "none"
+
+JointKind = Literal["revolute", "prismatic"]
+Spacing = Literal["touching", "even"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joint:
+    """One coordinate of q: its range and home value, in m (prismatic) or rad (revolute)."""
+
+    name: str
+    kind: JointKind
+    lower: float
+    upper: float
+    home: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Frame:
+    """A frame of the tree: T_parent_frame(q) = [R_parent_frame, p_parent_frame] @ joint motion about `axis`."""
+
+    name: str
+    parent: str
+    p_parent_frame: Floats
+    """[3] m"""
+    R_parent_frame: Floats
+    """[3, 3]"""
+    joint: str | None = None
+    axis: Floats | None = None
+    """[3] unit vector in this frame; the joint turns about it or slides along it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SphereRow:
+    """`count` equal spheres on the line between two key points, as the paper writes an approximation.
+
+    `touching` spheres stand 2R apart about the middle of the line [Qiao2021, eq. 13]; `even` ones share the line out,
+    the first at its start, the last at its end. A single sphere stands in the middle.
+    """
+
+    component: str
+    start: str
+    end: str
+    radius_m: float
+    count: int = 1
+    spacing: Spacing = "touching"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Detector:
+    """What self-collision means: an approximation, the pairs to look at, and the safe distance in m."""
+
+    name: str
+    spheres: str
+    pairs: str
+    safe_distance_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Provenance:
+    """Where a number comes from: printed, forced by printed numbers, or chosen inside what they leave free."""
+
+    kind: Literal["published", "derived", "calibrated"]
+    text: str
+
+
+Pairs = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, weakref_slot=True)
+class Robot:
+    """A robot that has been checked: parents come before children and every name resolves (`model.validate`)."""
+
+    name: str
+    title: str
+    joints: tuple[Joint, ...]
+    frames: tuple[Frame, ...]
+    tool: str
+    approximations: Mapping[str, tuple[SphereRow, ...]]
+    adjacent: Pairs
+    """Pairs that are adjacent although the tree does not show it."""
+    pair_lists: Mapping[str, Pairs]
+    """By name; `non_adjacent` is made by `model.validate`."""
+    detectors: Mapping[str, Detector]
+    default_detector: str
+    convention: str
+    """Name of the convention that q, limits and home are written in."""
+    conventions: Mapping[str, Mapping[str, float]]
+    """Other conventions: offsets in rad, q_other = q + offset."""
+    provenance: Mapping[tuple[str | int, ...], Provenance]
+    """Path of a number in the robot's file -> where it comes from."""
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names in the order of q."""
+        return tuple(joint.name for joint in self.joints)
+
+    @property
+    def lower(self) -> Floats:
+        """Lower limits [N], m or rad."""
+        return np.array([joint.lower for joint in self.joints])
+
+    @property
+    def upper(self) -> Floats:
+        """Upper limits [N], m or rad."""
+        return np.array([joint.upper for joint in self.joints])
+
+    @property
+    def home(self) -> Floats:
+        """Home configuration [N], m or rad."""
+        return np.array([joint.home for joint in self.joints])
+
+    def detector(self, choice: "str | Detector | None") -> Detector | None:
+        """Resolve a detector: a name, a `Detector`, or None for the robot's default; `"none"` looks at nothing."""
+        if isinstance(choice, Detector):
+            return choice
+        name = self.default_detector if choice is None else choice
+        if name == NO_DETECTOR:
+            return None
+        if name not in self.detectors:
+            raise InputError(f"{self.name} has no detector {name!r}; it has {', '.join([*self.detectors, NO_DETECTOR])}")
+        return self.detectors[name]
+
+    def components(self, spheres: str) -> tuple[str, ...]:
+        """Components of an approximation, in the order of its rows."""
+        return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))

@@ -1,0 +1,171 @@
+"""Everything that can be wrong with a robot, found in one place and named by the path of the offending value."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from difflib import get_close_matches
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.model.pairs import component_bodies, non_adjacent_pairs
+from ikde.model.robot import NO_DETECTOR, WORLD, Frame, Robot, SphereRow
+from ikde.model.tree import Tree, build_tree
+
+NON_ADJACENT = "non_adjacent"
+
+
+def check_robot(draft: Robot) -> Robot:
+    """Return the robot with its frames in the tree's order and its list of non-adjacent pairs added.
+
+    Raises:
+        InputError: with the path of the first value that makes no sense.
+    """
+    _check_joints(draft)
+    robot = replace(draft, frames=_sort_frames(draft))
+    _check_name(robot.tool, (f.name for f in robot.frames), ("tool",), "frame")
+    tree = build_tree(robot)
+    bodies: dict[str, int] = {}
+    for name, rows in robot.approximations.items():
+        _check_rows(rows, tree, ("spheres", name))
+        bodies |= component_bodies(rows, tree)
+    _check_pairs(robot, bodies)
+    shared = [set(robot.components(name)) for name in robot.approximations]
+    common = {c: body for c, body in bodies.items() if all(c in components for components in shared)}
+    every = non_adjacent_pairs(common, tree, robot.adjacent)
+    robot = replace(robot, pair_lists={**robot.pair_lists, NON_ADJACENT: every})
+    _check_detectors(robot)
+    _check_conventions(robot)
+    return robot
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """` (did you mean 'x'?)`, or nothing when no known name is close."""
+    close = get_close_matches(name, list(known), n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""
+
+
+def _check_name(name: str, known: Iterable[str], where: tuple[str | int, ...], what: str) -> None:
+    names = list(known)
+    if name not in names:
+        raise InputError(f"no {what} is called {name!r}{nearest(name, names)}", where)
+
+
+def _require(condition: bool, message: str, *where: str | int) -> None:
+    if not condition:
+        raise InputError(message, where)
+
+
+def _check_joints(robot: Robot) -> None:
+    _require(bool(robot.joints), "expected at least one joint", "joints")
+    for joint in robot.joints:
+        where = ("joints", joint.name)
+        for key in ("lower", "upper", "home"):
+            _require(bool(np.isfinite(getattr(joint, key))), "expected a finite number", *where, key)
+        _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
+        inside = joint.lower <= joint.home <= joint.upper
+        _require(inside, "home is outside the limits", *where, "home")
+
+
+def _sort_frames(robot: Robot) -> tuple[Frame, ...]:
+    """Parents before children; otherwise in the order they were written."""
+    frames = {frame.name: frame for frame in robot.frames}
+    for frame in robot.frames:
+        _check_frame(robot, frame, frames)
+    moved = [frame.joint for frame in robot.frames if frame.joint is not None]
+    for joint in robot.joint_names:
+        _require(moved.count(joint) == 1, f"expected one frame that this joint moves, found {moved.count(joint)}", "joints", joint)
+    placed: dict[str, Frame] = {}
+    while len(placed) < len(frames):
+        ready = {n: f for n, f in frames.items() if n not in placed and (f.parent == WORLD or f.parent in placed)}
+        if not ready:
+            loop = next(name for name in frames if name not in placed)
+            raise InputError("a cycle: following the parents never reaches the world", ("frames", loop, "parent"))
+        placed |= ready
+    order = _depth_first(placed)
+    return tuple(placed[name] for name in order)
+
+
+def _depth_first(frames: Mapping[str, Frame]) -> list[str]:
+    """Names along each branch, so that a chain reads from its base to its tool."""
+    order: list[str] = []
+    waiting = [name for name, frame in frames.items() if frame.parent == WORLD][::-1]
+    while waiting:
+        name = waiting.pop()
+        order.append(name)
+        waiting += [child for child, frame in frames.items() if frame.parent == name][::-1]
+    return order
+
+
+def _check_frame(robot: Robot, frame: Frame, frames: Mapping[str, Frame]) -> None:
+    where = ("frames", frame.name)
+    _require(frame.name != WORLD, f"{WORLD!r} is the root and cannot be defined", *where)
+    _check_name(frame.parent, [WORLD, *frames], (*where, "parent"), "frame")
+    _require(bool(np.all(np.isfinite(frame.p_parent_frame))), "expected finite numbers", *where, "xyz")
+    if frame.joint is None:
+        _require(frame.axis is None, "an axis needs a joint", *where, "axis")
+        return
+    _check_name(frame.joint, robot.joint_names, (*where, "joint"), "joint")
+    _require(frame.axis is not None, "a frame with a joint needs an axis", *where)
+    unit = frame.axis is not None and abs(float(np.linalg.norm(frame.axis)) - 1.0) < 1e-9
+    _require(unit, "expected an axis that is not zero", *where, "axis")
+
+
+def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int, ...]) -> None:
+    body_of: dict[str, int] = {}
+    for index, row in enumerate(rows):
+        here = (*where, index)
+        _check_name(row.start, tree.frame_body, (*here, "from"), "frame")
+        _check_name(row.end, tree.frame_body, (*here, "to"), "frame")
+        _require(0.0 < row.radius_m < np.inf, "expected a radius above 0", *here, "radius")
+        _require(row.count >= 1, "expected a count of at least 1", *here, "count")
+        body = tree.frame_body[row.start]
+        _require(body == tree.frame_body[row.end], "a joint moves one end of this line against the other", *here, "to")
+        _require(
+            body_of.setdefault(row.component, body) == body,
+            f"the rows of {row.component!r} lie on different bodies; a component is rigid",
+            *here,
+            "component",
+        )
+
+
+def _check_pairs(robot: Robot, components: Mapping[str, int]) -> None:
+    _require(
+        NON_ADJACENT not in robot.pair_lists, "this list is made by ikde and cannot be defined", "pairs", NON_ADJACENT
+    )
+    lists = {("adjacent", "pairs"): robot.adjacent, **{("pairs", n, "pairs"): p for n, p in robot.pair_lists.items()}}
+    for where, pairs in lists.items():
+        for a, b in pairs:
+            _check_name(a, components, (*where, a), "component")
+            _check_name(b, components, (*where, a), "component")
+            _require(a != b, f"{a!r} is paired with itself", *where, a)
+
+
+def _check_detectors(robot: Robot) -> None:
+    for name, detector in robot.detectors.items():
+        where = ("detectors", name)
+        _require(name != NO_DETECTOR, f"{NO_DETECTOR!r} is taken: it stands for no detector at all", *where)
+        _check_name(detector.spheres, robot.approximations, (*where, "spheres"), "approximation")
+        _check_name(detector.pairs, robot.pair_lists, (*where, "pairs"), "pair list")
+        ok = 0.0 <= detector.safe_distance_m < np.inf
+        _require(ok, "expected a distance of at least 0", *where, "safe_distance")
+        check_detector_components(robot, detector.spheres, detector.pairs, (*where, "pairs"))
+    _check_name(robot.default_detector, [*robot.detectors, NO_DETECTOR], ("default_detector",), "detector")
+
+
+def check_detector_components(robot: Robot, spheres: str, pairs: str, where: tuple[str | int, ...] = ()) -> None:
+    """Raise `InputError` if a pair list names a component that the approximation does not describe."""
+    described = robot.components(spheres)
+    for component in {c for pair in robot.pair_lists[pairs] for c in pair}:
+        if component not in described:
+            raise InputError(f"the approximation {spheres!r} has no component {component!r}", where)
+
+
+def _check_conventions(robot: Robot) -> None:
+    kinds = {joint.name: joint.kind for joint in robot.joints}
+    for name, offsets in robot.conventions.items():
+        _require(name != robot.convention, "this is the convention the file is written in", "conventions", name)
+        for joint in offsets:
+            _check_name(joint, kinds, ("conventions", name, joint), "joint")
+            _require(kinds[joint] == "revolute", "only a revolute joint can be shifted", "conventions", name, joint)
+
+

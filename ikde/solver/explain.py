@@ -1,0 +1,130 @@
+"""Why there is no solution, and what would help: found by trying, not by guessing."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.kernels.lanes import COLLIDING, REACHED
+from ikde.model.reach import reach_excess_m
+from ikde.model.target import Target
+from ikde.solver.problem import Problem
+from ikde.solver.result import StopReason
+from ikde.solver.search import Found, search
+from ikde.solver.verify import Verification
+
+PROBE_ATTEMPTS = 24
+WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
+GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Explanation:
+    """Why, in a word and in a line, and what would help."""
+
+    stop_reason: StopReason
+    reason: str
+    hint: str | None
+    blocking_pairs: Mapping[tuple[str, str], int]
+
+
+def count_blocking_pairs(problem: Problem, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
+    """Pairs that blocked, with how often, most often first."""
+    if problem.detector is None:
+        return {}
+    pairs = problem.robot.pair_lists[problem.detector.pairs]
+    blocking = [(pair, int(n)) for pair, n in zip(pairs, pair_counts, strict=True) if n > 0]
+    return dict(sorted(blocking, key=lambda item: -item[1]))
+
+
+def explain(problem: Problem, target: Target, found: Found, graded: Verification, seed: int) -> Explanation:
+    """Explain an unreached target from its counts, a proved bound, and short searches that change one thing."""
+    excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
+    if excess > problem.settings.position_tolerance_m:
+        reason = f"out of reach: at least {excess:.3f} m beyond the stretched arm at the nearest base position"
+        return Explanation(
+            stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=_reach_hint(problem, target), blocking_pairs={}
+        )
+    colliding = int(found.counts[0, COLLIDING])
+    blocking = count_blocking_pairs(problem, found.pair_counts[0])
+    if colliding == 0 and problem.detector is not None:
+        probe = _probe(problem.with_settings(collision="reject"), target, seed)
+        colliding, blocking = int(probe.counts[0, COLLIDING]), count_blocking_pairs(problem, probe.pair_counts[0])
+    remedy = _try_remedies(problem, target, seed)
+    if colliding > 0:
+        worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])
+        return Explanation(
+            stop_reason=StopReason.SELF_COLLISION,
+            reason=f"only colliding solutions found: {colliding} met the target and all collided; blocked by {worst}",
+            hint=remedy or "a detector with tighter spheres, or another target",
+            blocking_pairs=blocking,
+        )
+    error = f"{graded.position_error_m:.3g} m and {graded.orientation_error_rad:.3g} rad"
+    if remedy:
+        return Explanation(
+            stop_reason=StopReason.LIMITS,
+            reason=f"no configuration inside the joint ranges meets the target; the best is off by {error}",
+            hint=remedy,
+            blocking_pairs={},
+        )
+    return Explanation(
+        stop_reason=StopReason.BUDGET,
+        reason=f"{problem.settings.restarts} attempts spent; the best is off by {error}",
+        hint=_tolerance_hint(problem, graded),
+        blocking_pairs={},
+    )
+
+
+def _probe(problem: Problem, target: Target, seed: int) -> Found:
+    short = problem.with_settings(restarts=min(PROBE_ATTEMPTS, problem.settings.restarts))
+    return search(short, [target], seed=seed, streams=[0])
+
+
+def _widened(problem: Problem) -> tuple[Floats, Floats]:
+    """Slides four times as wide, revolute joints free to turn once around."""
+    slides = np.array([joint.kind == "prismatic" for joint in problem.robot.joints])
+    lower, upper = problem.robot.lower, problem.robot.upper
+    grow = 0.5 * (WIDER - 1.0) * (upper - lower)
+    wide_lower = np.where(slides, lower - grow, np.minimum(lower, -np.pi))
+    wide_upper = np.where(slides, upper + grow, np.maximum(upper, np.pi))
+    return wide_lower, wide_upper
+
+
+def _try_remedies(problem: Problem, target: Target, seed: int) -> str | None:
+    """The first single change with which a short search succeeds."""
+    robot = problem.robot
+    if problem.frozen:
+        free = problem.with_ranges(robot.lower, robot.upper)
+        if _probe(free, target, seed).counts[0, REACHED]:
+            return f"free {', '.join(problem.frozen)}: a solution was found with it unfrozen"
+    lower, upper = _widened(problem)
+    found = _probe(problem.with_ranges(lower, upper), target, seed)
+    if found.counts[0, REACHED]:
+        outside = (found.q[0] < problem.lower) | (found.q[0] > problem.upper)
+        names = [joint.name for joint, out in zip(robot.joints, outside, strict=True) if out]
+        if names:
+            return f"a wider range for {', '.join(names)}: a solution was found outside it"
+    return None
+
+
+def _reach_hint(problem: Problem, target: Target) -> str:
+    robot = problem.robot
+    if problem.frozen and reach_excess_m(robot, target.p_world_tool, robot.lower, robot.upper) == 0.0:
+        return f"free {', '.join(problem.frozen)}: then the bound no longer excludes the target"
+    slides = [joint.name for joint in robot.joints if joint.kind == "prismatic"]
+    wide = reach_excess_m(
+        robot, target.p_world_tool, *(np.where(np.isin(robot.joint_names, slides), b, 0.0) for b in (-1e3, 1e3))
+    )
+    if slides and wide == 0.0:
+        return f"a larger range for {', '.join(slides)} would bring it into reach"
+    return "a target closer to the robot; no joint range brings the tool there"
+
+
+def _tolerance_hint(problem: Problem, graded: Verification) -> str | None:
+    settings = problem.settings
+    close = graded.position_error_m <= GENEROUS * settings.position_tolerance_m
+    close = close and graded.orientation_error_rad <= GENEROUS * settings.orientation_tolerance_rad
+    if not close or graded.self_collision:
+        return "more generations or restarts, or another target"
+    return f"a tolerance of {graded.position_error_m:.2g} m and {graded.orientation_error_rad:.2g} rad would accept the best"

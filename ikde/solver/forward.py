@@ -1,0 +1,25 @@
+"""Where every frame is."""
+
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import WORLD, Robot
+from ikde.solver.joints import JointValues, read_joints
+from ikde.solver.plain import compute_frames
+
+
+def forward(robot: Robot, q: JointValues, convention: str | None = None) -> dict[str, Floats]:
+    """Pose of every frame in the world [Qiao2021, eq. 3, 5-9].
+
+    Args:
+        robot: the robot.
+        q: joint values [N] or [..., N] in the robot's order, or a mapping by joint name; m and rad. Values outside
+            the limits are accepted.
+        convention: how `q` is counted; None for the robot's own.
+
+    Returns:
+        Frame name -> T_world_frame [..., 4, 4], m.
+
+    Raises:
+        InputError: for a wrong count, an unknown joint or convention, NaN or infinity.
+    """
+    Ts_world = compute_frames(robot, read_joints(robot, q, convention))
+    return {name: T for name, T in Ts_world.items() if name != WORLD}

@@ -1,0 +1,57 @@
+"""Joint values as users give them: an array in the robot's order, or a mapping by joint name."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+from ikde.model.convention import from_convention
+from ikde.model.robot import Robot
+from ikde.model.validate import nearest
+
+JointValues = ArrayLike | Mapping[str, float]
+
+
+def read_joints(robot: Robot, q: JointValues, convention: str | None = None, *, default: Floats | None = None) -> Floats:
+    """Return q [..., N] in the robot's own convention, m and rad.
+
+    A mapping may leave joints out only if `default` [N] is given. Raises `InputError` for a wrong count, an unknown
+    joint, NaN or infinity.
+    """
+    values = _from_mapping(robot, q, convention, default) if isinstance(q, Mapping) else _from_array(robot, q)
+    if not np.all(np.isfinite(values)):
+        raise InputError("expected finite joint values, got NaN or infinity", ("q",))
+    return values if isinstance(q, Mapping) else from_convention(robot, values, convention)
+
+
+def _from_array(robot: Robot, q: ArrayLike) -> Floats:
+    try:
+        values = np.array(q, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"expected numbers, got {q!r}", ("q",)) from None
+    names = robot.joint_names
+    if values.ndim == 0 or values.shape[-1] != len(names):
+        count = values.shape[-1] if values.ndim else 1
+        raise InputError(f"expected {len(names)} joint values ({', '.join(names)}), got {count}", ("q",))
+    return values
+
+
+def _from_mapping(robot: Robot, q: Mapping[str, float], convention: str | None, default: Floats | None) -> Floats:
+    names = robot.joint_names
+    for name in q:
+        if name not in names:
+            raise InputError(f"{robot.name} has no joint {name!r}{nearest(name, names)}", ("q", name))
+    missing = [name for name in names if name not in q]
+    if missing and default is None:
+        raise InputError(f"no value for {', '.join(missing)}", ("q",))
+    given = from_convention(robot, _from_array(robot, [q.get(name, 0.0) for name in names]), convention)
+    fallback = given if default is None else default
+    return np.array([given[i] if name in q else fallback[i] for i, name in enumerate(names)])
+
+
+def joints_outside(robot: Robot, q: Floats) -> tuple[str, ...]:
+    """Names of the joints of `q` [N] outside their limits; exactly on a limit is inside."""
+    pairs = zip(robot.joints, q, strict=True)
+    return tuple(joint.name for joint, value in pairs if not joint.lower <= value <= joint.upper)

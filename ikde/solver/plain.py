@@ -1,0 +1,68 @@
+"""The robot's geometry in plain numpy, straight from the `Robot`: no packing, no numba, nothing shared with kernels.
+
+It answers `forward` and `check`, and it is what `verify` grades with. It is written to be read: frames by products of
+4 x 4 matrices, sphere centres on the lines between key points, all distances of all pairs.
+"""
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import WORLD, Detector, Robot, SphereRow
+
+
+def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
+    """T of a joint [..., 4, 4]: a turn about `axis` [3] by `value` [...] rad, or a slide along it by `value` m."""
+    T = np.zeros((*value.shape, 4, 4))
+    T[..., range(4), range(4)] = 1.0
+    if kind == "prismatic":
+        T[..., :3, 3] = value[..., None] * axis
+        return T
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    outer = np.outer(axis, axis)
+    s, c = np.sin(value)[..., None, None], np.cos(value)[..., None, None]
+    T[..., :3, :3] = c * np.eye(3) + s * K + (1.0 - c) * outer
+    return T
+
+
+def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
+    """T_world_frame [..., 4, 4] of every frame, for `q` [..., N] in the robot's own convention."""
+    Ts_world: dict[str, Floats] = {WORLD: np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))}
+    for frame in robot.frames:
+        T = np.eye(4)
+        T[:3, :3], T[:3, 3] = frame.R_parent_frame, frame.p_parent_frame
+        Ts_world[frame.name] = Ts_world[frame.parent] @ T
+        if frame.joint is not None and frame.axis is not None:
+            index = robot.joint_names.index(frame.joint)
+            Ts_world[frame.name] = Ts_world[frame.name] @ joint_motion(robot.joints[index].kind, frame.axis, q[..., index])
+    return Ts_world
+
+
+def compute_row_centres(row: SphereRow, start: Floats, end: Floats) -> Floats:
+    """Centres [count, 3] of a row of spheres between two key points in the world [Qiao2021, eq. 12, 13, 16]."""
+    middle, line = 0.5 * (start + end), end - start
+    if row.count == 1:
+        return middle[None, :]
+    steps = np.arange(row.count)[:, None] - 0.5 * (row.count - 1)
+    if row.spacing == "even":
+        return middle + steps * line / (row.count - 1)
+    return middle + steps * 2.0 * row.radius_m * line / np.linalg.norm(line)
+
+
+def compute_components(robot: Robot, detector: Detector, q: Floats) -> dict[str, tuple[Floats, Floats]]:
+    """Sphere centres [n, 3] in the world and radii [n] of every component, for one `q` [N]."""
+    Ts_world = compute_frames(robot, q)
+    centres: dict[str, list[Floats]] = {}
+    radii: dict[str, list[float]] = {}
+    for row in robot.approximations[detector.spheres]:
+        points = compute_row_centres(row, Ts_world[row.start][:3, 3], Ts_world[row.end][:3, 3])
+        centres.setdefault(row.component, []).append(points)
+        radii.setdefault(row.component, []).extend([row.radius_m] * row.count)
+    return {name: (np.vstack(centres[name]), np.array(radii[name])) for name in centres}
+
+
+def compute_gap(a: tuple[Floats, Floats], b: tuple[Floats, Floats]) -> tuple[float, int, int]:
+    """Smallest distance - R_i - R_j between two components in m, and the indices of the two spheres."""
+    gaps = np.linalg.norm(a[0][:, None, :] - b[0][None, :, :], axis=2) - a[1][:, None] - b[1][None, :]
+    i, j = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
+    return float(gaps[i, j]), int(i), int(j)

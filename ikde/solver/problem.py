@@ -1,0 +1,103 @@
+"""One kind of question, ready to be searched: robot, detector, settings, and the ranges that hold."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats, SearchArrays
+from ikde.kernels.evolution import FEASIBILITY, IGNORE, REJECT
+from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.model.robot import Detector, Robot
+from ikde.solver.joints import JointValues, read_joints
+from ikde.solver.settings import SolveSettings
+
+Freeze = Mapping[str, float | None] | Iterable[str]
+
+NEAR_FIRST_BOX = 1.0 / 64.0  # half-width of the first box around `near`, as a share of each joint range
+ROUNDING_M = 1e-12  # the kernel aims this much below the tolerance, so that rounding cannot turn `verify`'s verdict
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Problem:
+    """Everything about a search but the target and the seed."""
+
+    robot: Robot
+    detector: Detector | None
+    settings: SolveSettings
+    lower: Floats
+    upper: Floats
+    """[N] joint ranges; a frozen joint's are equal."""
+    near: Floats | None
+    frozen: tuple[str, ...]
+
+    def with_ranges(self, lower: Floats, upper: Floats) -> "Problem":
+        """The same question with other joint ranges and nothing frozen."""
+        return replace(self, lower=lower, upper=upper, frozen=())
+
+    def with_settings(self, **changes: object) -> "Problem":
+        """The same question with some settings changed."""
+        return replace(self, settings=self.settings.with_changes(**changes))
+
+
+def make_problem(
+    robot: Robot,
+    settings: SolveSettings,
+    *,
+    detector: str | Detector | None,
+    near: JointValues | None,
+    freeze: Freeze | None,
+) -> Problem:
+    """Resolve names and ranges; raises `InputError` for what does not fit the robot."""
+    lower, upper = robot.lower, robot.upper
+    start = None if near is None else read_joints(robot, near, default=robot.home)
+    fixed = _read_freeze(robot, freeze, robot.home if start is None else start)
+    for name, value in fixed.items():
+        index = robot.joint_names.index(name)
+        if not lower[index] <= value <= upper[index]:
+            limits = f"[{lower[index]:g}, {upper[index]:g}]"
+            raise InputError(f"{value:g} is outside the limits {limits}", ("freeze", name))
+        lower[index] = upper[index] = value
+    return Problem(
+        robot=robot,
+        detector=robot.detector(detector),
+        settings=settings,
+        lower=lower,
+        upper=upper,
+        near=None if start is None else np.clip(start, lower, upper),
+        frozen=tuple(fixed),
+    )
+
+
+def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[str, float]:
+    if freeze is None:
+        return {}
+    given = dict(freeze) if isinstance(freeze, Mapping) else dict.fromkeys(freeze)
+    start = dict(zip(robot.joint_names, default, strict=True))
+    values = {name: start.get(name, 0.0) if value is None else value for name, value in given.items()}
+    resolved = read_joints(robot, values, default=default)
+    return {name: float(resolved[robot.joint_names.index(name)]) for name in values}
+
+
+def pack_search(problem: Problem) -> SearchArrays:
+    """The search's arrays for the kernels."""
+    settings = problem.settings
+    rule = IGNORE if problem.detector is None else {"reject": REJECT, "feasibility": FEASIBILITY}[settings.collision]
+    middle = 0.5 * (problem.lower + problem.upper)
+    tolerances = np.array([settings.position_tolerance_m, settings.orientation_tolerance_rad])
+    return SearchArrays(
+        lower=problem.lower,
+        upper=problem.upper,
+        near=middle if problem.near is None else problem.near,
+        first_box=np.array([1.0 if problem.near is None else NEAR_FIRST_BOX]),
+        tolerance=tolerances - np.minimum(ROUNDING_M, 0.5 * tolerances),
+        population=np.array([settings.population]),
+        generations=np.array([settings.generations]),
+        strategy=np.array([STRATEGIES.index(settings.strategy)]),
+        weight=np.array([float(settings.weight)]),
+        crossover=np.array([float(settings.crossover)]),
+        repair=np.array([REPAIRS.index(settings.bounds)]),
+        in_place=np.array([int(settings.update == "in_place")]),
+        collision_rule=np.array([rule]),
+    )

@@ -1,0 +1,81 @@
+"""What a solve gives back: joint values, their graded figures, what it cost, and the reason it stopped."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from ikde.kernels.arrays import Floats
+from ikde.solver.verify import Verification
+
+
+class StopReason(StrEnum):
+    """Why a solve ended."""
+
+    REACHED = "reached"
+    OUT_OF_REACH = "out_of_reach"
+    """A bound proves that no joint values bring the tool there."""
+    SELF_COLLISION = "self_collision"
+    """The pose was met, but only by configurations that collide with themselves."""
+    LIMITS = "limits"
+    """The pose was met only outside the joint limits (or with a frozen joint set free)."""
+    BUDGET = "budget"
+    """The attempts were spent and nothing tells why."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SolveResult:
+    """One configuration and everything known about it. The figures are `verify`'s, on exactly this `q`."""
+
+    reached: bool
+    stop_reason: StopReason
+    reason: str
+    """One line: what happened."""
+    hint: str | None
+    """One line: what would help, found by trying it; None if nothing was found or nothing is needed."""
+    q: Floats
+    """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
+    joint_names: tuple[str, ...]
+    verification: Verification
+    verified: bool
+    """Kernels and `verify` agree on this `q` to 1e-11 (a larger gap raises, or in bulk is recorded here)."""
+    method: str
+    """The engine that answered."""
+    detector: str
+    seed: int
+    stream: int
+    """Index of the target in its batch; (seed, stream) repeats the search bit for bit."""
+    attempts: int
+    evaluations: int
+    """Forward kinematics with pose error."""
+    rejected: int
+    """Attempts that met the pose but collided."""
+    blocking_pairs: Mapping[tuple[str, str], int]
+    """How often each pair blocked a pose that was met, most often first."""
+    solve_seconds: float
+    """Wall time without compilation; in bulk the batch's wall time divided by its targets."""
+    compile_seconds: float
+
+    @property
+    def position_error_m(self) -> float:
+        """Distance of the tool from the target, m."""
+        return self.verification.position_error_m
+
+    @property
+    def orientation_error_rad(self) -> float:
+        """Rotation-vector norm between tool and target, rad."""
+        return self.verification.orientation_error_rad
+
+    @property
+    def clearance_m(self) -> float | None:
+        """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
+        return self.verification.clearance_m
+
+    @property
+    def closest_pair(self) -> tuple[str, str] | None:
+        """The two components that the clearance lies between."""
+        return self.verification.closest_pair
+
+    @property
+    def self_collision(self) -> bool:
+        """True if the clearance is not above the safe distance."""
+        return self.verification.self_collision
