@@ -1,8 +1,10 @@
 """The table of every packed array: what `model.pack` gives and every kernel takes.
 
-All arrays are C-ordered, read-only, float64 or int64; metres and radians. A *body* is what one joint moves; body 0 is
-the world, body b > 0 is moved by the coordinate `q[body_coordinate[b]]` about or along the z axis of its own frame
-(`pack` turns every joint axis to z, so that one formula serves all). Bodies stand in the tree's order: parents first.
+All arrays are C-ordered, read-only, float64 or int64; metres and radians. A transform is its upper three rows, [3, 4]:
+rotation and translation. Points stand as [3, S], coordinate by coordinate, so that the compiler can vectorise.
+
+A *body* is what one joint moves. Body 0 is the world; body b > 0 is moved by one coordinate of q about or along the z
+axis of its own frame (`pack` turns every joint axis to z, so that one formula serves all). Parents come first.
 """
 
 from typing import NamedTuple
@@ -15,62 +17,52 @@ Ints = NDArray[np.int64]
 
 
 class RobotArrays(NamedTuple):
-    """The kinematic tree: B bodies with the world, N joints, F named frames with the world first."""
+    """The kinematic tree: B bodies with the world, F named frames with the world first and the tool last."""
 
-    body_parent: Ints  # [B]
-    body_coordinate: Ints  # [B] index into q; -1 for the world
-    body_slides: Ints  # [B] 1 if prismatic, 0 if revolute
-    body_moves_tool: Ints  # [B] 1 if the tool hangs on this body
-    R_parent_body: Floats  # [B, 3, 3] at q = 0
-    p_parent_body: Floats  # [B, 3] m
+    bodies: Ints  # [B, 4] parent body, coordinate of q, 1 if it slides, 1 if the tool hangs on it
+    T_parent_body: Floats  # [B, 3, 4] at q = 0
     frame_body: Ints  # [F] the body a frame is fixed to
-    R_body_frame: Floats  # [F, 3, 3]
-    p_body_frame: Floats  # [F, 3] m
-    tool_frame: Ints  # [1] index of the tool among the frames
-    lower: Floats  # [N] m or rad
-    upper: Floats  # [N] m or rad
+    T_body_frame: Floats  # [F, 3, 4]
+
+
+PARENT, COORDINATE, SLIDES, MOVES_TOOL = range(4)  # columns of `RobotArrays.bodies`
 
 
 class DetectorArrays(NamedTuple):
-    """One detector: S spheres sorted by component, C components, P component pairs, W rows of spheres."""
+    """One detector: S spheres, those of one of the C components together, P component pairs, W rows of spheres."""
 
-    safe_distance: Floats  # [1] m
-    sphere_body: Ints  # [S]
-    p_body_sphere: Floats  # [S, 3] m
-    sphere_radius: Floats  # [S] m
-    component_start: Ints  # [C + 1] spheres of component c: component_start[c] : component_start[c + 1]
-    component_body: Ints  # [C]
-    p_body_bound: Floats  # [C, 3] m, centre of a sphere around the whole component
-    bound_radius: Floats  # [C] m
-    pair_a: Ints  # [P] component
-    pair_b: Ints  # [P] component
-    row_start: Ints  # [W + 1] spheres of row w: row_start[w] : row_start[w + 1]
-    row_from: Ints  # [W] frame of the first key point
-    row_to: Ints  # [W] frame of the second key point
-    sphere_offset: Floats  # [S] m along the row's line, from its middle
+    safe_distance: float  # m
+    p_body_sphere: Floats  # [3, S] m
+    radius: Floats  # [S] m
+    components: Ints  # [C, 3] body, first sphere, sphere after the last
+    bounds: Floats  # [C, 4] centre in its body and radius of a sphere around the whole component, m
+    pairs: Ints  # [P, 2] two components, the one with more spheres first
+    rows: Ints  # [W, 4] frame of the first key point, of the second, first sphere, sphere after the last
+    offset: Floats  # [S] m along the row's line, from its middle
+
+
+BODY, FIRST, LAST = range(3)  # columns of `DetectorArrays.components`
 
 
 class TargetArrays(NamedTuple):
     """T targets in the world frame."""
 
     kind: Ints  # [T] 0 position, 1 position and tool axis, 2 pose
-    p_world_tool: Floats  # [T, 3] m
-    R_world_tool: Floats  # [T, 3, 3]; for kind 1 only its last column, the tool's z axis, is asked for
+    T_world_tool: Floats  # [T, 3, 4]; for kind 1 only the z axis and the position are asked for, for 0 the position
 
 
 class SearchArrays(NamedTuple):
     """What a search is told: numbers from `SolveSettings`, ranges from the robot, `freeze` and `near`."""
 
-    lower: Floats  # [N] m or rad
-    upper: Floats  # [N] m or rad
-    near: Floats  # [N] centre of the growing boxes
-    first_box: Floats  # [1] share of each range searched by the first attempt; 1: the whole range at once
-    tolerance: Floats  # [2] m, rad
-    population: Ints  # [1]
-    generations: Ints  # [1]
-    strategy: Ints  # [1] index into `mutation.STRATEGIES`
-    weight: Floats  # [1] F, the differential weight
-    crossover: Floats  # [1] CR
-    repair: Ints  # [1] index into `mutation.REPAIRS`
-    in_place: Ints  # [1] 1: a better trial replaces its parent at once; 0: at the end of the generation
-    collision_rule: Ints  # [1] 0 none, 1 reject, 2 feasibility
+    ranges: Floats  # [3, N] lower, upper, and the centre of the growing boxes; m or rad
+    first_box: float  # half-width of the first attempt's box as a share of each range; 1: the whole range at once
+    position_tolerance: float  # m
+    orientation_tolerance: float  # rad
+    population: int
+    generations: int
+    strategy: int  # index into `mutation.STRATEGIES`
+    weight: float  # F, the differential weight
+    crossover: float  # CR
+    repair: int  # index into `mutation.REPAIRS`
+    in_place: bool  # a better trial replaces its parent at once, not at the end of the generation
+    collision_rule: int  # one of `evolution.IGNORE`, `REJECT`, `FEASIBILITY`

@@ -6,38 +6,56 @@ min over the detector's pairs of distance - R_i - R_j, and the pair it belongs t
 
 import math
 
-from ikde.kernels.jit import kernel
+from ikde.kernels.arrays import FIRST, LAST
+from ikde.kernels.jit import inline_kernel, kernel
 
 
-@kernel
-def _pair_collides(detector, centres, a, b):
+@inline_kernel
+def bounds_are_apart(detector, bounds, a, b, distance):
+    """True if the bounding spheres alone prove that two components are farther apart than `distance`."""
+    dx, dy, dz = bounds[a, 0] - bounds[b, 0], bounds[a, 1] - bounds[b, 1], bounds[a, 2] - bounds[b, 2]
+    limit = detector.bounds[a, 3] + detector.bounds[b, 3] + distance
+    return limit >= 0.0 and dx * dx + dy * dy + dz * dz > limit * limit
+
+
+@inline_kernel
+def is_touched(detector, centres, a, px, py, pz, reach):
+    """True if a sphere of component `a` is within `reach` of the point (px, py, pz).
+
+    The loop counts instead of leaving early, so that the compiler can vectorise it.
+    """
+    x, y, z, radius = centres[0], centres[1], centres[2], detector.radius
+    hits = 0
+    for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
+        dx, dy, dz, limit = x[i] - px, y[i] - py, z[i] - pz, radius[i] + reach
+        hits += dx * dx + dy * dy + dz * dz <= limit * limit
+    return hits > 0
+
+
+@inline_kernel
+def pair_collides(detector, centres, a, b):
     """True if a sphere of component `a` is within the safe distance of a sphere of component `b`."""
-    safe = detector.safe_distance[0]
-    for i in range(detector.component_start[a], detector.component_start[a + 1]):
-        x, y, z = centres[i, 0], centres[i, 1], centres[i, 2]
-        reach = detector.sphere_radius[i] + safe
-        for j in range(detector.component_start[b], detector.component_start[b + 1]):
-            dx, dy, dz = x - centres[j, 0], y - centres[j, 1], z - centres[j, 2]
-            limit = reach + detector.sphere_radius[j]
-            if dx * dx + dy * dy + dz * dz <= limit * limit:
-                return True
+    for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
+        reach = detector.radius[j] + detector.safe_distance
+        if is_touched(detector, centres, a, centres[0, j], centres[1, j], centres[2, j], reach):
+            return True
     return False
 
 
-@kernel
-def _bounds_overlap(detector, bounds, a, b):
-    """False if the bounding spheres alone prove that two components are apart."""
-    dx, dy, dz = bounds[a, 0] - bounds[b, 0], bounds[a, 1] - bounds[b, 1], bounds[a, 2] - bounds[b, 2]
-    limit = detector.bound_radius[a] + detector.bound_radius[b] + detector.safe_distance[0]
-    return dx * dx + dy * dy + dz * dz <= limit * limit
-
-
-@kernel
+@inline_kernel
 def collides(detector, bounds, centres):
-    """True at the first pair of components within the safe distance: bounding spheres first, then the spheres."""
-    for pair in range(detector.pair_a.size):
-        a, b = detector.pair_a[pair], detector.pair_b[pair]
-        if _bounds_overlap(detector, bounds, a, b) and _pair_collides(detector, centres, a, b):
+    """True at the first pair of components within the safe distance.
+
+    From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all.
+    """
+    for pair in range(detector.pairs.shape[0]):
+        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
+        if bounds_are_apart(detector, bounds, a, b, detector.safe_distance):
+            continue
+        reach = detector.bounds[b, 3] + detector.safe_distance
+        if not is_touched(detector, centres, a, bounds[b, 0], bounds[b, 1], bounds[b, 2], reach):
+            continue
+        if pair_collides(detector, centres, a, b):
             return True
     return False
 
@@ -46,11 +64,14 @@ def collides(detector, bounds, centres):
 def compute_pair_clearance(detector, centres, a, b):
     """Smallest distance - R_i - R_j between two components, in m; negative is the depth of penetration."""
     smallest = math.inf
-    for i in range(detector.component_start[a], detector.component_start[a + 1]):
-        x, y, z = centres[i, 0], centres[i, 1], centres[i, 2]
-        for j in range(detector.component_start[b], detector.component_start[b + 1]):
-            dx, dy, dz = x - centres[j, 0], y - centres[j, 1], z - centres[j, 2]
-            gap = math.sqrt(dx * dx + dy * dy + dz * dz) - detector.sphere_radius[i] - detector.sphere_radius[j]
+    for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
+        for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
+            dx, dy, dz = (
+                centres[0, i] - centres[0, j],
+                centres[1, i] - centres[1, j],
+                centres[2, i] - centres[2, j],
+            )
+            gap = math.sqrt(dx * dx + dy * dy + dz * dz) - detector.radius[i] - detector.radius[j]
             smallest = min(smallest, gap)
     return smallest
 
@@ -62,11 +83,9 @@ def compute_clearance(detector, bounds, centres):
     A pair whose bounding spheres are already farther apart than the smallest clearance so far is skipped.
     """
     smallest, closest = math.inf, -1
-    for pair in range(detector.pair_a.size):
-        a, b = detector.pair_a[pair], detector.pair_b[pair]
-        dx, dy, dz = bounds[a, 0] - bounds[b, 0], bounds[a, 1] - bounds[b, 1], bounds[a, 2] - bounds[b, 2]
-        floor = smallest + detector.bound_radius[a] + detector.bound_radius[b]
-        if floor >= 0.0 and dx * dx + dy * dy + dz * dz > floor * floor:
+    for pair in range(detector.pairs.shape[0]):
+        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
+        if bounds_are_apart(detector, bounds, a, b, smallest):
             continue
         gap = compute_pair_clearance(detector, centres, a, b)
         if gap < smallest:
@@ -77,6 +96,6 @@ def compute_clearance(detector, bounds, centres):
 @kernel
 def count_colliding_pairs(detector, centres, out_counts):
     """Add 1 to `out_counts` [P] for each pair within the safe distance."""
-    for pair in range(detector.pair_a.size):
-        if _pair_collides(detector, centres, detector.pair_a[pair], detector.pair_b[pair]):
+    for pair in range(detector.pairs.shape[0]):
+        if pair_collides(detector, centres, detector.pairs[pair, 0], detector.pairs[pair, 1]):
             out_counts[pair] += 1

@@ -54,15 +54,19 @@ def _our_cache_folder() -> Iterator[None]:
 
 
 def kernel(function: F) -> F:
-    """Compile `function` on its first call and keep the machine code on disk."""
+    """Compile `function` on its first call and keep the machine code on disk. It runs without Python's lock."""
     with _our_cache_folder():
-        return numba.njit(cache=CACHE_IS_WRITABLE, error_model="numpy")(function)  # type: ignore[return-value]
+        return numba.njit(cache=CACHE_IS_WRITABLE, error_model="numpy", nogil=True)(function)  # type: ignore[return-value]
 
 
-def parallel_kernel(function: F) -> F:
-    """Like `kernel`, with `prange` over whole solves; never inside one."""
+def inline_kernel(function: F) -> F:
+    """Like `kernel`, but pasted into its callers: passing the packed arrays costs more than most kernels do.
+
+    Measured on qiao2021: 0.97 against 4.6 us for one trial of the differential evolution.
+    """
     with _our_cache_folder():
-        return numba.njit(cache=CACHE_IS_WRITABLE, error_model="numpy", parallel=True)(function)  # type: ignore[return-value]
+        options = {"cache": CACHE_IS_WRITABLE, "error_model": "numpy", "forceinline": True}
+        return numba.njit(**options)(function)  # type: ignore[return-value]
 
 
 class CompileClock(event.Listener):

@@ -7,7 +7,7 @@ best as well, so what it prints as current2best/2 is current-to-best/1 here.
 
 import math
 
-from ikde.kernels.jit import kernel
+from ikde.kernels.jit import inline_kernel
 from ikde.kernels.rng import next_index, next_uniform
 
 STRATEGIES = (
@@ -27,7 +27,7 @@ REPAIRS = ("redraw", "clip", "parent", "midpoint", "none")
 REDRAW, CLIP, PARENT, MIDPOINT, NONE = range(5)
 
 
-@kernel
+@inline_kernel
 def draw_members(state, population, current, out_r):
     """Draw distinct members of the population, none of them `current`, into `out_r` [5]."""
     for n in range(LARGEST_DRAW):
@@ -39,7 +39,7 @@ def draw_members(state, population, current, out_r):
                 fresh = fresh and out_r[m] != out_r[n]
 
 
-@kernel
+@inline_kernel
 def mutate(strategy, x, i, best, r, F, k):
     """Coordinate `k` of the donor v for member `i` of the population `x` [NP, N]."""
     if strategy == RAND_1:
@@ -61,7 +61,7 @@ def mutate(strategy, x, i, best, r, F, k):
     return math.nan
 
 
-@kernel
+@inline_kernel
 def repair_bound(repair, state, value, parent, lower, upper):
     """Bring one coordinate of a donor back into [lower, upper]; `parent` is the member it would replace."""
     if lower <= value <= upper or repair == NONE:

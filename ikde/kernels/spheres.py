@@ -2,53 +2,56 @@
 
 import math
 
-from ikde.kernels.jit import kernel
+from ikde.kernels.arrays import BODY, FIRST, LAST
+from ikde.kernels.jit import inline_kernel, kernel
 
 
-@kernel
-def compute_centres(detector, R_world_body, p_world_body, out_centres):
-    """Sphere centres by spatial transformation: p_world = T_world_body @ p_body. `out_centres` [S, 3] m."""
-    for sphere in range(detector.sphere_body.size):
-        body = detector.sphere_body[sphere]
-        x, y, z = detector.p_body_sphere[sphere]
+@inline_kernel
+def compute_component(detector, component, T_world_body, out_centres):
+    """Sphere centres of one component by spatial transformation: p_world = T_world_body @ p_body. Into [3, S] m."""
+    body = detector.components[component, BODY]
+    first, last = detector.components[component, FIRST], detector.components[component, LAST]
+    x, y, z = detector.p_body_sphere[0], detector.p_body_sphere[1], detector.p_body_sphere[2]
+    for i in range(3):
+        a, b, c = T_world_body[body, i, 0], T_world_body[body, i, 1], T_world_body[body, i, 2]
+        d = T_world_body[body, i, 3]
+        for sphere in range(first, last):
+            out_centres[i, sphere] = d + a * x[sphere] + b * y[sphere] + c * z[sphere]
+
+
+@inline_kernel
+def compute_centres(detector, T_world_body, out_centres):
+    """Sphere centres of every component by spatial transformation. `out_centres` [3, S] m."""
+    for component in range(detector.components.shape[0]):
+        compute_component(detector, component, T_world_body, out_centres)
+
+
+@inline_kernel
+def compute_bounds(detector, T_world_body, out_bounds):
+    """Centre of the bounding sphere of each component, by spatial transformation. `out_bounds` [C, 3] m."""
+    for component in range(detector.components.shape[0]):
+        body = detector.components[component, BODY]
+        x, y, z = detector.bounds[component, 0], detector.bounds[component, 1], detector.bounds[component, 2]
         for i in range(3):
-            out_centres[sphere, i] = (
-                p_world_body[body, i]
-                + R_world_body[body, i, 0] * x
-                + R_world_body[body, i, 1] * y
-                + R_world_body[body, i, 2] * z
-            )
+            a, b, c = T_world_body[body, i, 0], T_world_body[body, i, 1], T_world_body[body, i, 2]
+            out_bounds[component, i] = T_world_body[body, i, 3] + a * x + b * y + c * z
 
 
 @kernel
-def compute_centres_from_key_points(detector, p_world_frame, out_centres):
+def compute_centres_from_key_points(detector, T_world_frame, out_centres):
     """Sphere centres on the lines between key points: the middle plus an offset along the unit vector.
 
     [Qiao2021, eq. 12, 13, 16], with eq. 13's missing factor 2R inside the packed offsets. Needs the origins of the
-    frames only, no rotation. `p_world_frame` [F, 3] m; `out_centres` [S, 3] m.
+    frames only, no rotation. `T_world_frame` [F, 3, 4]; `out_centres` [3, S] m.
     """
-    for row in range(detector.row_from.size):
-        start, end = p_world_frame[detector.row_from[row]], p_world_frame[detector.row_to[row]]
-        ex, ey, ez = end[0] - start[0], end[1] - start[1], end[2] - start[2]
-        length = math.sqrt(ex * ex + ey * ey + ez * ez)
-        per_length = 1.0 / length if length > 0.0 else 0.0
-        for sphere in range(detector.row_start[row], detector.row_start[row + 1]):
-            along = detector.sphere_offset[sphere] * per_length
-            out_centres[sphere, 0] = 0.5 * (start[0] + end[0]) + along * ex
-            out_centres[sphere, 1] = 0.5 * (start[1] + end[1]) + along * ey
-            out_centres[sphere, 2] = 0.5 * (start[2] + end[2]) + along * ez
-
-
-@kernel
-def compute_bounds(detector, R_world_body, p_world_body, out_bounds):
-    """Centre of the bounding sphere of each component, by spatial transformation. `out_bounds` [C, 3] m."""
-    for component in range(detector.component_body.size):
-        body = detector.component_body[component]
-        x, y, z = detector.p_body_bound[component]
+    for row in range(detector.rows.shape[0]):
+        start, end, first, last = detector.rows[row]
+        length = 0.0
         for i in range(3):
-            out_bounds[component, i] = (
-                p_world_body[body, i]
-                + R_world_body[body, i, 0] * x
-                + R_world_body[body, i, 1] * y
-                + R_world_body[body, i, 2] * z
-            )
+            length += (T_world_frame[end, i, 3] - T_world_frame[start, i, 3]) ** 2
+        length = math.sqrt(length)
+        for i in range(3):
+            p, line = T_world_frame[start, i, 3], T_world_frame[end, i, 3] - T_world_frame[start, i, 3]
+            direction = line / length if length > 0.0 else 0.0
+            for sphere in range(first, last):
+                out_centres[i, sphere] = p + 0.5 * line + detector.offset[sphere] * direction

@@ -1,5 +1,6 @@
 """From a `Robot` to the arrays that the kernels take (`kernels/arrays.py`): read-only, C-ordered, one dtype each."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import ArrayLike
 from ikde.kernels.arrays import DetectorArrays, Floats, Ints, RobotArrays, TargetArrays
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.rotation import rotation_with_z
-from ikde.model.spheres import Sphere, bounding_sphere, expand_rows
+from ikde.model.spheres import bounding_sphere, expand_rows
 from ikde.model.target import Target
 from ikde.model.tree import Body, build_tree, transform
 
@@ -26,20 +27,12 @@ def pack_robot(robot: Robot) -> RobotArrays:
     ]
     frames = frame_names(robot)
     T_body_frame = [T_body_aligned[tree.frame_body[f]].T @ tree.T_body_frame[f] for f in frames]
-    kinds = [None if body.joint is None else robot.joints[body.joint].kind for body in tree.bodies]
+    carries_tool = _ancestors(tree.bodies, tree.frame_body[robot.tool])
     return RobotArrays(
-        body_parent=_ints([body.parent for body in tree.bodies]),
-        body_coordinate=_ints([-1 if body.joint is None else body.joint for body in tree.bodies]),
-        body_slides=_ints([kind == "prismatic" for kind in kinds]),
-        body_moves_tool=_ints(_ancestors(tree.bodies, tree.frame_body[robot.tool])),
-        R_parent_body=_floats([T[:3, :3] for T in T_parent_body]),
-        p_parent_body=_floats([T[:3, 3] for T in T_parent_body]),
+        bodies=_ints([_body_row(robot, body, c) for body, c in zip(tree.bodies, carries_tool, strict=True)]),
+        T_parent_body=_floats([T[:3] for T in T_parent_body]),
         frame_body=_ints([tree.frame_body[f] for f in frames]),
-        R_body_frame=_floats([T[:3, :3] for T in T_body_frame]),
-        p_body_frame=_floats([T[:3, 3] for T in T_body_frame]),
-        tool_frame=_ints([frames.index(robot.tool)]),
-        lower=_floats(robot.lower),
-        upper=_floats(robot.upper),
+        T_body_frame=_floats([T[:3] for T in T_body_frame]),
     )
 
 
@@ -53,41 +46,50 @@ def pack_detector(robot: Robot, detector: Detector | None) -> DetectorArrays:
     spheres = [sphere for sphere in every if sphere.component in looked_at]
     components = list(dict.fromkeys(sphere.component for sphere in spheres))
     groups = [[s for s in spheres if s.component == c] for c in components]
-    bounds = [bounding_sphere(group) for group in groups]
     rows = robot.approximations[detector.spheres] if detector else ()
     used_rows = list(dict.fromkeys(sphere.row for sphere in spheres))
+    row_ends = np.cumsum([0, *(sum(s.row == row for s in spheres) for row in used_rows)])
+    ends = np.cumsum([0, *map(len, groups)])
     frames = frame_names(robot)
     aligned = [_align(body).T for body in tree.bodies]
+    centres = [_map(aligned[s.body], s.p_body_sphere) for s in spheres]
+    bounds = [(g[0].body, *bounding_sphere(g)) for g in groups]
+    indices = [sorted((components.index(a), components.index(b)), key=lambda c: -len(groups[c])) for a, b in pairs]
     return DetectorArrays(
-        safe_distance=_floats([detector.safe_distance_m if detector else 0.0]),
-        sphere_body=_ints([s.body for s in spheres]),
-        p_body_sphere=_points([_map(aligned[s.body], s.p_body_sphere) for s in spheres]),
-        sphere_radius=_floats([s.radius_m for s in spheres]),
-        component_start=_ints(np.cumsum([0, *map(len, groups)])),
-        component_body=_ints([group[0].body for group in groups]),
-        p_body_bound=_points([_map(aligned[g[0].body], p) for g, (p, _) in zip(groups, bounds, strict=True)]),
-        bound_radius=_floats([radius for _, radius in bounds]),
-        pair_a=_ints([components.index(a) for a, _ in pairs]),
-        pair_b=_ints([components.index(b) for _, b in pairs]),
-        row_start=_ints(np.cumsum([0, *(_count(spheres, row) for row in used_rows)])),
-        row_from=_ints([frames.index(rows[row].start) for row in used_rows]),
-        row_to=_ints([frames.index(rows[row].end) for row in used_rows]),
-        sphere_offset=_floats([s.offset_m for s in spheres]),
+        safe_distance=float(detector.safe_distance_m if detector else 0.0),
+        p_body_sphere=_floats(np.reshape(centres, (-1, 3)).T),
+        radius=_floats([s.radius_m for s in spheres]),
+        components=_table([(g[0].body, ends[i], ends[i + 1]) for i, g in enumerate(groups)], 3),
+        bounds=_floats(np.reshape([[*_map(aligned[body], p), r] for body, p, r in bounds], (-1, 4))),
+        pairs=_table(indices, 2),
+        rows=_table(
+            [
+                (frames.index(rows[row].start), frames.index(rows[row].end), row_ends[i], row_ends[i + 1])
+                for i, row in enumerate(used_rows)
+            ],
+            4,
+        ),
+        offset=_floats([s.offset_m for s in spheres]),
     )
 
 
 def frame_names(robot: Robot) -> list[str]:
-    """Names of the packed frames: the world, then the robot's."""
-    return [WORLD, *(frame.name for frame in robot.frames)]
+    """Names of the packed frames: the world first, the tool last."""
+    return [WORLD, *(frame.name for frame in robot.frames if frame.name != robot.tool), robot.tool]
 
 
-def pack_targets(targets: list[Target]) -> TargetArrays:
+def pack_targets(targets: Sequence[Target]) -> TargetArrays:
     """Pack targets, one row each."""
     return TargetArrays(
         kind=_ints([KINDS[target.kind] for target in targets]),
-        p_world_tool=_points([target.p_world_tool for target in targets]),
-        R_world_tool=_floats([target.R_world_tool for target in targets]),
+        T_world_tool=_floats([np.column_stack([target.R_world_tool, target.p_world_tool]) for target in targets]),
     )
+
+
+def _body_row(robot: Robot, body: Body, carries_tool: bool) -> tuple[int, int, bool, bool]:
+    if body.joint is None:
+        return body.parent, -1, False, carries_tool
+    return body.parent, body.joint, robot.joints[body.joint].kind == "prismatic", carries_tool
 
 
 def _align(body: Body) -> Floats:
@@ -97,10 +99,6 @@ def _align(body: Body) -> Floats:
 
 def _map(T: Floats, p: Floats) -> Floats:
     return T[:3, :3] @ p + T[:3, 3]
-
-
-def _count(spheres: list[Sphere], row: int) -> int:
-    return sum(sphere.row == row for sphere in spheres)
 
 
 def _ancestors(bodies: tuple[Body, ...], last: int) -> list[bool]:
@@ -113,16 +111,16 @@ def _ancestors(bodies: tuple[Body, ...], last: int) -> list[bool]:
 
 
 def _floats(values: ArrayLike) -> Floats:
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = np.array(values, dtype=np.float64, order="C")
     array.setflags(write=False)
     return array
-
-
-def _points(values: list[Floats]) -> Floats:
-    return _floats(np.reshape(values, (-1, 3)))
 
 
 def _ints(values: ArrayLike) -> Ints:
-    array = np.ascontiguousarray(values, dtype=np.int64)
+    array = np.array(values, dtype=np.int64, order="C")
     array.setflags(write=False)
     return array
+
+
+def _table(rows: Sequence[ArrayLike], columns: int) -> Ints:
+    return _ints(np.reshape(rows, (-1, columns)))

@@ -38,6 +38,16 @@ def count_blocking_pairs(problem: Problem, pair_counts: np.ndarray) -> dict[tupl
     return dict(sorted(blocking, key=lambda item: -item[1]))
 
 
+def explain_from_counts(problem: Problem, found: Found) -> Explanation:
+    """What the counts of the search alone tell, at no cost."""
+    colliding, blocking = int(found.counts[0, COLLIDING]), count_blocking_pairs(problem, found.pair_counts[0])
+    if colliding:
+        reason, stop = f"only colliding solutions found, {colliding} of them", StopReason.SELF_COLLISION
+    else:
+        reason, stop = f"{problem.settings.restarts} attempts spent", StopReason.BUDGET
+    return Explanation(stop_reason=stop, reason=reason, hint=None, blocking_pairs=blocking)
+
+
 def explain(problem: Problem, target: Target, found: Found, graded: Verification, seed: int) -> Explanation:
     """Explain an unreached target from its counts, a proved bound, and short searches that change one thing."""
     excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
@@ -77,8 +87,8 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
 
 
 def _probe(problem: Problem, target: Target, seed: int) -> Found:
-    short = problem.with_settings(restarts=min(PROBE_ATTEMPTS, problem.settings.restarts))
-    return search(short, [target], seed=seed, streams=[0])
+    attempts = min(PROBE_ATTEMPTS, problem.settings.restarts)
+    return search(problem, [target], seed=seed, streams=[0], attempts=attempts)
 
 
 def _widened(problem: Problem) -> tuple[Floats, Floats]:

@@ -16,7 +16,7 @@ from ikde.solver.settings import SolveSettings
 Freeze = Mapping[str, float | None] | Iterable[str]
 
 NEAR_FIRST_BOX = 1.0 / 64.0  # half-width of the first box around `near`, as a share of each joint range
-ROUNDING_M = 1e-12  # the kernel aims this much below the tolerance, so that rounding cannot turn `verify`'s verdict
+ROUNDING = 1e-12  # m, rad: kernels aim this much below a tolerance, so that rounding cannot turn `verify`'s verdict
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -84,20 +84,19 @@ def pack_search(problem: Problem) -> SearchArrays:
     """The search's arrays for the kernels."""
     settings = problem.settings
     rule = IGNORE if problem.detector is None else {"reject": REJECT, "feasibility": FEASIBILITY}[settings.collision]
-    middle = 0.5 * (problem.lower + problem.upper)
-    tolerances = np.array([settings.position_tolerance_m, settings.orientation_tolerance_rad])
+    near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
+    position, orientation = settings.position_tolerance_m, settings.orientation_tolerance_rad
     return SearchArrays(
-        lower=problem.lower,
-        upper=problem.upper,
-        near=middle if problem.near is None else problem.near,
-        first_box=np.array([1.0 if problem.near is None else NEAR_FIRST_BOX]),
-        tolerance=tolerances - np.minimum(ROUNDING_M, 0.5 * tolerances),
-        population=np.array([settings.population]),
-        generations=np.array([settings.generations]),
-        strategy=np.array([STRATEGIES.index(settings.strategy)]),
-        weight=np.array([float(settings.weight)]),
-        crossover=np.array([float(settings.crossover)]),
-        repair=np.array([REPAIRS.index(settings.bounds)]),
-        in_place=np.array([int(settings.update == "in_place")]),
-        collision_rule=np.array([rule]),
+        ranges=np.array([problem.lower, problem.upper, near]),
+        first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
+        position_tolerance=position - min(ROUNDING, 0.5 * position),
+        orientation_tolerance=orientation - min(ROUNDING, 0.5 * orientation),
+        population=settings.population,
+        generations=settings.generations,
+        strategy=STRATEGIES.index(settings.strategy),
+        weight=float(settings.weight),
+        crossover=float(settings.crossover),
+        repair=REPAIRS.index(settings.bounds),
+        in_place=settings.update == "in_place",
+        collision_rule=rule,
     )

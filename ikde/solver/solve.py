@@ -2,24 +2,22 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.errors import InputError, VerificationError
+from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.kernels.jit import compile_clock
-from ikde.kernels.lanes import ATTEMPTS, COLLIDING, EVALUATIONS
+from ikde.kernels.lanes import ATTEMPTS
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
-from ikde.solver.explain import Explanation, count_blocking_pairs, explain
+from ikde.solver.grade import Run, grade
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, Problem, make_problem
-from ikde.solver.result import SolveResult, StopReason
-from ikde.solver.search import AGREEMENT, Found, disagreement, search
+from ikde.solver.result import SolveResult
+from ikde.solver.search import Found, search
 from ikde.solver.settings import SolveSettings
-from ikde.solver.verify import verify
 
 OUT_OF_REACH_ATTEMPTS = 4  # enough to show how close the tool can come
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
@@ -60,8 +58,8 @@ def solve(
     problem = make_problem(
         robot, settings or SolveSettings.for_method(method), detector=detector, near=near, freeze=freeze
     )
-    result, _ = _solve_one(problem, target, check_seed(seed), 0, announce_compile)
-    return result
+    found, run = _search_one(problem, target, check_seed(seed), announce_compile)
+    return grade(problem, target, found, run)
 
 
 def solve_distinct(
@@ -86,16 +84,17 @@ def solve_distinct(
         raise InputError(f"expected a whole number of at least 1, got {count}", ("count",))
     chosen = settings or SolveSettings.for_method(method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
-    found, attempt = [], 0
-    while len(found) < count and attempt < chosen.restarts:
-        rest = problem.with_settings(restarts=chosen.restarts - attempt)
-        result, used = _solve_one(rest, target, check_seed(seed), attempt, announce_compile, quiet=bool(found))
-        attempt += used
+    solutions: list[SolveResult] = []
+    attempt = 0
+    while len(solutions) < count and attempt < chosen.restarts:
+        found, run = _search_one(problem, target, check_seed(seed), announce_compile, attempt)
+        attempt += int(found.counts[0, ATTEMPTS])
+        result = grade(problem, target, found, run, probe=not solutions)
         if not result.reached:
-            return found or [result]
-        if all(are_distinct(robot, result.q, other.q) for other in found):
-            found.append(result)
-    return found
+            return solutions or [result]
+        if all(are_distinct(robot, result.q, other.q) for other in solutions):
+            solutions.append(result)
+    return solutions
 
 
 def solve_many(
@@ -125,15 +124,22 @@ def solve_many(
     streams = list(range(len(targets)))
     if not targets:
         return []
-    started = time.perf_counter()
     with compile_clock(announce_compile) as clock:
+        search(problem, targets[:1], seed=0, streams=[0], attempts=0)
+        started = time.perf_counter()
         found = search(problem, targets, seed=check_seed(seed), streams=streams, threads=threads)
-        cost = _Cost(seconds=(time.perf_counter() - started - clock.seconds) / len(targets), compile=clock.seconds)
-        rows = [_row(found, index) for index in streams]
-        return [
-            _grade(problem, target, row, seed, stream, cost, strict=False, probe=explain_failures)
-            for target, row, stream in zip(targets, rows, streams, strict=True)
-        ]
+        seconds = (time.perf_counter() - started) / len(targets)
+    return [
+        grade(
+            problem,
+            target,
+            found.row(stream),
+            Run(seed=seed, stream=stream, solve_seconds=seconds, compile_seconds=clock.seconds),
+            strict=False,
+            probe=explain_failures,
+        )
+        for target, stream in zip(targets, streams, strict=True)
+    ]
 
 
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
@@ -154,97 +160,17 @@ def check_seed(seed: int) -> int:
     return int(seed)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Cost:
-    seconds: float
-    compile: float
-
-
-def _solve_one(
-    problem: Problem,
-    target: Target,
-    seed: int,
-    first_attempt: int,
-    announce: Callable[[], None] | None,
-    *,
-    quiet: bool = False,
-) -> tuple[SolveResult, int]:
-    """One target: the graded result, and how many attempts it took. `quiet` spares the explanation."""
+def _search_one(
+    problem: Problem, target: Target, seed: int, announce: Callable[[], None] | None, first_attempt: int = 0
+) -> tuple[Found, Run]:
+    """Search one target; a target that is proved out of reach gets a few attempts only."""
     excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
-    short = problem
+    attempts = problem.settings.restarts - first_attempt
     if excess > problem.settings.position_tolerance_m:
-        short = problem.with_settings(restarts=min(OUT_OF_REACH_ATTEMPTS, problem.settings.restarts))
-    started = time.perf_counter()
+        attempts = min(OUT_OF_REACH_ATTEMPTS, attempts)
     with compile_clock(announce) as clock:
-        found = search(short, [target], seed=seed, streams=[0], first_attempt=first_attempt)
-        seconds = time.perf_counter() - started - clock.seconds
-        result = _grade(
-            short, target, found, seed, 0, _Cost(seconds=seconds, compile=clock.seconds), strict=True, probe=not quiet
-        )
-    return result, int(found.counts[0, ATTEMPTS])
-
-
-def _row(found: Found, index: int) -> Found:
-    rows = slice(index, index + 1)
-    return Found(q=found.q[rows], counts=found.counts[rows], pair_counts=found.pair_counts[rows])
-
-
-def _grade(
-    problem: Problem,
-    target: Target,
-    found: Found,
-    seed: int,
-    stream: int,
-    cost: _Cost,
-    *,
-    strict: bool,
-    probe: bool,
-) -> SolveResult:
-    """Grade one row of what the kernels found; the verdict is `verify`'s alone."""
-    q = found.q[0].copy()
-    graded = verify(problem.robot, target, q, settings=problem.settings, detector=problem.detector or "none")
-    gap = disagreement(problem, target, q, graded)
-    if gap > AGREEMENT and strict:
-        raise VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
-    reached = graded.accepted and gap <= AGREEMENT
-    blocking = count_blocking_pairs(problem, found.pair_counts[0])
-    story = Explanation(
-        stop_reason=StopReason.REACHED if reached else StopReason.BUDGET,
-        reason="reached, inside the limits, free of self-collision" if reached else "not reached",
-        hint=None,
-        blocking_pairs=blocking,
-    )
-    if not reached:
-        story = explain(problem, target, found, graded, seed) if probe else _story_from_counts(problem, found, story)
-    q.setflags(write=False)
-    return SolveResult(
-        reached=reached,
-        stop_reason=story.stop_reason,
-        reason=story.reason,
-        hint=story.hint,
-        q=q,
-        joint_names=problem.robot.joint_names,
-        verification=graded,
-        verified=gap <= AGREEMENT,
-        method="de",
-        detector=problem.detector.name if problem.detector else "none",
-        seed=seed,
-        stream=stream,
-        attempts=int(found.counts[0, ATTEMPTS]),
-        evaluations=int(found.counts[0, EVALUATIONS]),
-        rejected=int(found.counts[0, COLLIDING]),
-        blocking_pairs=story.blocking_pairs,
-        solve_seconds=cost.seconds,
-        compile_seconds=cost.compile,
-    )
-
-
-def _story_from_counts(problem: Problem, found: Found, story: Explanation) -> Explanation:
-    if found.counts[0, COLLIDING] == 0:
-        return story
-    return Explanation(
-        stop_reason=StopReason.SELF_COLLISION,
-        reason=f"only colliding solutions found, {int(found.counts[0, COLLIDING])} of them",
-        hint=None,
-        blocking_pairs=story.blocking_pairs,
-    )
+        search(problem, [target], seed=seed, streams=[0], attempts=0)
+        started = time.perf_counter()
+        found = search(problem, [target], seed=seed, streams=[0], first_attempt=first_attempt, attempts=attempts)
+        seconds = time.perf_counter() - started
+    return found, Run(seed=seed, stream=0, solve_seconds=seconds, compile_seconds=clock.seconds)
