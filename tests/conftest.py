@@ -1,0 +1,36 @@
+"""What every test shares: the robots, a random generator, and a matplotlib that needs no screen."""
+
+import os
+
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import numpy as np
+import pytest
+
+import ikde
+
+ROBOTS = ikde.robot_names()
+
+
+@pytest.fixture(scope="session")
+def qiao():
+    """The 9-DoF robot of the paper."""
+    return ikde.load_robot("qiao2021")
+
+
+@pytest.fixture(params=ROBOTS)
+def any_robot(request):
+    """Every robot that ships."""
+    return ikde.load_robot(request.param)
+
+
+@pytest.fixture
+def rng():
+    """Random numbers, the same in every run."""
+    return np.random.default_rng(20211)
+
+
+def random_q(robot, rng, count=None):
+    """Uniform joint values inside the limits, [N] or [count, N]."""
+    size = len(robot.joints) if count is None else (count, len(robot.joints))
+    return rng.uniform(robot.lower, robot.upper, size)
