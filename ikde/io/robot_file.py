@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 
 from ikde.errors import InputError
 from ikde.io.schema import as_file_error
+from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
 from ikde.model.robot import NO_DETECTOR, Detector, Frame, Joint, Provenance, Robot, SphereRow
 from ikde.model.rotation import rotation_from_rpy
@@ -17,9 +18,6 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
-
-LENGTHS_M = {"mm": 1e-3, "m": 1.0}
-ANGLES_RAD = {"deg": np.pi / 180.0, "rad": 1.0}
 
 
 class Entry(BaseModel):

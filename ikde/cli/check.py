@@ -1,0 +1,56 @@
+"""`ikde check`: is a configuration free of self-collision?"""
+
+import typer
+
+from ikde.cli.exit_codes import ExitCode
+from ikde.cli.options import (
+    AngleUnit,
+    AnglesOption,
+    ConventionOption,
+    DetectorOption,
+    JsonOption,
+    LengthUnit,
+    PairsOption,
+    PlotOption,
+    QOption,
+    RobotOption,
+    SafeDistanceOption,
+    UnitOption,
+    draw,
+    read_detector,
+    read_q,
+)
+from ikde.cli.output import print_json, print_result, use_color
+
+
+def check(
+    q: QOption = None,
+    robot: RobotOption = "qiao2021",
+    detector: DetectorOption = None,
+    pairs: PairsOption = None,
+    safe_distance: SafeDistanceOption = None,
+    unit: UnitOption = LengthUnit.m,
+    angles: AnglesOption = AngleUnit.rad,
+    convention: ConventionOption = None,
+    plot: PlotOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Print the clearance of every pair of components, worst first. Exits with 1 on self-collision.
+
+    Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
+    """
+    from ikde.io.robots import load_robot
+    from ikde.report.geometry import check_json, format_check
+    from ikde.report.units import Units
+    from ikde.solver.check import check as check_configuration
+
+    model = load_robot(robot)
+    values = read_q(model, q, unit, angles, convention)
+    judge = read_detector(model, detector, pairs, safe_distance, unit)
+    result = check_configuration(model, values, judge)
+    if as_json:
+        print_json(check_json(model, result))
+    else:
+        print_result(format_check(result, Units(unit, angles), color=use_color()))
+    draw(plot, model, values, judge)
+    raise typer.Exit(ExitCode.NOT_REACHED if result.collision else ExitCode.OK)

@@ -1,0 +1,47 @@
+"""`ikde fk`: where every frame is."""
+
+from ikde.cli.options import (
+    AngleUnit,
+    AnglesOption,
+    ConventionOption,
+    DetectorOption,
+    JsonOption,
+    LengthUnit,
+    PlotOption,
+    QOption,
+    RobotOption,
+    UnitOption,
+    draw,
+    read_q,
+)
+from ikde.cli.output import print_json, print_result, use_color
+
+
+def fk(
+    q: QOption = None,
+    robot: RobotOption = "qiao2021",
+    detector: DetectorOption = None,
+    unit: UnitOption = LengthUnit.m,
+    angles: AnglesOption = AngleUnit.rad,
+    convention: ConventionOption = None,
+    plot: PlotOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Print the pose of every frame in the world. Joint values outside the limits are accepted and named.
+
+    Example: ikde fk --q '0 0 0 90 0 0 0 0 0' --angles deg --unit mm
+    """
+    from ikde.io.robots import load_robot
+    from ikde.report.geometry import format_forward, forward_json
+    from ikde.report.units import Units
+    from ikde.solver.forward import forward
+    from ikde.solver.joints import joints_outside
+
+    model = load_robot(robot)
+    values = read_q(model, q, unit, angles, convention)
+    frames, outside = forward(model, values), joints_outside(model, values)
+    if as_json:
+        print_json(forward_json(model, values, frames, outside))
+    else:
+        print_result(format_forward(model, frames, outside, Units(unit, angles), color=use_color()))
+    draw(plot, model, values, detector)

@@ -1,0 +1,110 @@
+"""Options that several commands share, and how they become objects."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from ikde.kernels.arrays import Floats
+    from ikde.model.robot import Detector, Robot
+
+
+class LengthUnit(StrEnum):
+    """Units of lengths on the command line."""
+
+    m = "m"
+    mm = "mm"
+
+
+class AngleUnit(StrEnum):
+    """Units of angles on the command line."""
+
+    rad = "rad"
+    deg = "deg"
+
+
+RobotOption = Annotated[str, typer.Option("--robot", metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")]
+UnitOption = Annotated[LengthUnit, typer.Option("--unit", help="Unit of lengths, in and out.")]
+AnglesOption = Annotated[AngleUnit, typer.Option("--angles", help="Unit of angles, in and out.")]
+ConventionOption = Annotated[
+    str | None, typer.Option("--convention", help="How joints are counted, in and out (default: the robot's own).")
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, always in m, rad and s.")]
+PlotOption = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")]
+DetectorOption = Annotated[
+    str | None, typer.Option("--detector", metavar="NAME|none", help="What counts as self-collision (default: the robot's).")
+]
+PairsOption = Annotated[
+    str | None, typer.Option("--pairs", metavar="LIST", help="Pair list instead of the detector's, e.g. non_adjacent.")
+]
+SafeDistanceOption = Annotated[
+    float | None, typer.Option("--safe-distance", help="Clearance at which collision begins, in --unit.")
+]
+QOption = Annotated[
+    str | None,
+    typer.Option("--q", metavar="Q", help="Joint values: numbers in one string, name=value pairs, or a YAML/JSON file (default: home)."),
+]
+
+
+def read_q(robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None) -> "Floats":
+    """Joint values [N] in the robot's own convention; joints that are not named stay at home."""
+    from ikde.io.joint_text import parse_joints
+    from ikde.solver.joints import read_joints
+
+    if text is None:
+        return robot.home
+    return read_joints(robot, parse_joints(robot, text, unit, angles), convention, default=robot.home)
+
+
+def read_detector(
+    robot: "Robot", name: str | None, pairs: str | None, safe_distance: float | None, unit: LengthUnit
+) -> "Detector | str":
+    """The detector that the options describe; `"none"` for none."""
+    from dataclasses import replace
+
+    from ikde.errors import InputError
+    from ikde.io.units import LENGTHS_M
+    from ikde.model.validate import check_detector_components, nearest
+
+    detector = robot.detector(name)
+    if detector is None:
+        return "none"
+    if pairs is not None:
+        if pairs not in robot.pair_lists:
+            known = ", ".join(robot.pair_lists)
+            raise InputError(f"no pair list is called {pairs!r}{nearest(pairs, robot.pair_lists)}; {robot.name} has {known}", ("pairs",))
+        check_detector_components(robot, detector.spheres, pairs, ("pairs",))
+        detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}")
+    if safe_distance is not None:
+        if not 0.0 <= safe_distance < float("inf"):
+            raise InputError(f"expected a distance of at least 0, got {safe_distance:g}", ("safe-distance",))
+        detector = replace(detector, safe_distance_m=safe_distance * LENGTHS_M[unit])
+    return detector
+
+
+def read_freeze(
+    robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None
+) -> Mapping[str, float | None] | None:
+    """Frozen joints with their value in the robot's own convention, or None for their start."""
+    from ikde.io.joint_text import parse_freeze
+    from ikde.solver.joints import read_joints
+
+    if text is None:
+        return None
+    frozen = parse_freeze(robot, text, unit, angles)
+    given = {name: value for name, value in frozen.items() if value is not None}
+    own = dict(zip(robot.joint_names, read_joints(robot, given, convention, default=robot.home), strict=True))
+    return {name: float(own[name]) if name in given else None for name in frozen}
+
+
+def draw(path: Path | None, robot: "Robot", q: "Floats", detector: "Detector | str | None", target: object = None) -> None:
+    """Draw a configuration if a path is given."""
+    from ikde.plot.pose import plot_pose, save_figure
+
+    if path is None:
+        return
+    figure = plot_pose(robot, q, detector=robot.detector(detector), target=target)  # type: ignore[arg-type]
+    save_figure(figure, path)

@@ -1,0 +1,93 @@
+"""Joint values as people type them: numbers in one string, `name=value` pairs, or a YAML/JSON file."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ikde.errors import InputError
+from ikde.io.units import ANGLES_RAD, LENGTHS_M
+from ikde.io.yaml_file import read_yaml
+from ikde.model.robot import Robot
+from ikde.model.validate import nearest
+
+MINUS_SIGNS = str.maketrans("−–—‐‑", "-----")  # a row pasted from a paper carries a typographer's minus
+SEPARATORS = re.compile(r"[\s,;()\[\]]+")
+FILE_ENDINGS = (".yaml", ".yml", ".json")
+
+
+def parse_joints(robot: Robot, text: str, unit: str, angles: str, key: str = "q") -> list[float] | dict[str, float]:
+    """Parse joint values into m and rad: a list in the robot's order, or a dict by joint name.
+
+    Args:
+        robot: the robot, for its joint names and kinds.
+        text: `"0 0 0.1 ..."`, `"q1=0.5 q_z=0"`, or the path of a YAML or JSON file with a list or a mapping.
+        unit: unit of the prismatic joints, `mm` or `m`.
+        angles: unit of the revolute joints, `deg` or `rad`.
+        key: what to call the value in an error.
+
+    Raises:
+        InputError: for words that are no numbers, a wrong count, an unknown joint.
+    """
+    scale = {j.name: LENGTHS_M[unit] if j.kind == "prismatic" else ANGLES_RAD[angles] for j in robot.joints}
+    values = _read(text, key)
+    if isinstance(values, Mapping):
+        return {name: value * scale[_known(name, scale, key)] for name, value in values.items()}
+    if len(values) != len(scale):
+        raise InputError(f"expected {len(scale)} joint values ({', '.join(scale)}), got {len(values)}", (key,))
+    return [value * factor for value, factor in zip(values, scale.values(), strict=True)]
+
+
+def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, float | None]:
+    """Parse `d_x=0.2,q_z` into joints with their frozen value in m or rad, or None."""
+    frozen: dict[str, float | None] = {}
+    for word in filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS).strip())):
+        name, equals, value = word.partition("=")
+        _known(name, robot.joint_names, "freeze")
+        frozen[name] = None
+        if equals:
+            parsed = parse_joints(robot, f"{name}={value}", unit, angles, "freeze")
+            frozen[name] = parsed[name] if isinstance(parsed, dict) else None
+    return frozen
+
+
+def _read(text: str, key: str) -> list[float] | dict[str, float]:
+    if text.strip().lower().endswith(FILE_ENDINGS):
+        return _read_file(Path(text.strip()))
+    words = list(filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS).strip())))
+    if not any("=" in word for word in words):
+        return [_number(word, (key,)) for word in words]
+    pairs = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        if not equals:
+            raise InputError(f"expected name=value, got {word!r}", (key,))
+        if name in pairs:
+            raise InputError("this joint is given twice", (key, name))
+        pairs[name] = _number(value, (key, name))
+    return pairs
+
+
+def _read_file(path: Path) -> list[float] | dict[str, float]:
+    document = read_yaml(path)
+    data = document.data
+    items = enumerate(data) if isinstance(data, list) else data.items() if isinstance(data, dict) else None
+    if items is None:
+        raise document.error("expected a list of joint values, or a mapping from joint names to values")
+    for where, value in items:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise document.error(f"expected a number, got {value!r}", (where,))
+    return data
+
+
+def _number(word: str, where: tuple[Any, ...]) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise InputError(f"expected a number, got {word!r}", where) from None
+
+
+def _known(name: str, names: Any, key: str) -> str:
+    if name not in names:
+        raise InputError(f"no joint is called {name!r}{nearest(name, names)}; joints are {', '.join(names)}", (key,))
+    return name

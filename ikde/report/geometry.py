@@ -1,0 +1,81 @@
+"""Frames and clearances as text and as JSON."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ikde.io.units import LENGTHS_M
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import Robot
+from ikde.report.render import make_table, render
+from ikde.report.units import Units
+from ikde.solver.check import CheckResult
+
+
+def forward_json(robot: Robot, q: Floats, Ts_world: Mapping[str, Floats], outside: tuple[str, ...]) -> dict[str, Any]:
+    """Frames by name: `p_world` [3] in m and `R_world` [3][3]; q in the robot's own convention."""
+    return {
+        "robot": robot.name,
+        "q": dict(zip(robot.joint_names, q.tolist(), strict=True)),
+        "outside_limits": list(outside),
+        "frames": {
+            name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in Ts_world.items()
+        },
+    }
+
+
+def format_forward(
+    robot: Robot, Ts_world: Mapping[str, Floats], outside: tuple[str, ...], units: Units, *, color: bool = False
+) -> str:
+    """Frames for the terminal: origin, and the directions of their x and z axes."""
+    unit = units.length
+    table = make_table("frame", f">x [{unit}]", f">y [{unit}]", f">z [{unit}]", "x axis", "z axis")
+    for name, T in Ts_world.items():
+        digits = 1 if unit == "mm" else 4
+        origin = [_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
+        table.add_row("tool" if name == robot.tool else name, *origin, _direction(T[:3, 0]), _direction(T[:3, 2]))
+    return render(table, *_outside_line(outside), color=color)
+
+
+def _direction(axis: Floats) -> str:
+    return " ".join(f"{_fixed(value, 3):>6}" for value in axis)
+
+
+def _fixed(value: float, digits: int) -> str:
+    """A number with fixed digits and no minus zero."""
+    return f"{round(float(value), digits) + 0.0:.{digits}f}"
+
+
+def _outside_line(outside: tuple[str, ...]) -> list[str]:
+    return [f"[yellow]outside the limits[/]: {', '.join(outside)}"] if outside else []
+
+
+def check_json(robot: Robot, result: CheckResult) -> dict[str, Any]:
+    """A check as plain data; pairs worst first, lengths in m."""
+    return {
+        "robot": robot.name,
+        "detector": result.detector,
+        "safe_distance_m": result.safe_distance_m,
+        "collision": result.collision,
+        "clearance_m": result.clearance_m,
+        "pairs": [
+            {"a": pair.a, "b": pair.b, "clearance_m": pair.clearance_m, "collides": pair.collides}
+            for pair in result.pairs
+        ],
+        "q": dict(zip(robot.joint_names, result.q.tolist(), strict=True)),
+        "outside_limits": list(result.outside_limits),
+    }
+
+
+def format_check(result: CheckResult, units: Units, *, color: bool = False) -> str:
+    """A check for the terminal: the verdict and every pair, worst first."""
+    if result.clearance_m is None:
+        return render("no detector, no pairs: nothing was looked at", *_outside_line(result.outside_limits), color=color)
+    verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
+    head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {result.detector}"
+    if result.safe_distance_m:
+        head += f", safe distance {units.format_length(result.safe_distance_m)}"
+    table = make_table("pair", f">clearance [{units.length}]", "")
+    for pair in result.pairs:
+        gap = f"{pair.clearance_m / LENGTHS_M[units.length]:.{2 if units.length == 'mm' else 5}f}"
+        table.add_row(f"{pair.a} - {pair.b}", gap, "[red]collides[/]" if pair.collides else "")
+    return render(head, *_outside_line(result.outside_limits), table, color=color)

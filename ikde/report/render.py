@@ -1,0 +1,27 @@
+"""A rich renderable as a string."""
+
+from io import StringIO
+from typing import Any
+
+
+def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
+    """Lay renderables out as text of at most `width` columns, with ANSI colours only if asked."""
+    from rich.console import Console  # noqa: PLC0415 - only when text is made
+
+    buffer = StringIO()
+    console = Console(file=buffer, force_terminal=color, no_color=not color, width=width, highlight=False)
+    for renderable in renderables:
+        console.print(renderable)
+    lines = [line.rstrip() for line in buffer.getvalue().splitlines()]
+    return "\n".join(line for line, before in zip(lines, ["x", *lines], strict=False) if line or before).rstrip()
+
+
+def make_table(*columns: str, title: str | None = None) -> Any:
+    """A table with a line under its header; a column whose name starts with `>` is right-aligned."""
+    from rich.box import SIMPLE_HEAD  # noqa: PLC0415
+    from rich.table import Table  # noqa: PLC0415
+
+    table = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        table.add_column(column.removeprefix(">"), justify="right" if column.startswith(">") else "left")
+    return table

@@ -1,0 +1,99 @@
+"""A robot as text: what it is made of, and where its numbers come from."""
+
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+from ikde.io.units import LENGTHS_M
+from ikde.model.robot import Robot
+from ikde.report.render import make_table, render
+from ikde.report.units import Units
+
+
+def robots_json(robots: Iterable[Robot]) -> list[dict[str, Any]]:
+    """A line a robot, as plain data."""
+    return [
+        {"name": robot.name, "title": robot.title, "joints": len(robot.joints), "detectors": list(robot.detectors)}
+        for robot in robots
+    ]
+
+
+def format_robots(robots: Iterable[Robot], *, color: bool = False) -> str:
+    """A line a robot."""
+    table = make_table("robot", ">joints", "detectors", "title")
+    for robot in robots:
+        table.add_row(robot.name, str(len(robot.joints)), ", ".join(robot.detectors) or "none", robot.title)
+    return render(table, color=color)
+
+
+def robot_json(robot: Robot) -> dict[str, Any]:
+    """A robot as plain data, m and rad."""
+    return {
+        "name": robot.name,
+        "title": robot.title,
+        "convention": robot.convention,
+        "conventions": [robot.convention, *robot.conventions],
+        "tool": robot.tool,
+        "joints": [
+            {"name": j.name, "kind": j.kind, "lower": j.lower, "upper": j.upper, "home": j.home} for j in robot.joints
+        ],
+        "frames": [
+            {"name": f.name, "parent": f.parent, "p_parent_frame": f.p_parent_frame.tolist(), "joint": f.joint}
+            for f in robot.frames
+        ],
+        "approximations": {
+            name: {"components": list(robot.components(name)), "spheres": sum(row.count for row in rows)}
+            for name, rows in robot.approximations.items()
+        },
+        "pair_lists": {name: [list(pair) for pair in pairs] for name, pairs in robot.pair_lists.items()},
+        "detectors": {
+            name: {"spheres": d.spheres, "pairs": d.pairs, "safe_distance_m": d.safe_distance_m}
+            for name, d in robot.detectors.items()
+        },
+        "default_detector": robot.default_detector,
+        "provenance": {kind: count for kind, count in Counter(p.kind for p in robot.provenance.values()).items()},
+    }
+
+
+def format_robot(robot: Robot, units: Units, *, color: bool = False) -> str:
+    """A robot for the terminal: joints, frames, detectors and the provenance of its numbers."""
+    head = f"[bold]{robot.name}[/]: {robot.title}"
+    tables = [_joint_table(robot, units), _frame_table(robot, units), _detector_table(robot, units), _sources(robot)]
+    return render(head, "", *tables, color=color)
+
+
+def _joint_table(robot: Robot, units: Units) -> Any:
+    table = make_table("joint", "kind", ">lower", ">home", ">upper", "unit", "limits from", title=f"joints, {robot.convention} convention")
+    for joint in robot.joints:
+        values = [f"{units.joint_value(joint, v):.6g}" for v in (joint.lower, joint.home, joint.upper)]
+        source = robot.provenance.get(("joints", joint.name, "lower")) or robot.provenance.get(("joints", joint.name))
+        table.add_row(joint.name, joint.kind, *values, units.joint_unit(joint), source.kind if source else "")
+    return table
+
+
+def _frame_table(robot: Robot, units: Units) -> Any:
+    table = make_table("frame", "parent", f"offset [{units.length}]", "joint", "from", title="frames")
+    for frame in robot.frames:
+        offset = " ".join(f"{v / LENGTHS_M[units.length]:.6g}" for v in frame.p_parent_frame)
+        source = robot.provenance.get(("frames", frame.name))
+        table.add_row(frame.name, frame.parent, offset, frame.joint or "", source.kind if source else "")
+    return table
+
+
+def _detector_table(robot: Robot, units: Units) -> Any:
+    table = make_table("detector", "spheres", ">number", "pairs", ">number", ">safe distance", title="detectors")
+    for name, detector in robot.detectors.items():
+        spheres = sum(row.count for row in robot.approximations[detector.spheres])
+        pairs = len(robot.pair_lists[detector.pairs])
+        shown = f"{name} (default)" if name == robot.default_detector else name
+        distance = units.format_length(detector.safe_distance_m)
+        table.add_row(shown, detector.spheres, str(spheres), detector.pairs, str(pairs), distance)
+    return table
+
+
+def _sources(robot: Robot) -> Any:
+    table = make_table("provenance", ">entries", "source", title="where the numbers come from")
+    counts = Counter((source.kind, source.text) for source in robot.provenance.values())
+    for (kind, text), count in sorted(counts.items()):
+        table.add_row(kind, str(count), text.replace("[", r"\["))
+    return table

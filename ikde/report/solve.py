@@ -1,0 +1,102 @@
+"""A solve's result as text and as JSON."""
+
+from typing import Any
+
+import numpy as np
+
+from ikde.model.convention import convention_offsets, to_convention
+from ikde.model.robot import Robot
+from ikde.report.render import make_table, render
+from ikde.report.units import Units
+from ikde.solver.result import SolveResult
+
+BAR = 21  # columns of a joint's bar
+
+
+def solve_json(robot: Robot, result: SolveResult, convention: str | None = None) -> dict[str, Any]:
+    """A result as plain data: m, rad, s; `q` by joint name in the convention asked for."""
+    q = to_convention(robot, result.q, convention)
+    return {
+        "reached": result.reached,
+        "stop_reason": str(result.stop_reason),
+        "reason": result.reason,
+        "hint": result.hint,
+        "robot": robot.name,
+        "convention": convention or robot.convention,
+        "q": dict(zip(result.joint_names, q.tolist(), strict=True)),
+        "position_error_m": result.position_error_m,
+        "orientation_error_rad": result.orientation_error_rad,
+        "clearance_m": result.clearance_m,
+        "closest_pair": list(result.closest_pair) if result.closest_pair else None,
+        "self_collision": result.self_collision,
+        "outside_limits": list(result.verification.outside_limits),
+        "method": result.method,
+        "detector": result.detector,
+        "seed": result.seed,
+        "attempts": result.attempts,
+        "rejected": result.rejected,
+        "blocking_pairs": [{"a": a, "b": b, "count": n} for (a, b), n in result.blocking_pairs.items()],
+        "evaluations": result.evaluations,
+        "solve_seconds": result.solve_seconds,
+        "compile_seconds": result.compile_seconds,
+        "verified": result.verified,
+    }
+
+
+def format_solve(
+    robot: Robot, result: SolveResult, units: Units, *, convention: str | None = None, color: bool = False
+) -> str:
+    """A result for the terminal: the verdict, the joints within their ranges, the graded figures, the cost."""
+    mark, style = ("reached", "bold green") if result.reached else ("not reached", "bold red")
+    lines = [f"[{style}]{mark}[/]: {result.reason}"]
+    if result.hint:
+        lines.append(f"[yellow]what would help[/]: {result.hint}")
+    return render(*lines, _joint_table(robot, result, units, convention), _figure_table(result, units), color=color)
+
+
+def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: str | None) -> Any:
+    name = f" ({convention} convention)" if convention not in (None, robot.convention) else ""
+    table = make_table(f"joint{name}", ">value", "unit", ">lower", "", ">upper")
+    offsets = convention_offsets(robot, convention)
+    shown = to_convention(robot, result.q, convention)
+    for joint, value, own, offset in zip(robot.joints, shown, result.q, offsets, strict=True):
+        limits = [units.joint_value(joint, limit + offset) for limit in (joint.lower, joint.upper)]
+        table.add_row(
+            joint.name,
+            f"{units.joint_value(joint, value):.6f}",
+            units.joint_unit(joint),
+            f"{limits[0]:.4g}",
+            _bar(own, joint.lower, joint.upper),
+            f"{limits[1]:.4g}",
+        )
+    return table
+
+
+def _bar(value: float, lower: float, upper: float) -> str:
+    """Where a value stands in its range: `──────●──────────────`."""
+    share = 0.5 if upper <= lower else float(np.clip((value - lower) / (upper - lower), 0.0, 1.0))
+    at = round(share * (BAR - 1))
+    return "─" * at + "●" + "─" * (BAR - 1 - at)
+
+
+def _figure_table(result: SolveResult, units: Units) -> Any:
+    table = make_table("graded by separate code", "")
+    table.add_row("position error", units.format_error(result.position_error_m))
+    table.add_row("orientation error", units.format_angle(result.orientation_error_rad))
+    if result.clearance_m is None or result.closest_pair is None:
+        table.add_row("clearance", "not looked at (detector none)")
+    else:
+        between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
+        table.add_row("clearance", f"{units.format_length(result.clearance_m)} {between}")
+    table.add_row("self-collision", "yes" if result.self_collision else "no")
+    table.add_row("outside limits", ", ".join(result.verification.outside_limits) or "none")
+    rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
+    table.add_row(
+        "cost",
+        f"{result.solve_seconds * 1e3:.1f} ms, {result.evaluations} evaluations in "
+        f"{result.attempts} attempt{'s' if result.attempts != 1 else ''}{rejected}",
+    )
+    if result.compile_seconds:
+        table.add_row("compiled first", f"{result.compile_seconds:.1f} s, once on this machine")
+    table.add_row("repeat with", f"method {result.method}, seed {result.seed}")
+    return table
