@@ -14,6 +14,7 @@ from ikde.cli.fk import fk
 from ikde.cli.output import print_note, print_result
 from ikde.cli.robots import robots
 from ikde.cli.solve import solve
+from ikde.cli.startup import collect_garbage_rarely
 from ikde.errors import InputError, VerificationError
 
 app = typer.Typer(
@@ -49,6 +50,7 @@ app.add_typer(robots, name="robots")
 
 def main() -> NoReturn:
     """Run the command line and exit."""
+    collect_garbage_rarely()
     sys.exit(run(sys.argv[1:]))
 
 
