@@ -23,9 +23,7 @@ class InputError(IkdeError):
 class FileError(InputError):
     """A file cannot be used: `robots/a.yaml:14 → frames.O1.parent: ...`."""
 
-    def __init__(
-        self, path: object, message: str, where: tuple[str | int, ...] = (), line: int | None = None
-    ) -> None:
+    def __init__(self, path: object, message: str, where: tuple[str | int, ...] = (), line: int | None = None) -> None:
         super().__init__(message, where)
         place = f"{path}:{line}" if line else f"{path}"
         self.args = (f"{place} → {self.args[0]}" if where else f"{place}: {message}",)

@@ -260,12 +260,15 @@ def compute_score(problem, target, q):
 
     The depth is computed for every trial under `feasibility`: the kernel's short cuts must not change the outcome.
     """
-    settings, T_world_tool = problem.settings, compute_frames(problem.robot, q)[problem.robot.tool]
+    T_world_tool = compute_frames(problem.robot, q)[problem.robot.tool]
     position = compute_position_error(T_world_tool, target)
     orientation = compute_orientation_error(T_world_tool, target)
-    cost = position + orientation * settings.position_tolerance_m / settings.orientation_tolerance_rad
-    meets = position <= settings.position_tolerance_m and orientation <= settings.orientation_tolerance_rad
-    if problem.detector is None or settings.collision == "reject":
+    # A solve aims 1e-12 below both tolerances, see `solver.problem.ROUNDING`.
+    position_tolerance = problem.settings.position_tolerance_m - 1e-12
+    orientation_tolerance = problem.settings.orientation_tolerance_rad - 1e-12
+    cost = position + orientation * position_tolerance / orientation_tolerance
+    meets = position <= position_tolerance and orientation <= orientation_tolerance
+    if problem.detector is None or problem.settings.collision == "reject":
         return (0.0, cost), meets
     depth = compute_depth(problem.robot, problem.detector, q)
     return (depth, cost), meets and depth == 0.0

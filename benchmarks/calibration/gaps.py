@@ -1,4 +1,4 @@
-"""Clearances of many configurations at once, by the robot's own rows and frames: numpy in blocks instead of a loop."""
+"""Clearances of many configurations at once, from the robot's own rows and frames."""
 
 import numpy as np
 
@@ -11,14 +11,15 @@ Balls = tuple[Floats, Floats]
 
 
 def compute_centres(row: SphereRow, start: Floats, end: Floats) -> Floats:
-    """Centres [K, count, 3] of a row between key points [K, 3] [Qiao2021, eq. 12, 13, 16]; as `ikde.solver.plain`."""
+    """Centres [K, count, 3] of a row between key points [K, 3] [Qiao2021, eq. 12, 13, 16]."""
     middle, line = 0.5 * (start + end), end - start
     if row.count == 1:
         return middle[:, None]
     steps = np.arange(row.count)[:, None] - 0.5 * (row.count - 1)
     if row.spacing == "even":
         return middle[:, None] + steps * line[:, None] / (row.count - 1)
-    return middle[:, None] + steps * (2.0 * row.radius_m * line / np.linalg.norm(line, axis=1, keepdims=True))[:, None]
+    diameter = 2.0 * row.radius_m * line / np.linalg.norm(line, axis=1, keepdims=True)
+    return middle[:, None] + steps * diameter[:, None]
 
 
 def compute_balls(robot: Robot, approximation: str, Q: Floats) -> dict[str, Balls]:

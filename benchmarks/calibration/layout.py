@@ -1,7 +1,7 @@
 """The numbers of qiao2021 that the paper does not force, as functions that set one of them on a robot.
 
-Each takes the robot and a value in mm (x and y from the drive-axis midpoint, z above the ground, as docs/calibration.md
-gives them) and returns the changed robot; `MOVES` lists them with the shipped values.
+Each takes the robot and a value in mm (x and y from the drive-axis midpoint, z above the ground, as in
+docs/calibration.md) and returns the changed robot; `MOVES` lists them with the shipped values.
 """
 
 from collections.abc import Callable
@@ -98,11 +98,43 @@ def set_motor5(robot: Robot, value: float) -> Robot:
         name="motor5", parent="O5", p_parent_frame=np.array([0.0, 0.0, value / 1e3]), R_parent_frame=np.eye(3)
     )
     rows = {
-        name: tuple(replace(row, start="motor5", end="motor5") if row.component == "J5" else row for row in rows)
+        name: tuple(
+            replace(row, start="motor5", end="motor5") if row.component == "J5" else row for row in rows
+        )
         for name, rows in robot.approximations.items()
     }
     frames = tuple(f for f in robot.frames if f.name != "motor5")
     return replace(robot, frames=(*frames, frame), approximations=rows)
+
+
+def shift_links(robot: Robot, sign: int) -> Robot:
+    """Stand the links' rows as Formula 13's range -i/2 : 1 : i/2 reads to the letter: it is not centred.
+
+    Its last step falls short of i/2, so the row stands nearer to one end: the far one for `sign` +1.
+    """
+    Ts_world = compute_frames(robot, robot.home)
+    frames, approximations = list(robot.frames), dict(robot.approximations)
+    for name, rows in robot.approximations.items():
+        for index, row in enumerate(rows):
+            if row.component not in ("L1", "L2") or row.count == 1:
+                continue
+            line = Ts_world[row.end][:3, 3] - Ts_world[row.start][:3, 3]
+            short = np.linalg.norm(line) - 2.0 * row.radius_m * (row.count - 1)
+            ends = [f"{row.component}_{name}_{end}" for end in ("start", "end")]
+            for end, z in zip(ends, (0.0, np.linalg.norm(line)), strict=True):
+                p = np.array([0.0, 0.0, z + 0.5 * sign * short])
+                frames.append(Frame(name=end, parent=row.start, p_parent_frame=p, R_parent_frame=np.eye(3)))
+            moved = replace(row, start=ends[0], end=ends[1])
+            approximations[name] = (*approximations[name][:index], moved, *rows[index + 1 :])
+    return replace(robot, frames=tuple(frames), approximations=approximations)
+
+
+def look_at_link_2_and_motor_5(robot: Robot) -> Robot:
+    """Add (L2, J5), which Formula 22 prints, to the pairs."""
+    lists = dict(robot.pair_lists)
+    for name in ("arm_arm", "formula_22"):
+        lists[name] = (*lists[name], ("L2", "J5"))
+    return replace(robot, pair_lists=lists)
 
 
 MOVES: dict[str, tuple[str, float, Move]] = {  # name -> provenance, shipped value in mm, setter

@@ -1,7 +1,7 @@
 """What the paper prints of collisions, and whether a robot shows it.
 
-Everything is a row of `Observation`: a text, the printed value, ours, a margin and whether it holds. Angles in deg and
-lengths in mm, because they stand beside the paper's.
+Everything is a row of `Observation`: a text, the printed value, ours, a margin and whether it holds. Angles
+in deg and lengths in mm, because they stand beside the paper's.
 """
 
 from collections.abc import Callable
@@ -33,7 +33,7 @@ class Observation:
 
     @property
     def holds(self) -> bool:
-        """Does the robot show it?"""
+        """Whether the robot shows it."""
         return self.slack > 0.0
 
 
@@ -60,7 +60,7 @@ class Sweep:
         return self.start_deg[self.joint] + (self.end_deg - self.start_deg)[self.joint] * t_s / 10.0
 
     def configurations(self, t_s: Floats) -> Floats:
-        """q [K, 9] in m and rad, the base at the origin."""
+        """Rows q [K, 9] in m and rad, the base at the origin."""
         arm = self.start_deg + np.multiply.outer(t_s, (self.end_deg - self.start_deg) / 10.0)
         return np.radians(np.hstack([np.zeros((len(t_s), 3)), arm]))
 
@@ -94,7 +94,7 @@ def compute_clearance(robot: Robot, detector: str, Q: Floats, pairs: Pairs | Non
 
 
 def touches(robot: Robot, sweep: Sweep, detector: str, t_s: Floats) -> np.ndarray:
-    """Does a detector, looking at the situation's pairs, see a collision at these times?"""
+    """Whether a detector, looking at the situation's pairs, sees a collision at these times."""
     pairs = robot.pair_lists[sweep.pairs]
     return compute_clearance(robot, detector, sweep.configurations(np.atleast_1d(t_s)), pairs) <= 0.0
 
@@ -108,7 +108,7 @@ def bisect(test: Callable[[float], bool], inside: float, outside: float, steps: 
 
 
 def find_onset(robot: Robot, sweep: Sweep, detector: str) -> tuple[float | None, float | None]:
-    """Angle in deg at which a detector first touches, by bisection, and the angle that the paper's two grids give."""
+    """Angle in deg at which a detector first touches, and the one that the paper's two grids give."""
     second = int(np.argmax(touches(robot, sweep, detector, np.arange(11.0))))
     if second == 0:
         return None, None
@@ -119,7 +119,7 @@ def find_onset(robot: Robot, sweep: Sweep, detector: str) -> tuple[float | None,
 
 
 def shows_sweep(robot: Robot, sweep: Sweep, detector: str) -> bool:
-    """Is the printed angle detected: silent at every grid point before it, touching there?"""
+    """Whether the printed angle is detected: silent at every grid point before it, touching there."""
     steps = round(sweep.time(sweep.detected_deg[detector]) * 20)
     last = (steps - 1) // 20
     grid = np.concatenate([np.arange(last), np.arange(20 * last, steps + 1) / 20.0])
@@ -128,7 +128,7 @@ def shows_sweep(robot: Robot, sweep: Sweep, detector: str) -> bool:
 
 
 def observe_sweep(robot: Robot, sweep: Sweep, detector: str) -> Observation:
-    """Is the printed angle the one that the grids give? The slack is the onset's distance to the nearest grid point."""
+    """The angle that the grids give; the slack is the onset's distance to the nearest grid point."""
     printed = sweep.detected_deg[detector]
     onset, detected = find_onset(robot, sweep, detector)
     name = f"situation {sweep.name}, {detector}"
@@ -160,7 +160,11 @@ def observe_labels(robot: Robot) -> list[Observation]:
 def observe_home(robot: Robot) -> list[Observation]:
     """Home is free with both detectors; one sphere a component collides there [Qiao2021, section 5.3.1]."""
     found = []
-    for detector, sign, printed in (("typical", 1, "free"), ("improved", 1, "free"), ("single", -1, "collides")):
+    for detector, sign, printed in (
+        ("typical", 1, "free"),
+        ("improved", 1, "free"),
+        ("single", -1, "collides"),
+    ):
         gap = 1e3 * float(compute_clearance(robot, detector, robot.home[None])[0])
         found.append(
             Observation(
@@ -198,7 +202,7 @@ def observe_collisions(robot: Robot) -> list[Observation]:
 
 
 def first_failure(robot: Robot) -> str | None:
-    """The first observation that a robot does not show, or None: `observe_collisions` without the onsets, faster."""
+    """The first observation that a robot does not show: `observe_collisions` without onsets, faster."""
     for sweep in load_sweeps():
         for detector in DETECTORS:
             if not shows_sweep(robot, sweep, detector):

@@ -5,7 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.layout import MOVES, Move, set_load, set_motor5, set_platform, set_safe_distance, set_support
+from calibration.layout import (
+    MOVES,
+    Move,
+    look_at_link_2_and_motor_5,
+    set_load,
+    set_motor5,
+    set_platform,
+    set_platform_x,
+    set_safe_distance,
+    set_support,
+    shift_links,
+)
 from calibration.observations import (
     DETECTORS,
     bisect,
@@ -22,7 +33,7 @@ SPAN_MM = 60.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class End:
-    """One end of an interval in mm, and the observation that breaks beyond it (None: none within the span)."""
+    """One end of an interval in mm, and the observation that breaks beyond it, if any within the span."""
 
     value: float
     breaks: str | None
@@ -51,14 +62,17 @@ def find_intervals(robot: Robot) -> dict[str, tuple[End, End]]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
-    """A layout in mm and the smaller distance of its situation's two onsets to a grid point, in fine steps."""
+    """A layout in mm, and the smaller slack of its situation's two onsets in fine steps."""
 
     values: tuple[float, float]
     slack: float
 
 
 def scan(
-    robot: Robot, place: Callable[[Robot, float, float], Robot], situation: str, grid: Iterable[tuple[float, float]]
+    robot: Robot,
+    place: Callable[[Robot, float, float], Robot],
+    situation: str,
+    grid: Iterable[tuple[float, float]],
 ) -> list[Candidate]:
     """Candidates for which everything holds, the roomiest first."""
     sweep = next(sweep for sweep in load_sweeps() if sweep.name == situation)
@@ -92,23 +106,21 @@ def alternatives(robot: Robot) -> dict[str, Robot]:
     """Other layouts that we met: name -> robot."""
     loose = set_support(set_platform(set_load(robot, 270, 434), 219, 250.3), (440, 834), 177, 410.2)
     far = set_support(set_platform(set_load(robot, 270, 420), 206.4, 306.5), (396, 722), 238, 388)
-    far = move_platform_centre(far, 365.6)
+    far = set_platform_x(far, 365.6)
     return {
         "as shipped": robot,
         "low platform: z 214, half extent 284": set_platform(robot, 214, 284),
         "flush platform: z 213.3, half extent 292": set_platform(robot, 213.3, 292),
         "free support: x 440..834, y 177, z 410.2": loose,
+        "(L2, J5) looked at as well": look_at_link_2_and_motor_5(robot),
+        "links to Formula 13's letter, outwards": shift_links(robot, +1),
+        "links to Formula 13's letter, inwards": shift_links(robot, -1),
         "J5 at O4 and R_sf 6": set_safe_distance(set_motor5(far, -94.65), 6.0),
     }
 
 
-def move_platform_centre(robot: Robot, x: float) -> Robot:
-    """Shift the platform's row to another middle."""
-    return MOVES["platform centre x"][2](robot, x)
-
-
 def judge(robot: Robot) -> tuple[str, float, float]:
-    """The first failure (or empty), the smallest slack of the onsets in fine steps, and of home and labels in mm."""
+    """The first failure (or empty), the smallest slack of the onsets, and of home and labels in mm."""
     seen = observe_collisions(robot)
     failed = next((line.name for line in seen if not line.holds), "")
     slack = {unit: min(line.slack for line in seen if line.unit == unit) for unit in ("fine steps", "mm")}

@@ -14,8 +14,10 @@ from ikde.cli.fk import fk
 from ikde.cli.output import print_note, print_result
 from ikde.cli.robots import robots
 from ikde.cli.solve import solve
-from ikde.cli.startup import collect_garbage_rarely
+from ikde.cli.startup import skip_garbage_collection
 from ikde.errors import InputError, VerificationError
+
+UsageError = typer.BadParameter.__bases__[0]  # click's, wherever typer keeps it: newer ones carry their own copy
 
 app = typer.Typer(
     name="ikde",
@@ -35,7 +37,9 @@ def _version(wanted: bool) -> None:
 
 @app.callback()
 def root(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
 ) -> None:
     """Collision-aware inverse kinematics: a search proposes, sphere checks reject, separate code grades.
 
@@ -50,18 +54,16 @@ app.add_typer(robots, name="robots")
 
 def main() -> NoReturn:
     """Run the command line and exit."""
-    collect_garbage_rarely()
+    skip_garbage_collection()
     sys.exit(run(sys.argv[1:]))
 
 
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code and turns every error into one line on stderr."""
-    import click
-
     try:
         code = app(arguments, prog_name="ikde", standalone_mode=False)
         return int(code or ExitCode.OK)
-    except click.UsageError as error:
+    except UsageError as error:
         path = error.ctx.command_path if error.ctx else "ikde"
         print_note(f"{path}: {' '.join(error.format_message().split())}")
         return ExitCode.BAD_INPUT
@@ -71,7 +73,7 @@ def run(arguments: list[str]) -> int:
     except InputError as error:
         print_note(f"ikde: {error}")
         return ExitCode.BAD_INPUT
-    except (KeyboardInterrupt, click.Abort):
+    except (KeyboardInterrupt, typer.Abort):
         print_note("ikde: interrupted")
         return ExitCode.INTERRUPTED
     except BrokenPipeError:

@@ -4,8 +4,8 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import (
-    AngleUnit,
     AnglesOption,
+    AngleUnit,
     ConventionOption,
     DetectorOption,
     JsonOption,

@@ -1,8 +1,8 @@
 """`ikde fk`: where every frame is."""
 
 from ikde.cli.options import (
-    AngleUnit,
     AnglesOption,
+    AngleUnit,
     ConventionOption,
     DetectorOption,
     JsonOption,

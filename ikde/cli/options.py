@@ -26,16 +26,21 @@ class AngleUnit(StrEnum):
     deg = "deg"
 
 
-RobotOption = Annotated[str, typer.Option("--robot", metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")]
+RobotOption = Annotated[
+    str, typer.Option("--robot", metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")
+]
 UnitOption = Annotated[LengthUnit, typer.Option("--unit", help="Unit of lengths, in and out.")]
 AnglesOption = Annotated[AngleUnit, typer.Option("--angles", help="Unit of angles, in and out.")]
 ConventionOption = Annotated[
     str | None, typer.Option("--convention", help="How joints are counted, in and out (default: the robot's own).")
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, always in m, rad and s.")]
-PlotOption = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")]
+PlotOption = Annotated[
+    Path | None, typer.Option("--plot", metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")
+]
 DetectorOption = Annotated[
-    str | None, typer.Option("--detector", metavar="NAME|none", help="What counts as self-collision (default: the robot's).")
+    str | None,
+    typer.Option("--detector", metavar="NAME|none", help="What counts as self-collision (default: the robot's)."),
 ]
 PairsOption = Annotated[
     str | None, typer.Option("--pairs", metavar="LIST", help="Pair list instead of the detector's, e.g. non_adjacent.")
@@ -45,7 +50,11 @@ SafeDistanceOption = Annotated[
 ]
 QOption = Annotated[
     str | None,
-    typer.Option("--q", metavar="Q", help="Joint values: numbers in one string, name=value pairs, or a YAML/JSON file (default: home)."),
+    typer.Option(
+        "--q",
+        metavar="Q",
+        help="Joint values: numbers in one string, name=value pairs, or a YAML/JSON file (default: home).",
+    ),
 ]
 
 
@@ -75,7 +84,10 @@ def read_detector(
     if pairs is not None:
         if pairs not in robot.pair_lists:
             known = ", ".join(robot.pair_lists)
-            raise InputError(f"no pair list is called {pairs!r}{nearest(pairs, robot.pair_lists)}; {robot.name} has {known}", ("pairs",))
+            raise InputError(
+                f"no pair list is called {pairs!r}{nearest(pairs, robot.pair_lists)}; {robot.name} has {known}",
+                ("pairs",),
+            )
         check_detector_components(robot, detector.spheres, pairs, ("pairs",))
         detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}")
     if safe_distance is not None:
@@ -100,7 +112,9 @@ def read_freeze(
     return {name: float(own[name]) if name in given else None for name in frozen}
 
 
-def draw(path: Path | None, robot: "Robot", q: "Floats", detector: "Detector | str | None", target: object = None) -> None:
+def draw(
+    path: Path | None, robot: "Robot", q: "Floats", detector: "Detector | str | None", target: object = None
+) -> None:
     """Draw a configuration if a path is given."""
     from ikde.plot.pose import plot_pose, save_figure
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ikde.cli.options import AngleUnit, AnglesOption, JsonOption, LengthUnit, UnitOption
+from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
 from ikde.cli.output import print_json, print_result, use_color
 
 robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
@@ -62,4 +62,6 @@ def validate(
     if as_json:
         print_json({"valid": True, "name": model.name, "joints": len(model.joints), "frames": len(model.frames)})
     else:
-        print_result(f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames")
+        print_result(
+            f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames"
+        )

@@ -6,8 +6,8 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import (
-    AngleUnit,
     AnglesOption,
+    AngleUnit,
     ConventionOption,
     DetectorOption,
     JsonOption,
@@ -31,22 +31,34 @@ TARGET, SEARCH, ROBOT, OUTPUT = "Target", "Search", "Robot", "Output"
 
 
 def solve(
-    position: Annotated[Vector, typer.Option(metavar="X Y Z", help="Tool position in the world.", rich_help_panel=TARGET)],
+    position: Annotated[
+        Vector, typer.Option(metavar="X Y Z", help="Tool position in the world.", rich_help_panel=TARGET)
+    ],
     quat_wxyz: Annotated[
-        Quaternion | None, typer.Option(metavar="W X Y Z", help="Tool orientation as a quaternion, w first.", rich_help_panel=TARGET)
+        Quaternion | None,
+        typer.Option(metavar="W X Y Z", help="Tool orientation as a quaternion, w first.", rich_help_panel=TARGET),
     ] = None,
     rpy: Annotated[
         Vector | None,
-        typer.Option(metavar="R P Y", help="Tool orientation as turns about the fixed x, y, z axes, as in URDF.", rich_help_panel=TARGET),
+        typer.Option(
+            metavar="R P Y",
+            help="Tool orientation as turns about the fixed x, y, z axes, as in URDF.",
+            rich_help_panel=TARGET,
+        ),
     ] = None,
     axis: Annotated[
-        Vector | None, typer.Option(metavar="X Y Z", help="Direction of the tool's z axis, nothing more.", rich_help_panel=TARGET)
+        Vector | None,
+        typer.Option(metavar="X Y Z", help="Direction of the tool's z axis, nothing more.", rich_help_panel=TARGET),
     ] = None,
     tolerance: Annotated[
-        float | None, typer.Option(help="Position tolerance, in --unit (default: 1e-5 m; 5e-5 m with --method de).", rich_help_panel=TARGET)
+        float | None,
+        typer.Option(
+            help="Position tolerance, in --unit (default: 1e-5 m; 5e-5 m with --method de).", rich_help_panel=TARGET
+        ),
     ] = None,
     orientation_tolerance: Annotated[
-        float | None, typer.Option(help="Orientation tolerance, in --angles (default: 1e-4 rad).", rich_help_panel=TARGET)
+        float | None,
+        typer.Option(help="Orientation tolerance, in --angles (default: 1e-4 rad).", rich_help_panel=TARGET),
     ] = None,
     robot: RobotOption = "qiao2021",
     detector: DetectorOption = None,
@@ -55,9 +67,12 @@ def solve(
     unit: UnitOption = LengthUnit.m,
     angles: AnglesOption = AngleUnit.rad,
     convention: ConventionOption = None,
-    near: Annotated[str | None, typer.Option(metavar="Q", help="Stay close to these joint values (as --q of check).")] = None,
+    near: Annotated[
+        str | None, typer.Option(metavar="Q", help="Stay close to these joint values (as --q of check).")
+    ] = None,
     freeze: Annotated[
-        str | None, typer.Option(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home.")
+        str | None,
+        typer.Option(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home."),
     ] = None,
     seed: Annotated[int, typer.Option(help="Same seed, same answer.", rich_help_panel=SEARCH)] = 0,
     count: Annotated[int, typer.Option(metavar="K", help="Distinct solutions to find.", rich_help_panel=SEARCH)] = 1,
@@ -65,16 +80,24 @@ def solve(
         str, typer.Option(help="auto: ikde's choice; de: the paper's search.", rich_help_panel=SEARCH)
     ] = "auto",
     collision: Annotated[
-        str | None, typer.Option(help="reject: the paper's; feasibility: Deb's rules inside the search.", rich_help_panel=SEARCH)
+        str | None,
+        typer.Option(help="reject: the paper's; feasibility: Deb's rules inside the search.", rich_help_panel=SEARCH),
     ] = None,
-    strategy: Annotated[str | None, typer.Option(help="Mutation, e.g. rand/1 or current-to-best/1.", rich_help_panel=SEARCH)] = None,
+    strategy: Annotated[
+        str | None, typer.Option(help="Mutation, e.g. rand/1 or current-to-best/1.", rich_help_panel=SEARCH)
+    ] = None,
     population: Annotated[int | None, typer.Option(help="NP.", rich_help_panel=SEARCH)] = None,
     weight: Annotated[float | None, typer.Option(help="F, the differential weight.", rich_help_panel=SEARCH)] = None,
     crossover: Annotated[float | None, typer.Option(help="CR, the crossover rate.", rich_help_panel=SEARCH)] = None,
     generations: Annotated[int | None, typer.Option(help="Generations of one attempt.", rich_help_panel=SEARCH)] = None,
-    restarts: Annotated[int | None, typer.Option(help="Attempts before the budget is spent.", rich_help_panel=SEARCH)] = None,
+    restarts: Annotated[
+        int | None, typer.Option(help="Attempts before the budget is spent.", rich_help_panel=SEARCH)
+    ] = None,
     bounds: Annotated[
-        str | None, typer.Option(help="Repair of values out of range: redraw, clip, parent, midpoint, none.", rich_help_panel=SEARCH)
+        str | None,
+        typer.Option(
+            help="Repair of values out of range: redraw, clip, parent, midpoint, none.", rich_help_panel=SEARCH
+        ),
     ] = None,
     update: Annotated[str | None, typer.Option(help="generation or in_place.", rich_help_panel=SEARCH)] = None,
     plot: PlotOption = None,
@@ -112,7 +135,15 @@ def solve(
     start = None if near is None else read_q(model, near, unit, angles, convention)
     frozen = read_freeze(model, freeze, unit, angles, convention)
     results = solve_distinct(
-        model, target, count, settings, seed=seed, detector=judge, near=start, freeze=frozen, announce_compile=announce_compile
+        model,
+        target,
+        count,
+        settings,
+        seed=seed,
+        detector=judge,
+        near=start,
+        freeze=frozen,
+        announce_compile=announce_compile,
     )
     if as_json:
         objects = [solve_json(model, result, convention) for result in results]

@@ -4,9 +4,12 @@ import gc
 import sys
 
 
-def collect_garbage_rarely() -> None:
-    """Imports allocate much and free nothing: the collector would walk them all again and again, for 0.2 s."""
-    gc.set_threshold(1_000_000)
+def skip_garbage_collection() -> None:
+    """Imports allocate much and free nothing: the collector would walk them again and again, for 0.2 s.
+
+    A command that runs for long turns it on again.
+    """
+    gc.disable()
 
 
 def skip_blas_probe() -> None:

@@ -14,7 +14,7 @@ from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import NON_ADJACENT, check_robot, nearest
 
 Name = Annotated[str, StringConstraints(min_length=1)]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, products overflow
 Vector = tuple[Number, Number, Number]
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
@@ -223,6 +223,8 @@ def _provenance(file: RobotFile) -> dict[Where, Provenance]:
             if source not in file.sources:
                 message = f"no source is called {source!r}{nearest(source, file.sources)}"
                 raise InputError(message, (*where, "source"))
+            if key is not None and key not in entry.model_dump(by_alias=True):
+                raise InputError(f"this entry has no key {key!r} to name a source for", (*where, "source", key))
             place = where if key is None else (*where, key)
             found[place] = Provenance(kind=file.sources[source].kind, text=file.sources[source].text)
     return found

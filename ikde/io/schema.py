@@ -25,8 +25,8 @@ EXPECTED = {
 
 
 def as_file_error(document: Document, error: ValidationError, model: type[BaseModel]) -> FileError:
-    """The first complaint of pydantic, placed in the file."""
-    first = error.errors()[0]
+    """The first complaint of pydantic, placed in the file; a misspelt key before the key that it left missing."""
+    first = min(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
     where = _real_path(document.data, first["loc"])
     kind, context = first["type"], first.get("ctx", {})
     if kind == "extra_forbidden":

@@ -15,7 +15,9 @@ from ikde.errors import FileError, InputError
 Where = tuple[str | int, ...]
 
 MAX_DEPTH = 40
-_NUMBER = re.compile(r"^[-+]?(\.[0-9]+|[0-9][0-9_]*(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$")
+_NUMBER = re.compile(
+    r"^[-+]?(\.[0-9]+|[0-9][0-9_]*(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
+)
 _WHOLE = re.compile(r"^[-+]?[0-9][0-9_]*$")
 _BOOLEAN = re.compile(r"^(true|True|TRUE|false|False|FALSE)$")
 _NULL = re.compile(r"^(~|null|Null|NULL|)$")
@@ -94,7 +96,7 @@ class Document:
                 case "int":
                     return int(text)
                 case "float":
-                    return float(text.replace("_", ""))
+                    return float(text.lower().replace("_", "").replace(".inf", "inf").replace(".nan", "nan"))
                 case "bool":
                     return text.lower() == "true"
                 case "null":

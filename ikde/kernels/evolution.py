@@ -146,9 +146,7 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
                     work.trial[k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
             else:
                 fill_trial(search, lower, upper, state, work, i, best)
-            cost, depth, meets = score_point(
-                robot, detector, target, index, search, work.trial, work, work.score[i]
-            )
+            cost, depth, meets = score_point(robot, detector, target, index, search, work.trial, work, work.score[i])
             evaluations += 1
             wins = is_better(cost, depth, work.score[i])
             if wins and (meets or search.in_place):

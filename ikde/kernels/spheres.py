@@ -9,14 +9,19 @@ from ikde.kernels.jit import inline_kernel, kernel
 @inline_kernel
 def compute_component(detector, component, T_world_body, out_centres):
     """Sphere centres of one component by spatial transformation: p_world = T_world_body @ p_body. Into [3, S] m."""
-    body = detector.components[component, BODY]
-    first, last = detector.components[component, FIRST], detector.components[component, LAST]
-    x, y, z = detector.p_body_sphere[0], detector.p_body_sphere[1], detector.p_body_sphere[2]
-    for i in range(3):
-        a, b, c = T_world_body[body, i, 0], T_world_body[body, i, 1], T_world_body[body, i, 2]
-        d = T_world_body[body, i, 3]
-        for sphere in range(first, last):
-            out_centres[i, sphere] = d + a * x[sphere] + b * y[sphere] + c * z[sphere]
+    T = T_world_body[detector.components[component, BODY]]
+    a, b, c, d = T[0, 0], T[0, 1], T[0, 2], T[0, 3]
+    e, f, g, h = T[1, 0], T[1, 1], T[1, 2], T[1, 3]
+    i, j, k, m = T[2, 0], T[2, 1], T[2, 2], T[2, 3]
+    for sphere in range(detector.components[component, FIRST], detector.components[component, LAST]):
+        x, y, z = (
+            detector.p_body_sphere[0, sphere],
+            detector.p_body_sphere[1, sphere],
+            detector.p_body_sphere[2, sphere],
+        )
+        out_centres[0, sphere] = a * x + b * y + c * z + d
+        out_centres[1, sphere] = e * x + f * y + g * z + h
+        out_centres[2, sphere] = i * x + j * y + k * z + m
 
 
 @inline_kernel

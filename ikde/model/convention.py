@@ -23,16 +23,22 @@ def convention_offsets(robot: Robot, convention: str | None) -> Floats:
 
 
 def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
-    """From the named convention to the robot's own. `q` [..., N]."""
-    return _shift(q, -convention_offsets(robot, convention))
+    """From the named convention to the robot's own, inside the limits where a full turn allows it. `q` [..., N]."""
+    offsets = convention_offsets(robot, convention)
+    own = _wrap(q - offsets)
+    for turn in (-2.0 * np.pi, 2.0 * np.pi):
+        inside = (own >= robot.lower) & (own <= robot.upper)
+        fits = (own + turn >= robot.lower) & (own + turn <= robot.upper)
+        own = np.where(~inside & fits, own + turn, own)
+    return np.where(offsets == 0.0, q, own)
 
 
 def to_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
     """From the robot's own convention to the named one. `q` [..., N]."""
-    return _shift(q, convention_offsets(robot, convention))
+    offsets = convention_offsets(robot, convention)
+    return np.where(offsets == 0.0, q, _wrap(q + offsets))
 
 
-def _shift(q: Floats, offsets: Floats) -> Floats:
-    shifted = q + offsets
-    wrapped = shifted - 2.0 * np.pi * np.ceil((shifted - np.pi) / (2.0 * np.pi))
-    return np.where(offsets == 0.0, q, wrapped)
+def _wrap(angle_rad: Floats) -> Floats:
+    """Bring angles to (-pi, pi]."""
+    return angle_rad - 2.0 * np.pi * np.ceil((angle_rad - np.pi) / (2.0 * np.pi))

@@ -34,5 +34,3 @@ def non_adjacent_pairs(bodies: dict[str, int], tree: Tree, adjacent: Pairs) -> P
         for a, b in combinations(bodies, 2)
         if not are_adjacent(tree, occupied, bodies[a], bodies[b]) and frozenset((a, b)) not in listed
     )
-
-

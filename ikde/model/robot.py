@@ -130,7 +130,9 @@ class Robot:
         if name == NO_DETECTOR:
             return None
         if name not in self.detectors:
-            raise InputError(f"{self.name} has no detector {name!r}; it has {', '.join([*self.detectors, NO_DETECTOR])}")
+            raise InputError(
+                f"{self.name} has no detector {name!r}; it has {', '.join([*self.detectors, NO_DETECTOR])}"
+            )
         return self.detectors[name]
 
     def components(self, spheres: str) -> tuple[str, ...]:

@@ -68,7 +68,9 @@ def _read(values: ArrayLike, name: str) -> Floats:
 def _read_vector(values: ArrayLike, name: str) -> Floats:
     vector = _read(values, name)
     if vector.shape != (3,):
-        raise InputError(f"expected 3 numbers, got {'shape ' + str(vector.shape) if vector.ndim != 1 else vector.size}", (name,))
+        raise InputError(
+            f"expected 3 numbers, got {'shape ' + str(vector.shape) if vector.ndim != 1 else vector.size}", (name,)
+        )
     if not np.all(np.isfinite(vector)):
         raise InputError(f"expected finite numbers, got {vector.tolist()}", (name,))
     return vector

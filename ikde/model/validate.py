@@ -73,7 +73,12 @@ def _sort_frames(robot: Robot) -> tuple[Frame, ...]:
         _check_frame(robot, frame, frames)
     moved = [frame.joint for frame in robot.frames if frame.joint is not None]
     for joint in robot.joint_names:
-        _require(moved.count(joint) == 1, f"expected one frame that this joint moves, found {moved.count(joint)}", "joints", joint)
+        _require(
+            moved.count(joint) == 1,
+            f"expected one frame that this joint moves, found {moved.count(joint)}",
+            "joints",
+            joint,
+        )
     placed: dict[str, Frame] = {}
     while len(placed) < len(frames):
         ready = {n: f for n, f in frames.items() if n not in placed and (f.parent == WORLD or f.parent in placed)}
@@ -167,5 +172,3 @@ def _check_conventions(robot: Robot) -> None:
         for joint in offsets:
             _check_name(joint, kinds, ("conventions", name, joint), "joint")
             _require(kinds[joint] == "revolute", "only a revolute joint can be shifted", "conventions", name, joint)
-
-

@@ -26,7 +26,7 @@ def plot_pose(robot: Robot, q: Floats, *, detector: Detector | None = None, targ
     Returns:
         A matplotlib `Figure`; axes in metres, world frame.
     """
-    from matplotlib.figure import Figure  # noqa: PLC0415 - heavy, and most commands draw nothing
+    from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.0, 8.0), dpi=130, layout="constrained")
     axes: Any = figure.add_subplot(projection="3d")
@@ -96,7 +96,15 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
     a, b = components[closest.a], components[closest.b]
     _, i, j = compute_gap(a, b)
     text = f"{closest.a}-{closest.b}: {closest.clearance_m * 1e3:.1f} mm"
-    axes.plot(*np.array([a[0][i], b[0][j]]).T, "o-", color=CLOSEST, linewidth=2.5, markersize=4, zorder=10, label=f"closest pair, {text}")
+    axes.plot(
+        *np.array([a[0][i], b[0][j]]).T,
+        "o-",
+        color=CLOSEST,
+        linewidth=2.5,
+        markersize=4,
+        zorder=10,
+        label=f"closest pair, {text}",
+    )
     state = "self-collision" if colliding else "free of self-collision"
     return f"  ·  detector {detector.name}: {state}"
 

@@ -17,9 +17,7 @@ def forward_json(robot: Robot, q: Floats, Ts_world: Mapping[str, Floats], outsid
         "robot": robot.name,
         "q": dict(zip(robot.joint_names, q.tolist(), strict=True)),
         "outside_limits": list(outside),
-        "frames": {
-            name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in Ts_world.items()
-        },
+        "frames": {name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in Ts_world.items()},
     }
 
 
@@ -69,7 +67,9 @@ def check_json(robot: Robot, result: CheckResult) -> dict[str, Any]:
 def format_check(result: CheckResult, units: Units, *, color: bool = False) -> str:
     """A check for the terminal: the verdict and every pair, worst first."""
     if result.clearance_m is None:
-        return render("no detector, no pairs: nothing was looked at", *_outside_line(result.outside_limits), color=color)
+        return render(
+            "no detector, no pairs: nothing was looked at", *_outside_line(result.outside_limits), color=color
+        )
     verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
     head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {result.detector}"
     if result.safe_distance_m:

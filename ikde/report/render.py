@@ -6,7 +6,7 @@ from typing import Any
 
 def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
     """Lay renderables out as text of at most `width` columns, with ANSI colours only if asked."""
-    from rich.console import Console  # noqa: PLC0415 - only when text is made
+    from rich.console import Console
 
     buffer = StringIO()
     console = Console(file=buffer, force_terminal=color, no_color=not color, width=width, highlight=False)
@@ -18,8 +18,8 @@ def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
 
 def make_table(*columns: str, title: str | None = None) -> Any:
     """A table with a line under its header; a column whose name starts with `>` is right-aligned."""
-    from rich.box import SIMPLE_HEAD  # noqa: PLC0415
-    from rich.table import Table  # noqa: PLC0415
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
 
     table = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False)
     for column in columns:

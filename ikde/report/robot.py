@@ -63,7 +63,16 @@ def format_robot(robot: Robot, units: Units, *, color: bool = False) -> str:
 
 
 def _joint_table(robot: Robot, units: Units) -> Any:
-    table = make_table("joint", "kind", ">lower", ">home", ">upper", "unit", "limits from", title=f"joints, {robot.convention} convention")
+    table = make_table(
+        "joint",
+        "kind",
+        ">lower",
+        ">home",
+        ">upper",
+        "unit",
+        "limits from",
+        title=f"joints, {robot.convention} convention",
+    )
     for joint in robot.joints:
         values = [f"{units.joint_value(joint, v):.6g}" for v in (joint.lower, joint.home, joint.upper)]
         source = robot.provenance.get(("joints", joint.name, "lower")) or robot.provenance.get(("joints", joint.name))

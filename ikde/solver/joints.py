@@ -14,7 +14,9 @@ from ikde.model.validate import nearest
 JointValues = ArrayLike | Mapping[str, float]
 
 
-def read_joints(robot: Robot, q: JointValues, convention: str | None = None, *, default: Floats | None = None) -> Floats:
+def read_joints(
+    robot: Robot, q: JointValues, convention: str | None = None, *, default: Floats | None = None
+) -> Floats:
     """Return q [..., N] in the robot's own convention, m and rad.
 
     A mapping may leave joints out only if `default` [N] is given. Raises `InputError` for a wrong count, an unknown

@@ -34,7 +34,9 @@ def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
         Ts_world[frame.name] = Ts_world[frame.parent] @ T
         if frame.joint is not None and frame.axis is not None:
             index = robot.joint_names.index(frame.joint)
-            Ts_world[frame.name] = Ts_world[frame.name] @ joint_motion(robot.joints[index].kind, frame.axis, q[..., index])
+            Ts_world[frame.name] = Ts_world[frame.name] @ joint_motion(
+                robot.joints[index].kind, frame.axis, q[..., index]
+            )
     return Ts_world
 
 

@@ -1,0 +1,178 @@
+"""Robot files: what is wrong is said in one line with file, line and key; nothing ever ends in a traceback."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ikde
+from ikde.errors import FileError, InputError
+from ikde.io.robots import FOLDER, load_robot
+from ikde.io.yaml_file import Document
+
+GOOD = """\
+name: two
+units: {length: mm, angle: deg}
+sources:
+  ours: {kind: calibrated, text: "made up"}
+joints:
+  slide: {kind: prismatic, lower: -100, upper: 1e3, source: ours}
+  turn: {kind: revolute, lower: -90, upper: 90, home: 10}
+frames:
+  rail: {parent: world, joint: slide, axis: [1, 0, 0], source: {axis: ours}}
+  arm:  {parent: rail, xyz: [0, 0, 500], joint: turn, axis: [0, 1, 0]}
+  tip:  {parent: arm, xyz: [0, 0, 250.5], rpy: [0, 90, 0]}
+tool: tip
+spheres:
+  coarse:
+    - {component: box, from: rail, radius: 200}
+    - {component: bar, from: arm, to: tip, radius: 20, count: 4, spacing: even}
+pairs:
+  all: {pairs: {box: [bar]}}
+detectors:
+  coarse: {spheres: coarse, pairs: all, safe_distance: 5}
+default_detector: coarse
+"""
+
+
+def parse(text, tmp_path):
+    path = tmp_path / "robot.yaml"
+    path.write_text(text)
+    return load_robot(path)
+
+
+def complaint(old, new, tmp_path):
+    assert old in GOOD
+    with pytest.raises(FileError) as caught:
+        parse(GOOD.replace(old, new, 1), tmp_path)
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def test_units_become_metres_and_radians(tmp_path):
+    robot = parse(GOOD, tmp_path)
+    assert robot.upper == pytest.approx([1.0, np.pi / 2])
+    assert robot.home == pytest.approx([0.0, np.pi / 18])
+    assert robot.frames[1].p_parent_frame == pytest.approx([0, 0, 0.5])
+    assert robot.detectors["coarse"].safe_distance_m == pytest.approx(0.005)
+    assert robot.approximations["coarse"][1].radius_m == pytest.approx(0.02)
+
+
+def test_provenance_is_kept_by_entry_and_by_key(tmp_path):
+    provenance = parse(GOOD, tmp_path).provenance
+    assert provenance[("joints", "slide")].kind == "calibrated"
+    assert provenance[("frames", "rail", "axis")].text == "made up"
+
+
+def test_frames_may_stand_in_any_order(tmp_path):
+    lines = GOOD.splitlines()
+    swapped = "\n".join([*lines[:8], lines[10], lines[9], lines[8], *lines[11:]])
+    names = [frame.name for frame in parse(swapped, tmp_path).frames]
+    assert names == ["rail", "arm", "tip"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "words"),
+    [
+        ("tool: tip", "tol: tip", "robot.yaml:12 → tol", "did you mean 'tool'?"),
+        ("radius: 200", "radios: 200", "spheres.coarse[0].radios", "did you mean 'radius'?"),
+        ("radius: 200", "radius: -200", "robot.yaml:15 → spheres.coarse[0].radius", "above 0"),
+        ("radius: 200", "radius: big", "spheres.coarse[0].radius", "expected a number, got 'big'"),
+        ("radius: 200", "radius: .nan", "spheres.coarse[0].radius", "finite"),
+        ("radius: 200", "radius: .inf", "spheres.coarse[0].radius", "finite"),
+        ("xyz: [0, 0, 500]", "xyz: [0, 0]", "robot.yaml:10 → frames.arm.xyz", "expected 3 values, got 2"),
+        ("xyz: [0, 0, 500]", "xyz: [0, 0, 1, 2]", "frames.arm.xyz", "expected 3 values, got 4"),
+        ("xyz: [0, 0, 500]", "xyz: [0, 0, .nan]", "frames.arm.xyz", "finite"),
+        ("lower: -90, upper: 90", "lower: 90, upper: -90", "robot.yaml:7 → joints.turn.upper", "upside down"),
+        ("home: 10", "home: 100", "joints.turn.home", "outside the limits"),
+        ("parent: rail", "parent: tip", "frames.arm.parent", "cycle"),
+        ("parent: rail", "parent: rial", "robot.yaml:10 → frames.arm.parent", "did you mean 'rail'?"),
+        ("axis: [0, 1, 0]", "axis: [0, 0, 0]", "frames.arm.axis", "not zero"),
+        ("joint: turn,", "joint: trun,", "frames.arm.joint", "did you mean 'turn'?"),
+        ("joint: turn, axis: [0, 1, 0]", "joint: slide, axis: [0, 1, 0]", "joints.slide", "found 2"),
+        ("joint: turn, axis: [0, 1, 0]", "rpy: [0, 0, 0]", "joints.turn", "found 0"),
+        ("box: [bar]", "box: [bra]", "robot.yaml:18 → pairs.all.pairs.box", "no component is called 'bra'"),
+        ("box: [bar]", "box: [box]", "pairs.all.pairs.box", "paired with itself"),
+        ("pairs: all,", "pairs: al,", "detectors.coarse.pairs", "did you mean 'all'?"),
+        ("spheres: coarse,", "spheres: fine,", "detectors.coarse.spheres", "no approximation is called 'fine'"),
+        ("safe_distance: 5", "safe_distance: -5", "detectors.coarse.safe_distance", "at least 0"),
+        ("to: tip,", "to: rail,", "spheres.coarse[1].to", "a joint moves one end"),
+        ("count: 4", "count: 0", "spheres.coarse[1].count", "greater than or equal to 1"),
+        ("count: 4", "count: 2.5", "spheres.coarse[1].count", "whole number"),
+        ("kind: prismatic", "kind: sliding", "joints.slide.kind", "'revolute' or 'prismatic'"),
+        ("length: mm", "length: cm", "robot.yaml:2 → units.length", "'mm' or 'm'"),
+        ("source: ours}\n  turn", "source: theirs}\n  turn", "joints.slide.source", "no source is called 'theirs'"),
+        ("tool: tip\n", "", "robot.yaml:1 → tool", "missing"),
+        ("default_detector: coarse", "default_detector: corse", "default_detector", "did you mean 'coarse'?"),
+        ("name: two", "name: ''", "robot.yaml:1 → name", "not empty"),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_place(old, new, place, words, tmp_path):
+    message = complaint(old, new, tmp_path)
+    assert place in message
+    assert words in message
+
+
+def test_a_list_that_includes_itself_is_refused(tmp_path):
+    assert "includes itself" in complaint("all: {pairs: {box: [bar]}}", "all: {include: [all]}", tmp_path)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "3", "name: x", "null", "{name: x, joints: [], frames: {}, tool: t}"])
+def test_a_file_that_is_no_robot_is_refused(text, tmp_path):
+    with pytest.raises(FileError) as caught:
+        parse(text, tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_name_lists_the_robots():
+    with pytest.raises(InputError, match="did you mean 'qiao2021'"):
+        load_robot("qiao2012")
+
+
+JUNK = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-10, 10),
+    st.floats(),
+    st.text(max_size=6),
+    st.lists(st.integers(-2, 2), max_size=4),
+    st.dictionaries(st.text(max_size=4), st.integers(), max_size=2),
+)
+
+
+def paths_of(data, path=()):
+    yield path
+    items = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, value in items:
+        yield from paths_of(value, (*path, key))
+
+
+def put(data, path, value):
+    if not path:
+        return value
+    data = copy.deepcopy(data)
+    place = data
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    return data
+
+
+@given(data=st.data())
+@settings(max_examples=150, deadline=None, derandomize=True)
+def test_junk_anywhere_is_a_robot_or_one_line(data):
+    good = yaml.safe_load(Path(FOLDER / "ur5.yaml").read_text())
+    path = data.draw(st.sampled_from(list(paths_of(good))))
+    text = yaml.safe_dump(put(good, path, data.draw(JUNK)), sort_keys=False)
+    try:
+        robot = ikde.io.robot_file.parse_robot(Document(Path("fuzz.yaml"), text))  # type: ignore[attr-defined]
+    except FileError as error:
+        assert "\n" not in str(error)
+        assert str(error).startswith("fuzz.yaml")
+    else:
+        assert np.all(np.isfinite(robot.home))

@@ -1,0 +1,95 @@
+"""YAML: numbers as people write them, the line of every value, and never a traceback."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ikde.errors import FileError
+from ikde.io.yaml_file import Document, read_yaml
+
+
+def load(text, tmp_path):
+    path = tmp_path / "a.yaml"
+    path.write_text(text)
+    return read_yaml(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1e-6", 1e-6),
+        ("1.5e8", 1.5e8),
+        ("1E3", 1e3),
+        ("+2.5e+3", 2.5e3),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("-3", -3),
+        ("1_000", 1000),
+        ("1_000.5", 1000.5),
+        ("010", 10),
+    ],
+)
+def test_every_spelling_of_a_number_is_a_number(text, value, tmp_path):
+    data = load(f"x: {text}", tmp_path).data
+    assert data == {"x": value}
+    assert not isinstance(data["x"], str)
+
+
+@pytest.mark.parametrize("word", ["on", "off", "yes", "no", "y", "n", "1:30", "0x", "e5", "1e", "nanometre"])
+def test_words_stay_words(word, tmp_path):
+    assert load(f"x: {word}", tmp_path).data == {"x": word}
+
+
+def test_true_false_and_null_are_read(tmp_path):
+    assert load("[true, False, null, ~, '']", tmp_path).data == [True, False, None, None, ""]
+
+
+def test_a_value_knows_its_line(tmp_path):
+    document = load("a:\n  b:\n    - 1\n    - c: 2\n", tmp_path)
+    assert document.line(("a", "b", 1, "c")) == 4
+    assert document.line(("a", "b", 1, "missing")) == 4
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("a: [1, 2\nb: 3", 2, "not YAML"),
+        ("a: 1\na: 2", 2, "given twice"),
+        ("? [1, 2]\n: 3", 1, "a key must be a word"),
+        ("a: !!python/object:os.system x", 1, "is not read here"),
+        ("a: !!int x", 1, "does not fit its tag"),
+        ("a: &x [*x]", 1, "alias"),
+        ("\tb: 1", 1, "not YAML"),
+    ],
+)
+def test_bad_yaml_is_one_line_with_its_place(text, line, words, tmp_path):
+    with pytest.raises(FileError) as caught:
+        load(text, tmp_path)
+    message = str(caught.value)
+    assert f"a.yaml:{line}" in message
+    assert words in message
+    assert "\n" not in message
+
+
+def test_deep_nesting_is_refused(tmp_path):
+    with pytest.raises(FileError, match="nested too deeply"):
+        load("[" * 300 + "]" * 300, tmp_path)
+
+
+def test_missing_file_folder_and_binary_are_refused(tmp_path):
+    with pytest.raises(FileError, match="no such file"):
+        read_yaml(tmp_path / "nope.yaml")
+    with pytest.raises(FileError, match="a folder"):
+        read_yaml(tmp_path)
+    (tmp_path / "b.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(FileError, match="not a UTF-8"):
+        read_yaml(tmp_path / "b.yaml")
+
+
+@given(st.text(max_size=200))
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_any_text_is_data_or_one_line(text):
+    try:
+        Document("fuzz.yaml", text)  # type: ignore[arg-type]
+    except FileError as error:
+        assert "\n" not in str(error)

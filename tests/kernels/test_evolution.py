@@ -1,0 +1,181 @@
+"""Differential evolution against its naive twin, bit by bit of the random stream, and its laws."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ikde.kernels.evolution import evolve, find_best, is_better, make_workspace
+from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.kernels.rng import seed_stream
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.target import Target
+from ikde.solver.problem import make_problem, pack_search
+from ikde.solver.settings import SolveSettings
+from tests import reference
+from tests.conftest import random_q
+from tests.random_robots import random_robot
+
+KINDS = ("position", "axis", "pose")
+RULES = ("ignore", "reject", "feasibility")
+UPDATES = ("generation", "in_place")
+
+
+def make_case(robot, *, rule="feasibility", freeze=None, **changes):
+    """A small problem; the rule `ignore` is that of a robot without a detector."""
+    chosen = {"population": 8, "generations": 10, "collision": "reject" if rule == "ignore" else rule, **changes}
+    detector = "none" if rule == "ignore" else None
+    return make_problem(robot, SolveSettings(**chosen), detector=detector, near=None, freeze=freeze)
+
+
+def make_target(robot, kind, rng):
+    """What the tool does at some configuration."""
+    T = reference.compute_frames(robot, random_q(robot, rng))[robot.tool]
+    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
+    return Target(T[:3, 3], **extra)
+
+
+def run_evolve(problem, target, seed=1):
+    """The kernel's outcome as the twin returns it."""
+    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    work = make_workspace(robot, detector, len(problem.lower), problem.settings.population)
+    state = np.zeros(1, dtype=np.uint64)
+    seed_stream(np.uint64(seed), np.int64(2), 3, state)
+    search, lower, upper = pack_search(problem), problem.lower.copy(), problem.upper.copy()
+    best, meets, evaluations = evolve(robot, detector, pack_targets([target]), 0, search, lower, upper, state, work)
+    return work.x, work.score, int(best), bool(meets), int(evaluations), int(state[0])
+
+
+def assert_like_twin(problem, target, seed=1):
+    """Same best member, same verdict, same count, same population, and the stream at the same place."""
+    x, score, best, meets, evaluations, state = run_evolve(problem, target, seed)
+    stream = reference.Stream.for_attempt(seed, 2, 3)
+    x_twin, scores, best_twin, meets_twin, evaluations_twin = reference.evolve(problem, target, stream)
+    assert (best, meets, evaluations, state) == (best_twin, meets_twin, evaluations_twin, stream.state)
+    np.testing.assert_allclose(x[best], x_twin[best], rtol=0, atol=1e-12)
+    if evaluations >= problem.settings.population:  # else the first generation is not full
+        np.testing.assert_allclose(x, x_twin, rtol=0, atol=1e-12)
+    assert tuple(score[best][::-1]) == pytest.approx(scores[best], rel=1e-12, abs=1e-12)
+    return meets
+
+
+@pytest.mark.parametrize("update", UPDATES)
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("kind", KINDS)
+def test_paper_robot_evolves_like_the_twin(qiao, kind, rule, update, rng):
+    target = make_target(qiao, kind, rng)
+    assert not assert_like_twin(make_case(qiao, rule=rule, update=update), target)
+
+
+# Without robot 2: two of its members collide equally deep, and there rounding decides which one is better.
+@pytest.mark.parametrize("seed", [seed for seed in range(13) if seed != 2])
+def test_random_robots_evolve_like_the_twin(seed, rng):
+    robot = random_robot(seed)
+    rule, update, kind = RULES[seed % 3], UPDATES[seed % 2], KINDS[seed // 3 % 3]
+    assert_like_twin(make_case(robot, rule=rule, update=update, generations=6), make_target(robot, kind, rng))
+
+
+@pytest.mark.parametrize("update", UPDATES)
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_every_strategy_evolves_like_the_twin(strategy, update, rng):
+    robot = random_robot(3)
+    problem = make_case(robot, strategy=strategy, update=update, weight=0.8)
+    assert_like_twin(problem, make_target(robot, "position", rng))
+
+
+@pytest.mark.parametrize("update", UPDATES)
+@pytest.mark.parametrize("bounds", REPAIRS)
+def test_every_repair_evolves_like_the_twin(bounds, update, rng):
+    robot = random_robot(5)
+    problem = make_case(robot, rule="ignore", bounds=bounds, update=update, weight=0.9)
+    assert_like_twin(problem, make_target(robot, "pose", rng))
+
+
+@pytest.mark.parametrize("update", UPDATES)
+@pytest.mark.parametrize("rule", RULES)
+def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rule, update, rng):
+    target = make_target(qiao, "position", rng)
+    problem = make_case(qiao, rule=rule, update=update, generations=60, position_tolerance_m=0.3)
+    assert assert_like_twin(problem, target)
+
+
+def test_a_met_target_is_free_under_feasibility(qiao, rng):
+    target = make_target(qiao, "position", rng)
+    problem = make_case(qiao, generations=60, position_tolerance_m=0.3)
+    for seed in range(20):
+        x, score, best, meets, _, _ = run_evolve(problem, target, seed)
+        assert meets
+        assert score[best, 1] == 0.0
+        assert reference.compute_depth(qiao, problem.detector, x[best]) == 0.0
+
+
+@pytest.mark.parametrize(("rule", "update"), list(itertools.product(RULES, UPDATES)))
+def test_the_best_score_never_worsens(qiao, rule, update, rng):
+    target = make_target(qiao, "pose", rng)
+    scores = []
+    for generations in range(1, 40):
+        problem = make_case(qiao, rule=rule, update=update, generations=generations)
+        _, score, best, _, _, _ = run_evolve(problem, target)
+        scores.append(tuple(score[best][::-1]))
+    assert scores == sorted(scores, reverse=True)
+    assert scores[-1] < scores[0]
+
+
+def test_the_best_member_has_the_best_score(qiao, rng):
+    target = make_target(qiao, "pose", rng)
+    for update in UPDATES:
+        _, score, best, _, _, _ = run_evolve(make_case(qiao, update=update), target)
+        assert tuple(score[best][::-1]) == min(tuple(row[::-1]) for row in score)
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_a_frozen_joint_never_moves(qiao, strategy, rng):
+    target = make_target(qiao, "position", rng)
+    problem = make_case(qiao, strategy=strategy, freeze={"q1": 0.1, "d_x": 1.0 / 3.0})
+    x, *_ = run_evolve(problem, target)
+    assert set(x[:, qiao.joint_names.index("q1")]) == {0.1}
+    assert set(x[:, qiao.joint_names.index("d_x")]) == {1.0 / 3.0}
+
+
+@pytest.mark.parametrize("bounds", [name for name in REPAIRS if name != "none"])
+@pytest.mark.parametrize("update", UPDATES)
+def test_repaired_populations_stay_inside_the_limits(qiao, bounds, update, rng):
+    problem = make_case(qiao, bounds=bounds, update=update, weight=0.9)
+    x, *_ = run_evolve(problem, make_target(qiao, "position", rng))
+    assert np.all((problem.lower <= x) & (x <= problem.upper))
+
+
+def test_every_generation_costs_one_population_of_evaluations(qiao, rng):
+    for generations in (1, 5):
+        _, _, _, meets, evaluations, _ = run_evolve(
+            make_case(qiao, generations=generations), make_target(qiao, "pose", rng)
+        )
+        assert not meets
+        assert evaluations == 8 * (generations + 1)
+
+
+VALUES = st.sampled_from([0.0, 1e-12, 0.5, 1.0, np.inf]) | st.floats(0.0, 10.0)
+DEPTHS = st.sampled_from([0.0, 1e-12, 0.1]) | st.floats(0.0, 1.0)
+
+
+@settings(derandomize=True, deadline=None, max_examples=200)
+@given(cost=VALUES, depth=DEPTHS, other_cost=VALUES, other_depth=DEPTHS)
+def test_is_better_is_debs_rules(cost, depth, other_cost, other_depth):
+    better = bool(is_better(cost, depth, np.array([other_cost, other_depth])))
+    if depth == 0.0 and other_depth == 0.0:
+        assert better == (cost <= other_cost)
+    elif (depth == 0.0) != (other_depth == 0.0):
+        assert better == (depth == 0.0)
+    elif depth != other_depth:
+        assert better == (depth < other_depth)
+    else:
+        assert better == (cost <= other_cost)
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(rows=st.lists(st.tuples(VALUES, DEPTHS), min_size=1, max_size=10))
+def test_find_best_is_the_first_of_the_best(rows):
+    expected = min(range(len(rows)), key=lambda i: rows[i][::-1])
+    assert find_best(np.array(rows)) == expected

@@ -1,0 +1,192 @@
+"""The bound on reach is sound for any tree, and sharp for arms in the usual order."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ikde.model.reach import reach_excess_m
+from tests import reference
+from tests.random_robots import make_frame, make_robot, random_robot
+
+few = settings(derandomize=True, deadline=None, max_examples=150)
+ROUNDING = 1e-12
+
+
+def tool_position(robot, q):
+    return reference.compute_frames(robot, q)[robot.tool][:3, 3]
+
+
+def random_ranges(robot, rng):
+    """Sub-ranges of the limits, some of them frozen, and a configuration inside them."""
+    ends = np.sort(rng.uniform(robot.lower, robot.upper, (2, len(robot.joints))), axis=0)
+    ends = np.where(rng.random(len(robot.joints)) < 0.2, ends[:1], ends)
+    return ends[0], ends[1], rng.uniform(ends[0], ends[1])
+
+
+@few
+@given(seed=st.integers(0, 10_000))
+def test_no_random_robot_gets_beyond_its_bound(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    for _ in range(3):
+        lower, upper, q = random_ranges(robot, rng)
+        assert reach_excess_m(robot, tool_position(robot, q), lower, upper) <= ROUNDING
+
+
+def test_no_shipped_robot_gets_beyond_its_bound(any_robot, rng):
+    for _ in range(100):
+        lower, upper, q = random_ranges(any_robot, rng)
+        assert reach_excess_m(any_robot, tool_position(any_robot, q), lower, upper) <= ROUNDING
+
+
+def test_home_is_within_reach(any_robot):
+    p = tool_position(any_robot, any_robot.home)
+    assert reach_excess_m(any_robot, p, any_robot.lower, any_robot.upper) <= ROUNDING
+
+
+def test_wider_ranges_never_shorten_the_reach(qiao, rng):
+    for _ in range(50):
+        lower, upper, _ = random_ranges(qiao, rng)
+        p = rng.uniform(-8.0, 8.0, 3)
+        assert reach_excess_m(qiao, p, lower, upper) >= reach_excess_m(qiao, p, qiao.lower, qiao.upper)
+
+
+def test_a_target_above_every_stretch_is_out_of_reach(qiao):
+    assert reach_excess_m(qiao, np.array([0.0, 0.0, 5.0]), qiao.lower, qiao.upper) > 1.0
+
+
+TURNS = {"j0": "revolute", "j1": "revolute"}
+
+
+def make_planar_arm(first=0.5, second=0.3):
+    """Two links in the plane, both joints about z."""
+    return make_robot(
+        TURNS,
+        [
+            make_frame("a", "world", joint="j0", axis=(0, 0, 1)),
+            make_frame("b", "a", (first, 0, 0), joint="j1", axis=(0, 0, 1)),
+            make_frame("tool", "b", (second, 0, 0)),
+        ],
+        lower=-np.pi,
+        upper=np.pi,
+    )
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0, -2.5])
+def test_the_bound_of_a_planar_arm_is_its_stretched_length(angle):
+    robot = make_planar_arm()
+    for length, expected in ((0.8, 0.0), (0.801, 0.001), (2.0, 1.2)):
+        p = length * np.array([np.cos(angle), np.sin(angle), 0.0])
+        assert reach_excess_m(robot, p, robot.lower, robot.upper) == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_planar_arm_never_leaves_its_plane():
+    robot = make_planar_arm()
+    assert reach_excess_m(robot, np.array([0.1, 0.2, 0.001]), robot.lower, robot.upper) == pytest.approx(0.001)
+
+
+def find_farthest_along(robot, direction, freeze):
+    """How far the tool gets along a direction: coordinate ascent over the joints that may move."""
+    q, best = robot.home.copy(), -np.inf
+    for width in np.geomspace(1.0, 1e-6, 40):
+        for k in freeze:
+            for value in np.clip(q[k] + width * np.linspace(-1, 1, 9), robot.lower[k], robot.upper[k]):
+                trial = q.copy()
+                trial[k] = value
+                reached = tool_position(robot, trial) @ direction
+                if reached > best:
+                    q, best = trial, reached
+    return q
+
+
+def test_the_bound_allows_qiao_no_millimetre_more_than_it_overestimates(qiao):
+    """With the base frozen, the stretched arm in the plane of q2, q3, q4 is as long as the bound, up to q5's branch."""
+    lower, upper = qiao.lower, qiao.upper
+    lower[:3] = upper[:3] = 0.0
+    q = find_farthest_along(qiao, np.array([1.0, 0.0, 0.0]), range(3, 9))
+    p = tool_position(qiao, q)
+    assert reach_excess_m(qiao, p, lower, upper) <= ROUNDING
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_the_drives_end_at_their_limits(qiao, sign):
+    frozen = np.zeros(9)
+    lower, upper = frozen.copy(), frozen.copy()
+    lower[0], upper[0] = qiao.lower[0], qiao.upper[0]
+    here = tool_position(qiao, frozen)
+    far = here + np.array([sign * 100.0, 0.0, 0.0])
+    excess = reach_excess_m(qiao, far, lower, upper)
+    assert reach_excess_m(qiao, far + np.array([sign, 0.0, 0.0]), lower, upper) == pytest.approx(excess + 1.0, abs=0.01)
+
+
+def make_lift(axis=(0, 0, 1), offset=(0.3, 0, 0.5)):
+    """A slide that carries a joint about the vertical."""
+    return make_robot(
+        {"lift": "prismatic", "turn": "revolute"},
+        [
+            make_frame("a", "world", joint="lift", axis=axis),
+            make_frame("b", "a", joint="turn", axis=(0, 0, 1)),
+            make_frame("tool", "b", offset),
+        ],
+    )
+
+
+@pytest.mark.parametrize("height", [-1.0, -0.4, 0.0, 0.7, 1.0])
+def test_a_lift_under_a_vertical_joint_reaches_all_its_heights(height):
+    robot = make_lift()
+    p = tool_position(robot, np.array([height, 0.2]))
+    assert reach_excess_m(robot, p, robot.lower, robot.upper) <= ROUNDING
+
+
+def test_a_lift_ends_at_its_limits():
+    robot = make_lift()
+    p = tool_position(robot, np.array([1.0, 0.2])) + np.array([0.0, 0.0, 0.001])
+    assert reach_excess_m(robot, p, robot.lower, robot.upper) == pytest.approx(0.001)
+
+
+@pytest.mark.parametrize("tilt", [1e-10, 1e-7, 4e-5, 1e-3, 0.5])
+def test_a_tilted_lift_reaches_all_its_heights(tilt):
+    robot = make_lift(axis=(tilt, 0, 1), offset=(1.2, 0, 0))
+    for value in np.linspace(-0.9, 0.9, 7):
+        p = tool_position(robot, np.array([value, 0.0]))
+        assert reach_excess_m(robot, p, robot.lower, robot.upper) <= 1e-9
+
+
+@pytest.mark.parametrize("slant", [(1, 0, 0), (1, 1, 0), (1, 2, 3), (0, 0, 1)])
+def test_oblique_slides_are_sound(slant, rng):
+    robot = make_robot(
+        {"x": "prismatic", "s": "prismatic", "turn": "revolute", "bend": "revolute"},
+        [
+            make_frame("a", "world", joint="x", axis=(1, 0, 0)),
+            make_frame("b", "a", joint="s", axis=slant),
+            make_frame("c", "b", (0, 0, 0.2), joint="turn", axis=(0, 0, 1)),
+            make_frame("d", "c", (0.4, 0, 0), joint="bend", axis=(0, 1, 0)),
+            make_frame("tool", "d", (0.3, 0, 0)),
+        ],
+    )
+    for _ in range(200):
+        lower, upper, q = random_ranges(robot, rng)
+        assert reach_excess_m(robot, tool_position(robot, q), lower, upper) <= ROUNDING
+
+
+def test_a_robot_of_slides_only_reaches_its_box_and_no_more():
+    robot = make_robot(
+        {"x": "prismatic", "y": "prismatic"},
+        [
+            make_frame("a", "world", joint="x", axis=(1, 0, 0)),
+            make_frame("b", "a", joint="y", axis=(0, 1, 0)),
+            make_frame("tool", "b", (0.1, 0.2, 0.3)),
+        ],
+    )
+    assert reach_excess_m(robot, np.array([1.1, -0.8, 0.3]), robot.lower, robot.upper) <= ROUNDING
+    assert reach_excess_m(robot, np.array([1.1, -0.8, 0.8]), robot.lower, robot.upper) == pytest.approx(0.5)
+    assert reach_excess_m(robot, np.array([4.1, -4.8, 0.3]), robot.lower, robot.upper) == pytest.approx(5.0)
+
+
+def test_a_robot_whose_tool_no_joint_moves_stays_where_it_is():
+    robot = make_robot(
+        {"x": "prismatic"},
+        [make_frame("a", "world", joint="x", axis=(1, 0, 0)), make_frame("tool", "world", (0, 0, 1))],
+    )
+    assert reach_excess_m(robot, np.array([0.0, 0.0, 1.0]), robot.lower, robot.upper) == 0.0
+    assert reach_excess_m(robot, np.array([3.0, 4.0, 1.0]), robot.lower, robot.upper) == pytest.approx(5.0)

@@ -1,0 +1,321 @@
+"""Every error that a robot can have is found, and named by the path of the offending value."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ikde.errors import InputError
+from ikde.model.robot import Detector, Frame, Joint, Robot, SphereRow
+from ikde.model.validate import NON_ADJACENT, check_detector_components, check_robot, nearest
+from tests.random_robots import make_frame
+
+
+def make_joint(name="turn", **changes):
+    return Joint(**{"name": name, "kind": "revolute", "lower": -1.0, "upper": 1.0, "home": 0.0, **changes})
+
+
+def make_row(component="A", start="a", end="tool", **changes):
+    return SphereRow(**{"component": component, "start": start, "end": end, "radius_m": 0.1, **changes})
+
+
+def make_draft(**changes):
+    """A robot of two joints and three components with nothing wrong; `changes` make it wrong."""
+    parts = {
+        "name": "draft",
+        "title": "A draft",
+        "joints": (make_joint("slide", kind="prismatic"), make_joint("turn")),
+        "frames": (
+            make_frame("b", "a", (0.2, 0, 0), joint="turn", axis=(0, 0, 1)),
+            make_frame("a", "world", joint="slide", axis=(1, 0, 0)),
+            make_frame("tool", "b", (0.3, 0, 0)),
+        ),
+        "tool": "tool",
+        "approximations": {
+            "fine": (
+                make_row("G", "world", "world"),
+                make_row("A", "a", "a"),
+                make_row("B", "b", "tool", count=3),
+            )
+        },
+        "adjacent": (),
+        "pair_lists": {"some": (("G", "B"),)},
+        "detectors": {"d": Detector(name="d", spheres="fine", pairs="some")},
+        "default_detector": "d",
+        "convention": "own",
+        "conventions": {"other": {"turn": np.pi}},
+        "provenance": {},
+    }
+    return Robot(**{**parts, **changes})
+
+
+def reject(message, *where, **changes):
+    """`check_robot` must raise this message at this path."""
+    with pytest.raises(InputError) as caught:
+        check_robot(make_draft(**changes))
+    assert message in caught.value.message
+    assert caught.value.where == where
+
+
+def replace_frame(name, **changes):
+    return tuple(replace(f, **changes) if f.name == name else f for f in make_draft().frames)
+
+
+def replace_rows(**changes):
+    rows = make_draft().approximations["fine"]
+    return {"fine": (*rows[:2], replace(rows[2], **changes))}
+
+
+def test_a_sound_draft_passes_with_parents_first():
+    robot = check_robot(make_draft())
+    assert [frame.name for frame in robot.frames] == ["a", "b", "tool"]
+    assert robot.joint_names == ("slide", "turn")
+
+
+def test_non_adjacent_pairs_are_added():
+    robot = check_robot(make_draft())
+    assert robot.pair_lists[NON_ADJACENT] == (("G", "B"),)
+    assert robot.pair_lists["some"] == (("G", "B"),)
+
+
+def test_checking_leaves_the_draft_alone():
+    draft = make_draft()
+    check_robot(draft)
+    assert draft.frames[0].name == "b"
+    assert NON_ADJACENT not in draft.pair_lists
+
+
+def test_branches_are_sorted_depth_first():
+    frames = (
+        make_frame("left", "a"),
+        make_frame("right", "a"),
+        make_frame("tool", "right"),
+        make_frame("left_tip", "left"),
+        *make_draft(
+            frames=(make_frame("a", "world", joint="slide", axis=(1, 0, 0)), make_frame("b", "a", joint="turn", axis=(0, 0, 1)))
+        ).frames,
+    )
+    plain = {"approximations": {}, "pair_lists": {}, "detectors": {}, "default_detector": "none"}
+    robot = check_robot(make_draft(frames=frames, **plain))
+    assert [f.name for f in robot.frames] == ["a", "left", "left_tip", "right", "tool", "b"]
+
+
+# ---- joints
+
+
+def test_no_joints():
+    reject("expected at least one joint", "joints", joints=())
+
+
+@pytest.mark.parametrize("key", ["lower", "upper", "home"])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_limits_and_home_are_finite(key, value):
+    joints = (make_joint("slide", kind="prismatic"), make_joint("turn", **{key: value}))
+    reject("expected a finite number", "joints", "turn", key, joints=joints)
+
+
+def test_limits_upside_down():
+    joints = (make_joint("slide", kind="prismatic"), make_joint("turn", lower=1.0, upper=-1.0))
+    reject("limits are upside down", "joints", "turn", "upper", joints=joints)
+
+
+def test_home_outside_the_limits():
+    joints = (make_joint("slide", kind="prismatic"), make_joint("turn", home=1.5))
+    reject("home is outside the limits", "joints", "turn", "home", joints=joints)
+
+
+def test_home_on_a_limit_is_inside():
+    check_robot(make_draft(joints=(make_joint("slide", kind="prismatic"), make_joint("turn", home=1.0))))
+
+
+def test_a_joint_that_moves_no_frame():
+    joints = (*make_draft().joints, make_joint("idle"))
+    reject("expected one frame that this joint moves, found 0", "joints", "idle", joints=joints)
+
+
+def test_a_joint_that_moves_two_frames():
+    frames = (*make_draft().frames, make_frame("c", "a", joint="turn", axis=(0, 0, 1)))
+    reject("expected one frame that this joint moves, found 2", "joints", "turn", frames=frames)
+
+
+# ---- frames
+
+
+def test_the_world_cannot_be_defined():
+    reject("is the root and cannot be defined", "frames", "world", frames=(*make_draft().frames, make_frame("world", "a")))
+
+
+def test_an_unknown_parent_names_the_nearest_frame():
+    frames = replace_frame("tool", parent="tol")
+    reject("no frame is called 'tol' (did you mean 'tool'?)", "frames", "tool", "parent", frames=frames)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_place_is_finite(value):
+    frames = replace_frame("tool", p_parent_frame=np.array([0.0, value, 0.0]))
+    reject("expected finite numbers", "frames", "tool", "xyz", frames=frames)
+
+
+def test_an_axis_needs_a_joint():
+    frames = replace_frame("tool", axis=np.array([0.0, 0.0, 1.0]))
+    reject("an axis needs a joint", "frames", "tool", "axis", frames=frames)
+
+
+def test_an_unknown_joint_names_the_nearest():
+    frames = replace_frame("b", joint="trn")
+    reject("no joint is called 'trn' (did you mean 'turn'?)", "frames", "b", "joint", frames=frames)
+
+
+def test_a_joint_needs_an_axis():
+    reject("a frame with a joint needs an axis", "frames", "b", frames=replace_frame("b", axis=None))
+
+
+@pytest.mark.parametrize("axis", [(0.0, 0.0, 0.0), (0.0, 0.0, 2.0), (np.nan, 0.0, 1.0)])
+def test_an_axis_has_length_one(axis):
+    reject("expected an axis that is not zero", "frames", "b", "axis", frames=replace_frame("b", axis=np.array(axis)))
+
+
+def test_a_cycle_of_parents():
+    reject("a cycle: following the parents never reaches the world", "frames", "b", "parent", frames=(
+        make_frame("a", "world", joint="slide", axis=(1, 0, 0)),
+        make_frame("b", "tool", joint="turn", axis=(0, 0, 1)),
+        make_frame("tool", "b"),
+    ))  # fmt: skip
+
+
+def test_a_frame_that_is_its_own_parent():
+    reject("a cycle", "frames", "tool", "parent", frames=replace_frame("tool", parent="tool"))
+
+
+def test_an_unknown_tool():
+    reject("no frame is called 'tip'", "tool", tool="tip")
+
+
+# ---- spheres
+
+
+@pytest.mark.parametrize(("key", "name"), [("start", "from"), ("end", "to")])
+def test_a_row_between_unknown_frames(key, name):
+    reject("no frame is called 'tol'", "spheres", "fine", 2, name, approximations=replace_rows(**{key: "tol"}))
+
+
+@pytest.mark.parametrize("radius", [0.0, -0.1, np.nan, np.inf])
+def test_a_radius_is_above_zero(radius):
+    approximations = replace_rows(radius_m=radius)
+    reject("expected a radius above 0", "spheres", "fine", 2, "radius", approximations=approximations)
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_a_count_is_at_least_one(count):
+    reject("expected a count of at least 1", "spheres", "fine", 2, "count", approximations=replace_rows(count=count))
+
+
+def test_a_row_across_a_joint():
+    message = "a joint moves one end of this line against the other"
+    reject(message, "spheres", "fine", 2, "to", approximations=replace_rows(end="a"))
+
+
+def test_a_component_on_two_bodies():
+    message = "the rows of 'A' lie on different bodies; a component is rigid"
+    reject(message, "spheres", "fine", 2, "component", approximations=replace_rows(component="A"))
+
+
+# ---- pairs
+
+
+def test_non_adjacent_cannot_be_defined():
+    lists = {**make_draft().pair_lists, NON_ADJACENT: ()}
+    reject("this list is made by ikde and cannot be defined", "pairs", NON_ADJACENT, pair_lists=lists)
+
+
+@pytest.mark.parametrize("pair", [("G", "X"), ("X", "G")])
+def test_an_unknown_component_in_a_pair(pair):
+    lists = {"some": (pair,)}
+    reject("no component is called 'X'", "pairs", "some", "pairs", pair[0], pair_lists=lists)
+
+
+def test_an_unknown_component_among_adjacent_pairs():
+    reject("no component is called 'X'", "adjacent", "pairs", "X", adjacent=(("X", "G"),))
+
+
+def test_a_component_paired_with_itself():
+    reject("'G' is paired with itself", "pairs", "some", "pairs", "G", pair_lists={"some": (("G", "G"),)})
+
+
+# ---- detectors
+
+
+def make_detector(**changes):
+    return {"d": Detector(**{"name": "d", "spheres": "fine", "pairs": "some", **changes})}
+
+
+def test_a_detector_called_none():
+    detectors = {**make_detector(), "none": Detector(name="none", spheres="fine", pairs="some")}
+    reject("is taken: it stands for no detector at all", "detectors", "none", detectors=detectors)
+
+
+def test_a_detector_with_unknown_spheres():
+    detectors = make_detector(spheres="fin")
+    reject("no approximation is called 'fin' (did you mean 'fine'?)", "detectors", "d", "spheres", detectors=detectors)
+
+
+def test_a_detector_with_unknown_pairs():
+    reject("no pair list is called 'all'", "detectors", "d", "pairs", detectors=make_detector(pairs="all"))
+
+
+@pytest.mark.parametrize("distance", [-0.1, np.nan, np.inf])
+def test_a_safe_distance_is_at_least_zero(distance):
+    detectors = make_detector(safe_distance_m=distance)
+    reject("expected a distance of at least 0", "detectors", "d", "safe_distance", detectors=detectors)
+
+
+def test_a_detector_whose_pairs_its_spheres_do_not_describe():
+    approximations = {**make_draft().approximations, "coarse": (make_row("G", "world", "world"),)}
+    message = "the approximation 'coarse' has no component 'B'"
+    reject(message, "detectors", "d", "pairs", approximations=approximations, detectors=make_detector(spheres="coarse"))
+
+
+def test_components_of_a_detector_can_be_checked_alone():
+    robot = check_robot(make_draft())
+    check_detector_components(robot, "fine", "some")
+    check_detector_components(robot, "fine", NON_ADJACENT)
+
+
+def test_a_detector_may_use_the_pairs_that_ikde_makes():
+    robot = check_robot(make_draft(detectors=make_detector(pairs=NON_ADJACENT)))
+    assert robot.detectors["d"].pairs == NON_ADJACENT
+
+
+def test_an_unknown_default_detector():
+    reject("no detector is called 'e'", "default_detector", default_detector="e")
+
+
+def test_no_detector_may_be_the_default():
+    assert check_robot(make_draft(default_detector="none")).detector(None) is None
+
+
+# ---- conventions
+
+
+def test_a_convention_called_like_the_robots_own():
+    message = "this is the convention the file is written in"
+    reject(message, "conventions", "own", conventions={"own": {"turn": 1.0}})
+
+
+def test_a_convention_with_an_unknown_joint():
+    message = "no joint is called 'tun' (did you mean 'turn'?)"
+    reject(message, "conventions", "other", "tun", conventions={"other": {"tun": 1.0}})
+
+
+def test_a_slide_cannot_be_shifted():
+    message = "only a revolute joint can be shifted"
+    reject(message, "conventions", "other", "slide", conventions={"other": {"slide": 1.0}})
+
+
+@pytest.mark.parametrize(("name", "expected"), [("improvd", " (did you mean 'improved'?)"), ("xyz", "")])
+def test_nearest_names_only_what_is_near(name, expected):
+    assert nearest(name, ["improved", "typical"]) == expected
+
+
+def test_frames_are_plain_data():
+    assert isinstance(make_draft().frames[0], Frame)
