@@ -47,9 +47,7 @@ def table(title: str, *columns: str) -> Table:
 
 def show_observations(seen: list[Observation]) -> None:
     """Every published observation beside ours."""
-    made = table(
-        "Published observations (angles in deg)", "observation", "published", "ours", "margin", "holds"
-    )
+    made = table("Published observations (angles in deg)", "observation", "published", "ours", "margin", "holds")
     for line in seen:
         margin = f"{line.slack:.3f} {line.unit}" if line.unit else "-"
         made.add_row(line.name, line.printed, line.ours, margin, "yes" if line.holds else "NO")
@@ -71,16 +69,12 @@ def check_moves(robot: ikde.Robot) -> None:
             before, after = (ikde.check(r, r.home, detector).pairs for r in (robot, move(robot, value)))
             change = max(abs(a.clearance_m - b.clearance_m) for a, b in zip(before, after, strict=True))
             if change > 1e-12:
-                sys.exit(
-                    f"benchmarks/calibration/layout.py: {name} is no longer {value:g} mm in the robot's file"
-                )
+                sys.exit(f"benchmarks/calibration/layout.py: {name} is no longer {value:g} mm in the robot's file")
 
 
 def show_intervals(robot: ikde.Robot) -> None:
     """Where everything still holds, one number at a time."""
-    made = table(
-        "What stays free, one number at a time (mm)", "number", "kind", "value", "holds from", "to", "breaks"
-    )
+    made = table("What stays free, one number at a time (mm)", "number", "kind", "value", "holds from", "to", "breaks")
     for name, (low, high) in find_intervals(robot).items():
         kind, value, _ = MOVES[name]
         made.add_row(name, kind, f"{value:g}", text(low), text(high), f"{low.breaks} | {high.breaks}")
@@ -104,9 +98,7 @@ def show_search(robot: ikde.Robot) -> None:
     """The scans that led to the shipped layout, and other layouts that hold."""
     show_scan("Load, 1 mm grid", ("x", "z"), scan_load(robot))
     show_scan("Load at x = 200", ("x", "z"), scan_load_at_printed_x(robot))
-    made = table(
-        "Platform, 0.5 mm grid, Situation 3", "z", "hold", "half extents", "roomiest", "margin (fine steps)"
-    )
+    made = table("Platform, 0.5 mm grid, Situation 3", "z", "hold", "half extents", "roomiest", "margin (fine steps)")
     for z in PLATFORM_Z:
         found = scan_platform(robot, z)
         halves = sorted(candidate.values[1] for candidate in found)
@@ -122,9 +114,7 @@ def show_search(robot: ikde.Robot) -> None:
 
 def main() -> int:
     """Print the tables; 1 if an observation fails."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--search", action="store_true", help="also scan for layouts; about ten seconds more")
     arguments = parser.parse_args()
     robot = ikde.load_robot("qiao2021")

@@ -6,6 +6,38 @@ Names are imported when they are first used, so `import ikde` costs nothing.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` holds it to `_HOME`
+    from ikde.errors import (
+        FileError as FileError,
+    )
+    from ikde.errors import (
+        IkdeError as IkdeError,
+    )
+    from ikde.errors import (
+        InputError as InputError,
+    )
+    from ikde.errors import (
+        VerificationError as VerificationError,
+    )
+    from ikde.io.robots import load_robot as load_robot
+    from ikde.io.robots import robot_names as robot_names
+    from ikde.model.convention import from_convention as from_convention
+    from ikde.model.convention import to_convention as to_convention
+    from ikde.model.robot import Detector as Detector
+    from ikde.model.robot import Robot as Robot
+    from ikde.model.target import Target as Target
+    from ikde.solver.check import CheckResult as CheckResult
+    from ikde.solver.check import check as check
+    from ikde.solver.forward import forward as forward
+    from ikde.solver.result import SolveResult as SolveResult
+    from ikde.solver.result import StopReason as StopReason
+    from ikde.solver.settings import SolveSettings as SolveSettings
+    from ikde.solver.solve import solve as solve
+    from ikde.solver.solve import solve_distinct as solve_distinct
+    from ikde.solver.solve import solve_many as solve_many
+    from ikde.solver.verify import Verification as Verification
+    from ikde.solver.verify import verify as verify
+
 __version__ = "0.1.0"
 
 _HOME = {

@@ -111,9 +111,7 @@ class TestSpheres:
     @pytest.mark.parametrize("approximation", ["typical", "improved"])
     def test_volumes_equal_table_2_to_five_digits(self, qiao, approximation):
         ours = {name: f"{volume:.4e}" for name, volume in volumes_mm3(qiao, approximation).items()}
-        assert ours == {
-            name: f"{row[approximation]['volume_mm3']:.4e}" for name, row in PAPER["table_2"].items()
-        }
+        assert ours == {name: f"{row[approximation]['volume_mm3']:.4e}" for name, row in PAPER["table_2"].items()}
 
     @pytest.mark.parametrize("approximation", ["typical", "improved"])
     def test_degrees_equal_table_2_to_its_rounding(self, qiao, approximation):
@@ -215,9 +213,7 @@ class TestMisprints:
         speed = (situation["end_deg"][joint] - situation["start_deg"][joint]) / 10
         t_s = situation["coarse_s"][detector] - 1 + situation["fine_steps"][detector] / 20
         assert abs(speed) / 20 == pytest.approx(situation["fine_step_deg"])
-        assert situation["start_deg"][joint] + speed * t_s == pytest.approx(
-            situation["detected_deg"][detector]
-        )
+        assert situation["start_deg"][joint] + speed * t_s == pytest.approx(situation["detected_deg"][detector])
 
     @pytest.mark.parametrize(("detector", "angle_deg"), [("typical", 145.98), ("improved", 150.84)])
     def test_printed_start_of_situation_1_leads_elsewhere(self, detector, angle_deg):

@@ -98,9 +98,7 @@ def set_motor5(robot: Robot, value: float) -> Robot:
         name="motor5", parent="O5", p_parent_frame=np.array([0.0, 0.0, value / 1e3]), R_parent_frame=np.eye(3)
     )
     rows = {
-        name: tuple(
-            replace(row, start="motor5", end="motor5") if row.component == "J5" else row for row in rows
-        )
+        name: tuple(replace(row, start="motor5", end="motor5") if row.component == "J5" else row for row in rows)
         for name, rows in robot.approximations.items()
     }
     frames = tuple(f for f in robot.frames if f.name != "motor5")

@@ -167,9 +167,7 @@ def observe_home(robot: Robot) -> list[Observation]:
     ):
         gap = 1e3 * float(compute_clearance(robot, detector, robot.home[None])[0])
         found.append(
-            Observation(
-                name=f"home, {detector}", printed=printed, ours=f"{gap:+.2f} mm", slack=sign * gap, unit="mm"
-            )
+            Observation(name=f"home, {detector}", printed=printed, ours=f"{gap:+.2f} mm", slack=sign * gap, unit="mm")
         )
     return found
 

@@ -2,7 +2,8 @@
 
 import os
 import sys
-from typing import Annotated, NoReturn
+import traceback
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -15,9 +16,11 @@ from ikde.cli.output import print_note, print_result
 from ikde.cli.robots import robots
 from ikde.cli.solve import solve
 from ikde.cli.startup import skip_garbage_collection
-from ikde.errors import InputError, VerificationError
+from ikde.errors import InputError
 
-UsageError = typer.BadParameter.__bases__[0]  # click's, wherever typer keeps it: newer ones carry their own copy
+UsageError: type[Exception] = typer.BadParameter.__bases__[
+    0
+]  # click's, wherever typer keeps it: newer ones carry their own copy
 
 app = typer.Typer(
     name="ikde",
@@ -61,27 +64,25 @@ def main() -> NoReturn:
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code and turns every error into one line on stderr."""
     try:
-        code = app(arguments, prog_name="ikde", standalone_mode=False)
-        return int(code or ExitCode.OK)
-    except UsageError as error:
-        path = error.ctx.command_path if error.ctx else "ikde"
-        print_note(f"{path}: {' '.join(error.format_message().split())}")
-        return ExitCode.BAD_INPUT
-    except VerificationError as error:
-        print_note(f"ikde: this is a bug, please report it: {error}")
-        return ExitCode.BUG
-    except InputError as error:
-        print_note(f"ikde: {error}")
-        return ExitCode.BAD_INPUT
-    except (KeyboardInterrupt, typer.Abort):
-        print_note("ikde: interrupted")
-        return ExitCode.INTERRUPTED
-    except BrokenPipeError:
+        return int(app(arguments, prog_name="ikde", standalone_mode=False) or ExitCode.OK)
+    except BrokenPipeError:  # the reader has seen enough: `ikde check | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ExitCode.OK
-    except Exception as error:
-        import traceback
+    except BaseException as error:
+        code, line = explain_error(error)
+        print_note(line)
+        return code
 
-        traceback.print_exc()
-        print_note(f"ikde: this is a bug, please report it: {type(error).__name__}: {error}")
-        return ExitCode.BUG
+
+def explain_error(error: BaseException) -> tuple[ExitCode, str]:
+    """The exit code and the one line for an error; of a bug the traceback is written as well."""
+    if isinstance(error, UsageError):
+        usage: Any = error
+        path = usage.ctx.command_path if usage.ctx else "ikde"
+        return ExitCode.BAD_INPUT, f"{path}: {' '.join(usage.format_message().split())}"
+    if isinstance(error, InputError):
+        return ExitCode.BAD_INPUT, f"ikde: {error}"
+    if isinstance(error, KeyboardInterrupt | typer.Abort):
+        return ExitCode.INTERRUPTED, "ikde: interrupted"
+    traceback.print_exception(error)
+    return ExitCode.BUG, f"ikde: this is a bug, please report it: {type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""`ikde check`: is a configuration free of self-collision?"""
+"""`ikde check`: whether a configuration is free of self-collision."""
 
 import typer
 

@@ -70,7 +70,7 @@ def _read(text: str, key: str) -> list[float] | dict[str, float]:
 
 def _read_file(path: Path) -> list[float] | dict[str, float]:
     document = read_yaml(path)
-    data = document.data
+    data: Any = document.data
     items = enumerate(data) if isinstance(data, list) else data.items() if isinstance(data, dict) else None
     if items is None:
         raise document.error("expected a list of joint values, or a mapping from joint names to values")

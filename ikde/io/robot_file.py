@@ -211,7 +211,9 @@ def _provenance(file: RobotFile) -> dict[Where, Provenance]:
     sections: dict[str, dict[str, Any]] = {
         key: getattr(file, key) for key in ("joints", "frames", "conventions", "pairs", "detectors")
     }
-    entries = [((section, name), entry) for section, named in sections.items() for name, entry in named.items()]
+    entries: list[tuple[Where, Any]] = [
+        ((section, name), entry) for section, named in sections.items() for name, entry in named.items()
+    ]
     if file.adjacent:
         entries.append((("adjacent",), file.adjacent))
     entries += [(("spheres", n, i), e) for n, rows in file.spheres.items() for i, e in enumerate(rows)]

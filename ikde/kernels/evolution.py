@@ -98,6 +98,13 @@ def find_best(score):
 
 
 @inline_kernel
+def fill_start(lower, upper, state, work):
+    """A member of the first population, drawn uniformly from its ranges."""
+    for k in range(work.trial.size):
+        work.trial[k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
+
+
+@inline_kernel
 def fill_trial(search, lower, upper, state, work, i, best):
     """Mutation, binomial crossover and bound repair: the trial that challenges member `i`."""
     joints = work.trial.size
@@ -142,8 +149,7 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
     for generation in range(search.generations + 1):
         for i in range(population):
             if generation == 0:
-                for k in range(work.trial.size):
-                    work.trial[k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
+                fill_start(lower, upper, state, work)
             else:
                 fill_trial(search, lower, upper, state, work, i, best)
             cost, depth, meets = score_point(robot, detector, target, index, search, work.trial, work, work.score[i])

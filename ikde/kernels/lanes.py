@@ -28,10 +28,10 @@ def set_box(ranges, first_box, attempt, out_lower, out_upper):
 @kernel
 def is_inside(ranges, q):
     """True if every joint of `q` [N] is inside its range."""
+    outside = 0
     for k in range(q.size):
-        if not ranges[0, k] <= q[k] <= ranges[1, k]:
-            return False
-    return True
+        outside += not ranges[0, k] <= q[k] <= ranges[1, k]
+    return outside == 0
 
 
 @kernel

@@ -40,7 +40,7 @@ def draw_members(state, population, current, out_r):
 
 
 @inline_kernel
-def mutate(strategy, x, i, best, r, F, k):
+def mutate(strategy, x, i, best, r, F, k):  # noqa: PLR0911 - a formula a line
     """Coordinate `k` of the donor v for member `i` of the population `x` [NP, N]."""
     if strategy == RAND_1:
         return x[r[0], k] + F * (x[r[1], k] - x[r[2], k])

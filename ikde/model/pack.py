@@ -102,7 +102,7 @@ def _map(T: Floats, p: Floats) -> Floats:
 
 
 def _ancestors(bodies: tuple[Body, ...], last: int) -> list[bool]:
-    """For every body: does it carry body `last`, or is it that body?"""
+    """Whether each body carries body `last` or is that body."""
     carries = [False] * len(bodies)
     while last != 0:
         carries[last] = True
@@ -122,5 +122,5 @@ def _ints(values: ArrayLike) -> Ints:
     return array
 
 
-def _table(rows: Sequence[ArrayLike], columns: int) -> Ints:
+def _table(rows: Sequence[Sequence[int]], columns: int) -> Ints:
     return _ints(np.reshape(rows, (-1, columns)))

@@ -38,7 +38,7 @@ def rotation_from_quat_wxyz(quat_wxyz: Floats) -> Floats:
 
 
 def rotation_with_z(axis: Floats) -> Floats:
-    """Some rotation whose z axis is the unit vector `axis`: exact for the coordinate axes, the identity for z itself."""
+    """Some rotation whose z axis is the unit vector `axis`; exact for coordinate axes, the identity for z itself."""
     axis = np.asarray(axis, dtype=float)
     helper = np.eye(3)[(int(np.argmax(np.abs(axis))) + 2) % 3]
     x = np.cross(helper, axis)

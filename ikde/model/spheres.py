@@ -26,7 +26,7 @@ class Sphere:
 
 def row_offsets(row: SphereRow, length_m: float) -> Floats:
     """Where a row's centres stand along its line, measured from the middle [count], m."""
-    steps = np.arange(row.count) - 0.5 * (row.count - 1)
+    steps = np.arange(row.count, dtype=np.float64) - 0.5 * (row.count - 1)
     if row.count == 1:
         return steps
     return steps * (2.0 * row.radius_m if row.spacing == "touching" else length_m / (row.count - 1))

@@ -51,7 +51,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
             for name, d in robot.detectors.items()
         },
         "default_detector": robot.default_detector,
-        "provenance": {kind: count for kind, count in Counter(p.kind for p in robot.provenance.values()).items()},
+        "provenance": dict(Counter(p.kind for p in robot.provenance.values())),
     }
 
 

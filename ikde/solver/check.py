@@ -1,4 +1,4 @@
-"""Is a configuration free of self-collision, and by how much, pair by pair?"""
+"""Whether a configuration is free of self-collision, and by how much, pair by pair."""
 
 from dataclasses import dataclass
 

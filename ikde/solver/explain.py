@@ -137,4 +137,5 @@ def _tolerance_hint(problem: Problem, graded: Verification) -> str | None:
     close = close and graded.orientation_error_rad <= GENEROUS * settings.orientation_tolerance_rad
     if not close or graded.self_collision:
         return "more generations or restarts, or another target"
-    return f"a tolerance of {graded.position_error_m:.2g} m and {graded.orientation_error_rad:.2g} rad would accept the best"
+    found = f"{graded.position_error_m:.2g} m and {graded.orientation_error_rad:.2g} rad"
+    return f"a tolerance of {found} would accept the best"

@@ -60,7 +60,7 @@ class SolveSettings:
 
     @classmethod
     def for_method(cls, method: str) -> "SolveSettings":
-        """Defaults of a method: `auto` is ikde's choice, `de` is the paper's search at the paper's accuracy (5e-5 m)."""
+        """Defaults of a method: `auto` is ikde's choice, `de` the paper's search at the paper's accuracy (5e-5 m)."""
         if method == "auto":
             return cls(update="in_place")
         if method == "de":

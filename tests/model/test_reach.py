@@ -85,27 +85,21 @@ def test_a_planar_arm_never_leaves_its_plane():
     assert reach_excess_m(robot, np.array([0.1, 0.2, 0.001]), robot.lower, robot.upper) == pytest.approx(0.001)
 
 
-def find_farthest_along(robot, direction, freeze):
-    """How far the tool gets along a direction: coordinate ascent over the joints that may move."""
-    q, best = robot.home.copy(), -np.inf
-    for width in np.geomspace(1.0, 1e-6, 40):
-        for k in freeze:
-            for value in np.clip(q[k] + width * np.linspace(-1, 1, 9), robot.lower[k], robot.upper[k]):
-                trial = q.copy()
-                trial[k] = value
-                reached = tool_position(robot, trial) @ direction
-                if reached > best:
-                    q, best = trial, reached
-    return q
+def stretch_upwards(qiao):
+    """Arm straight up; q4 and q5 bring the tool's line into it: the highest that the tool gets."""
+    q = dict.fromkeys(qiao.joint_names, 0.0)
+    q["q4"], q["q5"] = np.arctan2(0.0823 + 0.2, 0.09465), -0.5 * np.pi
+    return np.array(list(q.values()))
 
 
-def test_the_bound_allows_qiao_no_millimetre_more_than_it_overestimates(qiao):
-    """With the base frozen, the stretched arm in the plane of q2, q3, q4 is as long as the bound, up to q5's branch."""
-    lower, upper = qiao.lower, qiao.upper
-    lower[:3] = upper[:3] = 0.0
-    q = find_farthest_along(qiao, np.array([1.0, 0.0, 0.0]), range(3, 9))
-    p = tool_position(qiao, q)
-    assert reach_excess_m(qiao, p, lower, upper) <= ROUNDING
+def test_the_stretched_arm_of_qiao_is_within_the_bound_and_0_1_m_more_is_not(qiao):
+    """The bound takes the wrist's right angle for stretched, so it allows 80 mm that the arm does not have."""
+    p = tool_position(qiao, stretch_upwards(qiao))
+    assert p[2] == pytest.approx(0.1 + 0.38 + 0.0892 + 0.425 + 0.39225 + np.hypot(0.09465, 0.2823))
+    assert reach_excess_m(qiao, p, qiao.lower, qiao.upper) == 0.0
+    assert reach_excess_m(qiao, p + [0.0, 0.0, 0.1], qiao.lower, qiao.upper) > 1e-5
+    highest = reach_excess_m(qiao, p + [0.0, 0.0, 1.0], qiao.lower, qiao.upper)
+    assert reach_excess_m(qiao, p + [0.0, 0.0, 1.001], qiao.lower, qiao.upper) == pytest.approx(highest + 0.001)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
