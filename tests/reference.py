@@ -128,7 +128,7 @@ def compute_orientation_error(T_world_tool, target):
 
 
 def place_row(row, start, end):
-    """Centres of a row between two points: the middle +- multiples of 2R, or an even share [Qiao2021, eq. 12, 13, 16]."""
+    """Centres of a row between two points: multiples of 2R about the middle, or even [Qiao2021, eq. 12, 13, 16]."""
     if row.count == 1:
         return [0.5 * (start + end)]
     if row.spacing == "even":
@@ -139,7 +139,7 @@ def place_row(row, start, end):
 
 
 def list_spheres(robot, detector, q, *, by_transformation=False):
-    """All spheres that the detector's pairs look at: (component, centre [3] in the world, radius), component by component.
+    """All spheres that the detector's pairs look at, component by component: (component, world centre [3], radius).
 
     By key points the row is laid between the key points where they are now. By transformation it is laid once, at
     q = 0, and then carried along by the frame of its first key point.
@@ -156,8 +156,9 @@ def list_spheres(robot, detector, q, *, by_transformation=False):
             for centre in place_row(row, now[row.start][:3, 3], now[row.end][:3, 3]):
                 if by_transformation:
                     p_start = np.linalg.inv(T_zero[row.start]) @ [*centre, 1.0]
-                    centre = (T_world[row.start] @ p_start)[:3]
-                spheres.append((component, centre, row.radius_m))
+                    spheres.append((component, (T_world[row.start] @ p_start)[:3], row.radius_m))
+                else:
+                    spheres.append((component, centre, row.radius_m))
     return spheres
 
 
@@ -201,12 +202,12 @@ def make_directions(rings, columns):
 
 
 def compute_surface_from_centres(centres, radii, directions):
-    """p = C + R (cos m, sin m cos n, sin m sin n) [Qiao2021, eq. 11]: [S, K, 3] from centres [S, 3]."""
+    """Points p = C + R (cos m, sin m cos n, sin m sin n) [Qiao2021, eq. 11]: [S, K, 3] from centres [S, 3]."""
     return np.array([[c + r * d for d in directions] for c, r in zip(centres, radii, strict=True)])
 
 
 def compute_surface_gap(points, radii, group_of, pairs, covering_angle):
-    """Smallest |p_i - p_j| - covering_angle (R_i + R_j) over the pairs of groups [Qiao2021, eq. 18, 20]; brute force."""
+    """Smallest |p_i - p_j| - covering_angle (R_i + R_j) over the pairs, by brute force [Qiao2021, eq. 18, 20]."""
     smallest, closest = np.inf, -1
     for index, (a, b) in enumerate(pairs):
         for i in np.flatnonzero(group_of == a):

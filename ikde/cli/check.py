@@ -16,6 +16,7 @@ from ikde.cli.options import (
     RobotOption,
     SafeDistanceOption,
     UnitOption,
+    check_drawable,
     draw,
     read_detector,
     read_q,
@@ -48,6 +49,7 @@ def check(
     values = read_q(model, q, unit, angles, convention)
     judge = read_detector(model, detector, pairs, safe_distance, unit)
     result = check_configuration(model, values, judge)
+    check_drawable(plot)
     if as_json:
         print_json(check_json(model, result))
     else:

@@ -11,6 +11,7 @@ from ikde.cli.options import (
     QOption,
     RobotOption,
     UnitOption,
+    check_drawable,
     draw,
     read_q,
 )
@@ -40,6 +41,7 @@ def fk(
     model = load_robot(robot)
     values = read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
+    check_drawable(plot)
     if as_json:
         print_json(forward_json(model, values, frames, outside))
     else:

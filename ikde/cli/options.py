@@ -26,6 +26,8 @@ class AngleUnit(StrEnum):
     deg = "deg"
 
 
+FIGURE_ENDINGS = (".png", ".svg", ".pdf")
+
 RobotOption = Annotated[
     str, typer.Option("--robot", metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")
 ]
@@ -110,6 +112,18 @@ def read_freeze(
     given = {name: value for name, value in frozen.items() if value is not None}
     own = dict(zip(robot.joint_names, read_joints(robot, given, convention, default=robot.home), strict=True))
     return {name: float(own[name]) if name in given else None for name in frozen}
+
+
+def check_drawable(path: Path | None) -> None:
+    """Find out before the work is done that a figure cannot be written."""
+    from ikde.errors import FileError
+
+    if path is None:
+        return
+    if path.suffix.lower() not in FIGURE_ENDINGS:
+        raise FileError(path, f"cannot be drawn: expected a name that ends in {', '.join(FIGURE_ENDINGS)}")
+    if not path.parent.is_dir() or path.is_dir():
+        raise FileError(path, "cannot be written: expected a file name in a folder that exists")
 
 
 def draw(

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 
@@ -25,6 +26,15 @@ def print_note(text: str) -> None:
 def use_color() -> bool:
     """Colour only for a terminal."""
     return sys.stdout.isatty()
+
+
+def working(text: str) -> AbstractContextManager[Any]:
+    """A spinner on stderr while the block runs, if somebody is looking."""
+    if not sys.stderr.isatty():
+        return nullcontext()
+    from rich.console import Console
+
+    return Console(stderr=True).status(text)
 
 
 def announce_compile() -> None:

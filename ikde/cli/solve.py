@@ -17,12 +17,13 @@ from ikde.cli.options import (
     RobotOption,
     SafeDistanceOption,
     UnitOption,
+    check_drawable,
     draw,
     read_detector,
     read_freeze,
     read_q,
 )
-from ikde.cli.output import announce_compile, print_json, print_result, use_color
+from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
 
 Vector = tuple[float, float, float]
@@ -134,17 +135,19 @@ def solve(
     judge = read_detector(model, detector, pairs, safe_distance, unit)
     start = None if near is None else read_q(model, near, unit, angles, convention)
     frozen = read_freeze(model, freeze, unit, angles, convention)
-    results = solve_distinct(
-        model,
-        target,
-        count,
-        settings,
-        seed=seed,
-        detector=judge,
-        near=start,
-        freeze=frozen,
-        announce_compile=announce_compile,
-    )
+    check_drawable(plot)
+    with working("searching ..."):
+        results = solve_distinct(
+            model,
+            target,
+            count,
+            settings,
+            seed=seed,
+            detector=judge,
+            near=start,
+            freeze=frozen,
+            announce_compile=announce_compile,
+        )
     if as_json:
         objects = [solve_json(model, result, convention) for result in results]
         print_json(objects[0] if count == 1 else {**objects[0], "solutions": objects})

@@ -7,7 +7,7 @@ from ikde.io.units import LENGTHS_M
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.report.render import make_table, render
-from ikde.report.units import Units
+from ikde.report.units import Units, format_fixed
 from ikde.solver.check import CheckResult
 
 
@@ -29,18 +29,13 @@ def format_forward(
     table = make_table("frame", f">x [{unit}]", f">y [{unit}]", f">z [{unit}]", "x axis", "z axis")
     for name, T in Ts_world.items():
         digits = 1 if unit == "mm" else 4
-        origin = [_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
+        origin = [format_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
         table.add_row("tool" if name == robot.tool else name, *origin, _direction(T[:3, 0]), _direction(T[:3, 2]))
     return render(table, *_outside_line(outside), color=color)
 
 
 def _direction(axis: Floats) -> str:
-    return " ".join(f"{_fixed(value, 3):>6}" for value in axis)
-
-
-def _fixed(value: float, digits: int) -> str:
-    """A number with fixed digits and no minus zero."""
-    return f"{round(float(value), digits) + 0.0:.{digits}f}"
+    return " ".join(f"{format_fixed(value, 3):>6}" for value in axis)
 
 
 def _outside_line(outside: tuple[str, ...]) -> list[str]:

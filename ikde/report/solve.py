@@ -7,7 +7,7 @@ import numpy as np
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
 from ikde.report.render import make_table, render
-from ikde.report.units import Units
+from ikde.report.units import Units, format_fixed
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
@@ -63,7 +63,7 @@ def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: st
         limits = [units.joint_value(joint, limit + offset) for limit in (joint.lower, joint.upper)]
         table.add_row(
             joint.name,
-            f"{units.joint_value(joint, value):.6f}",
+            format_fixed(units.joint_value(joint, value), 6),
             units.joint_unit(joint),
             f"{limits[0]:.4g}",
             _bar(own, joint.lower, joint.upper),

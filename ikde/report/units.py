@@ -32,3 +32,8 @@ class Units:
     def joint_value(self, joint: Joint, value: float) -> float:
         """Value of one joint in its unit."""
         return value / (LENGTHS_M[self.length] if joint.kind == "prismatic" else ANGLES_RAD[self.angle])
+
+
+def format_fixed(value: float, digits: int) -> str:
+    """A number with fixed digits and no minus zero."""
+    return f"{round(float(value), digits) + 0.0:.{digits}f}"

@@ -107,7 +107,7 @@ def _try_remedies(problem: Problem, target: Target, seed: int) -> str | None:
     if problem.frozen:
         free = problem.with_ranges(robot.lower, robot.upper)
         if _probe(free, target, seed).counts[0, REACHED]:
-            return f"free {', '.join(problem.frozen)}: a solution was found with it unfrozen"
+            return f"free {', '.join(problem.frozen)}: a solution was found without freezing"
     lower, upper = _widened(problem)
     found = _probe(problem.with_ranges(lower, upper), target, seed)
     if found.counts[0, REACHED]:

@@ -16,7 +16,7 @@ from ikde.solver.settings import SolveSettings
 Freeze = Mapping[str, float | None] | Iterable[str]
 
 NEAR_FIRST_BOX = 1.0 / 64.0  # half-width of the first box around `near`, as a share of each joint range
-ROUNDING = 1e-12  # m, rad: kernels aim this much below a tolerance, so that rounding cannot turn `verify`'s verdict
+ROUNDING = 1e-12  # m, rad: the search keeps this far from every bound, so that rounding cannot turn `verify`'s verdict
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -12,7 +12,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.lanes import COUNTS, REACHED, solve_lane
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Target
-from ikde.solver.problem import Problem, pack_search
+from ikde.solver.problem import ROUNDING, Problem, pack_search
 
 ATTEMPTS_PER_CALL = 16  # Python hears Ctrl-C between calls
 
@@ -49,6 +49,7 @@ def search(
     how the attempts are cut into calls.
     """
     robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)
     settings, packed, count = pack_search(problem), pack_targets(targets), len(targets)
     q, score = np.zeros((count, len(problem.robot.joints))), np.full((count, 2), np.inf)
     counts = np.zeros((count, COUNTS), dtype=np.int64)

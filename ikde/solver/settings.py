@@ -62,7 +62,7 @@ class SolveSettings:
     def for_method(cls, method: str) -> "SolveSettings":
         """Defaults of a method: `auto` is ikde's choice, `de` the paper's search at the paper's accuracy (5e-5 m)."""
         if method == "auto":
-            return cls(update="in_place")
+            return cls(update="in_place", restarts=40)
         if method == "de":
             return cls(position_tolerance_m=5e-5, collision="reject")
         raise InputError(f"no method is called {method!r}; expected one of {', '.join(get_args(Method))}", ("method",))

@@ -11,6 +11,7 @@ import pytest
 import ikde
 from ikde.kernels import jit
 
+ROOT = Path(__file__).parents[2]
 needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 
 
@@ -89,19 +90,20 @@ from tests.random_robots import random_robot
 settings = ikde.SolveSettings(population=8, generations=5, restarts=2)
 for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
     p = ikde.forward(robot, robot.home)[robot.tool][:3, 3]
-    for target in (ikde.Target(p), ikde.Target(p, axis_world_tool=[0, 0, 1]), ikde.Target(p, R_world_tool=[[1, 0, 0], [0, 1, 0], [0, 0, 1]])):
+    pose = ikde.Target(p, R_world_tool=[[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    for target in (ikde.Target(p), ikde.Target(p, axis_world_tool=[0, 0, 1]), pose):
         for detector in (None, "none"):
             for collision in ("reject", "feasibility"):
-                ikde.solve(robot, target, settings.with_changes(collision=collision), detector=detector, near=robot.home)
+                changed = settings.with_changes(collision=collision)
+                ikde.solve(robot, target, changed, detector=detector, near=robot.home)
                 ikde.solve(robot, target, settings, detector=detector, freeze=robot.joint_names[:1])
-    ikde.solve_many(robot, [target, target], settings, threads=2)
+    ikde.solve_many(robot, [pose, pose], settings, threads=2)
 print(len(solve_lane.signatures), len(compute_figures.signatures))
 """
 
 
 @needs_compiler
 def test_kernels_called_from_the_host_have_one_signature():
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", ONE_SIGNATURE], capture_output=True, text=True, timeout=300, check=False
-    )
+    command = [sys.executable, "-W", "error", "-c", ONE_SIGNATURE]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
     assert done.stdout.split() == ["1", "1"], done.stderr

@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from ikde.kernels.lanes import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, OUTSIDE, REACHED, is_inside, set_box, solve_lane
+from ikde.kernels.lanes import (
+    ATTEMPTS,
+    COLLIDING,
+    COUNTS,
+    EVALUATIONS,
+    OUTSIDE,
+    REACHED,
+    is_inside,
+    set_box,
+    solve_lane,
+)
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import make_problem, pack_search

@@ -4,12 +4,14 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numba
 import pytest
 
 import ikde
 
+ROOT = Path(__file__).parents[2]
 SCRIPT = """
 import json
 from tests.kernels.test_parity import solve_all
@@ -44,7 +46,13 @@ def solve_all():
 def solve_in_a_new_process(*options, **environment):
     command = [sys.executable, "-W", "error", *options, "-c", SCRIPT]
     done = subprocess.run(
-        command, env={**os.environ, **environment}, capture_output=True, text=True, timeout=300, check=False
+        command,
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -85,7 +93,7 @@ def test_a_full_solve_of_uncompiled_kernels_gives_the_same_bits(qiao):
     )
     command = [sys.executable, "-W", "error", *RUN_UNCOMPILED, "-c", script]
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600, check=True)
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=600, check=True)
     result = ikde.solve(qiao, ikde.Target([0.8, 0.5, 1.0]), seed=4)
     assert done.stdout.split() == ["True", result.q.tobytes().hex()]
 

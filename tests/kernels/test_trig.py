@@ -45,7 +45,9 @@ def test_sine_and_cosine_are_within_1_7e_16(limit, rng):
 @needs_long_double
 def test_sine_and_cosine_are_within_1_7e_16_around_the_quarter_turns(rng):
     quarters = rng.integers(-60_000, 60_000, 100_000) * (math.pi / 4)
-    assert largest_error(quarters + rng.normal(size=quarters.size) * 10.0 ** rng.uniform(-16, -1, quarters.size)) < 1.7e-16
+    assert (
+        largest_error(quarters + rng.normal(size=quarters.size) * 10.0 ** rng.uniform(-16, -1, quarters.size)) < 1.7e-16
+    )
 
 
 @few
@@ -92,7 +94,9 @@ def test_the_angle_of_no_sides_is_zero():
     assert angle_from_sides(0.0, 0.0) == 0.0
 
 
-@pytest.mark.parametrize(("opposite", "adjacent", "angle"), [(0.0, 2.0, 0.0), (0.0, -2.0, math.pi), (3.0, 0.0, math.pi / 2)])
+@pytest.mark.parametrize(
+    ("opposite", "adjacent", "angle"), [(0.0, 2.0, 0.0), (0.0, -2.0, math.pi), (3.0, 0.0, math.pi / 2)]
+)
 def test_zero_a_right_angle_and_pi_are_exact(opposite, adjacent, angle):
     assert angle_from_sides(opposite, adjacent) == angle
 

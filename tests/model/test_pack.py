@@ -18,7 +18,11 @@ INTEGERS = {"bodies", "frame_body", "components", "pairs", "rows", "kind"}
 
 
 def packed_arrays(robot):
-    targets = [Target([1, 2, 3]), Target([1, 2, 3], axis_world_tool=[0, 1, 1]), Target([1, 2, 3], R_world_tool=np.eye(3))]
+    targets = [
+        Target([1, 2, 3]),
+        Target([1, 2, 3], axis_world_tool=[0, 1, 1]),
+        Target([1, 2, 3], R_world_tool=np.eye(3)),
+    ]
     detectors = (pack_detector(robot, None), pack_detector(robot, robot.detector(None)))
     for packed in (pack_robot(robot), *detectors, pack_targets(targets)):
         yield from ((name, value) for name, value in packed._asdict().items() if name != "safe_distance")
@@ -101,7 +105,9 @@ def test_components_in_no_pair_are_not_packed():
 
 def test_targets_keep_their_kind_and_pose():
     R = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
-    packed = pack_targets([Target([1, 2, 3], R_world_tool=R), Target([4, 5, 6]), Target([7, 8, 9], axis_world_tool=[2, 0, 0])])
+    packed = pack_targets(
+        [Target([1, 2, 3], R_world_tool=R), Target([4, 5, 6]), Target([7, 8, 9], axis_world_tool=[2, 0, 0])]
+    )
     np.testing.assert_array_equal(packed.kind, [2, 0, 1])
     np.testing.assert_array_equal(packed.T_world_tool[:, :, 3], [[1, 2, 3], [4, 5, 6], [7, 8, 9]])
     np.testing.assert_array_equal(packed.T_world_tool[0, :, :3], R)

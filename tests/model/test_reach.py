@@ -88,7 +88,7 @@ def test_a_planar_arm_never_leaves_its_plane():
 def stretch_upwards(qiao):
     """Arm straight up; q4 and q5 bring the tool's line into it: the highest that the tool gets."""
     q = dict.fromkeys(qiao.joint_names, 0.0)
-    q["q4"], q["q5"] = np.arctan2(0.0823 + 0.2, 0.09465), -0.5 * np.pi
+    q["q4"], q["q5"] = np.arctan2(0.0823 + 0.2, 0.09465), 0.5 * np.pi
     return np.array(list(q.values()))
 
 
@@ -96,10 +96,13 @@ def test_the_stretched_arm_of_qiao_is_within_the_bound_and_0_1_m_more_is_not(qia
     """The bound takes the wrist's right angle for stretched, so it allows 80 mm that the arm does not have."""
     p = tool_position(qiao, stretch_upwards(qiao))
     assert p[2] == pytest.approx(0.1 + 0.38 + 0.0892 + 0.425 + 0.39225 + np.hypot(0.09465, 0.2823))
-    assert reach_excess_m(qiao, p, qiao.lower, qiao.upper) == 0.0
-    assert reach_excess_m(qiao, p + [0.0, 0.0, 0.1], qiao.lower, qiao.upper) > 1e-5
-    highest = reach_excess_m(qiao, p + [0.0, 0.0, 1.0], qiao.lower, qiao.upper)
-    assert reach_excess_m(qiao, p + [0.0, 0.0, 1.001], qiao.lower, qiao.upper) == pytest.approx(highest + 0.001)
+    excess = [
+        reach_excess_m(qiao, np.array([p[0], p[1], p[2] + more]), qiao.lower, qiao.upper)
+        for more in (0.0, 0.1, 1.0, 1.001)
+    ]
+    assert excess[0] == 0.0
+    assert excess[1] > 1e-5
+    assert excess[3] == pytest.approx(excess[2] + 0.001)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])

@@ -82,7 +82,9 @@ def make_sphere(p, radius_m):
 
 def test_a_bounding_sphere_holds_its_spheres(rng):
     for count in range(1, 12):
-        spheres = [make_sphere(p, r) for p, r in zip(rng.normal(size=(count, 3)), rng.uniform(0.1, 1, count), strict=True)]
+        spheres = [
+            make_sphere(p, r) for p, r in zip(rng.normal(size=(count, 3)), rng.uniform(0.1, 1, count), strict=True)
+        ]
         middle, radius = bounding_sphere(spheres)
         assert all(np.linalg.norm(s.p_body_sphere - middle) + s.radius_m < radius for s in spheres)
 

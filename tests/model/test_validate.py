@@ -92,7 +92,10 @@ def test_branches_are_sorted_depth_first():
         make_frame("tool", "right"),
         make_frame("left_tip", "left"),
         *make_draft(
-            frames=(make_frame("a", "world", joint="slide", axis=(1, 0, 0)), make_frame("b", "a", joint="turn", axis=(0, 0, 1)))
+            frames=(
+                make_frame("a", "world", joint="slide", axis=(1, 0, 0)),
+                make_frame("b", "a", joint="turn", axis=(0, 0, 1)),
+            )
         ).frames,
     )
     plain = {"approximations": {}, "pair_lists": {}, "detectors": {}, "default_detector": "none"}
@@ -142,7 +145,9 @@ def test_a_joint_that_moves_two_frames():
 
 
 def test_the_world_cannot_be_defined():
-    reject("is the root and cannot be defined", "frames", "world", frames=(*make_draft().frames, make_frame("world", "a")))
+    reject(
+        "is the root and cannot be defined", "frames", "world", frames=(*make_draft().frames, make_frame("world", "a"))
+    )
 
 
 def test_an_unknown_parent_names_the_nearest_frame():
