@@ -29,13 +29,14 @@ def plot_pose(robot: Robot, q: Floats, *, detector: Detector | None = None, targ
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.0, 8.0), dpi=130, layout="constrained")
-    axes: Any = figure.add_subplot(projection="3d")
+    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    _set_view(axes, robot, q)
     _draw_skeleton(axes, robot, q)
     title = f"{robot.name}"
     if detector is not None:
         title += _draw_spheres(axes, robot, detector, q)
     if target is not None:
-        axes.scatter(*target.p_world_tool, marker="*", s=160, color=TARGET, label="target", depthshade=False)
+        axes.scatter(*target.p_world_tool, marker="*", s=160, color=TARGET, label="target", depthshade=False, zorder=11)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=title)
     _set_equal(axes, robot, detector, q, target)
     axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
@@ -132,16 +133,30 @@ def _draw_sphere(axes: Any, centre: Floats, radius: float, color: str, label: st
         centre[1] + radius * y,
         centre[2] + radius * z,
         color=color,
-        alpha=0.32,
+        alpha=0.4,
         linewidth=0,
         antialiased=True,
         shade=True,
+        zorder=1.0 + 0.01 * _nearness(axes, centre),
     )
     surface.set_label(label or "_nolegend_")
 
 
+def _set_view(axes: Any, robot: Robot, q: Floats) -> None:
+    """Look at the robot from its right, a little from the front and from above."""
+    heading = compute_frames(robot, q)[_chain(robot)[0]][:2, 0]
+    axes.view_init(elev=16, azim=float(np.degrees(np.arctan2(heading[1], heading[0]))) - 68)
+
+
+def _nearness(axes: Any, point: Floats) -> float:
+    """How near a point is to the eye: spheres are drawn from far to near, lines and marks above them all."""
+    elevation, azimuth = np.radians([axes.elev, axes.azim])
+    towards_eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+    return float(np.dot(point, towards_eye))
+
+
 def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, target: Target | None) -> None:
-    """One scale for all three axes, around everything that is drawn, seen from the robot's side."""
+    """One scale for all three axes, around everything that is drawn."""
     Ts_world = compute_frames(robot, q)
     chain = _chain(robot)
     lows = [Ts_world[name][:3, 3] for name in chain]
@@ -158,5 +173,3 @@ def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, ta
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     axes.set_zlim(low[2], low[2] + 2 * half)
     axes.set_box_aspect((1, 1, 1), zoom=1.08)
-    heading = Ts_world[chain[0]][:2, 0]
-    axes.view_init(elev=16, azim=float(np.degrees(np.arctan2(heading[1], heading[0]))) - 68)
