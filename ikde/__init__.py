@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.solve import solve as solve
     from ikde.solver.solve import solve_distinct as solve_distinct
     from ikde.solver.solve import solve_many as solve_many
+    from ikde.solver.surface import check_surface as check_surface
     from ikde.solver.verify import Verification as Verification
     from ikde.solver.verify import verify as verify
 
@@ -54,6 +55,7 @@ _HOME = {
     "solve_distinct": "ikde.solver.solve",
     "forward": "ikde.solver.forward",
     "check": "ikde.solver.check",
+    "check_surface": "ikde.solver.surface",
     "CheckResult": "ikde.solver.check",
     "verify": "ikde.solver.verify",
     "Verification": "ikde.solver.verify",

@@ -1,0 +1,62 @@
+"""Self-collision judged by surface points, as the paper did it before it compared centres: slow, for comparison."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.frames import compute_bodies
+from ikde.kernels.spheres import compute_centres
+from ikde.kernels.surface import compute_surface_from_centres, compute_surface_gap
+from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.robot import Detector, Robot
+from ikde.model.surface import M_STEPS, N_STEPS, covering_angle_rad, surface_directions
+from ikde.solver.joints import JointValues, read_joints
+
+Rule = Literal["eq. 18", "eq. 20"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SurfaceCheck:
+    """A verdict by surface points."""
+
+    collision: bool
+    gap_m: float
+    """Smallest distance between surface points of a pair, less d_i + d_j under eq. 20."""
+    pair: tuple[str, str]
+
+
+def check_surface(
+    robot: Robot,
+    q: JointValues,
+    detector: str | Detector | None = None,
+    *,
+    rule: Rule = "eq. 20",
+    m_steps: int = M_STEPS,
+    n_steps: int = N_STEPS,
+) -> SurfaceCheck:
+    """Judge one configuration by the points on its spheres [Qiao2021, eq. 18, 20].
+
+    `eq. 18` calls it a collision if two points coincide, so it misses contacts; `eq. 20` if two points are within
+    d_i + d_j + safe distance, with d_i computed from the grid. A sphere deep inside another touches no surface and is
+    seen by neither: centres ([Qiao2021, eq. 21], `check`) do not have that flaw.
+
+    Raises:
+        InputError: for a detector without pairs, and as `check` does.
+    """
+    chosen = robot.detector(detector)
+    if chosen is None or not robot.pair_lists[chosen.pairs]:
+        raise InputError("expected a detector with pairs", ("detector",))
+    arrays, packed = pack_robot(robot), pack_detector(robot, chosen)
+    directions = surface_directions(m_steps, n_steps)
+    T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))
+    centres = np.empty((3, packed.radius.size))
+    points = np.empty((packed.radius.size, len(directions), 3))
+    compute_bodies(arrays, read_joints(robot, q), T_world_body)
+    compute_centres(packed, T_world_body, centres)
+    compute_surface_from_centres(packed, centres, directions, points)
+    covering = covering_angle_rad(m_steps, n_steps) if rule == "eq. 20" else 0.0
+    gap, pair = compute_surface_gap(packed, points, covering)
+    limit = packed.safe_distance if rule == "eq. 20" else 0.0
+    return SurfaceCheck(collision=gap <= limit, gap_m=gap, pair=robot.pair_lists[chosen.pairs][pair])

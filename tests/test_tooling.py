@@ -1,0 +1,23 @@
+"""Style, types and the floors between packages, as part of the one test command."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+TOOLS = {
+    "style": ["ruff", "check", "."],
+    "format": ["ruff", "format", "--check", "."],
+    "types": ["pyright"],
+    "floors": ["lint-imports"],
+}
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_the_house_holds(name):
+    program, *arguments = TOOLS[name]
+    command = [str(Path(sys.executable).parent / program), *arguments]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
