@@ -1,6 +1,6 @@
 """Write the README's tables from the recorded results, so that nobody types a figure.
 
-    python benchmarks/readme_tables.py
+python benchmarks/readme_tables.py
 """
 
 import json

@@ -3,6 +3,9 @@
 A target that cannot be reached is not an error: it is a `SolveResult` with a `StopReason`.
 """
 
+from collections.abc import Iterable
+from difflib import get_close_matches
+
 
 class IkdeError(Exception):
     """Anything ikde raises on purpose."""
@@ -37,3 +40,9 @@ def format_path(where: tuple[str | int, ...]) -> str:
     """Write `("spheres", "typical", 2, "radius")` as `spheres.typical[2].radius`."""
     text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in where)
     return text.removeprefix(".")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """` (did you mean 'x'?)`, or nothing when no known name is close."""
+    close = get_close_matches(name, list(known), n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""

@@ -182,9 +182,10 @@ def compute_clearance(robot, detector, q):
 
 
 def compute_depth(robot, detector, q):
-    """Penetration beyond the safe distance, m: 0 when clearance > safe distance [Qiao2021, eq. 21]."""
+    """Penetration beyond the safe distance, m: 0 when clearance > safe distance [Qiao2021, eq. 21]; in nm steps."""
     clearance, _ = compute_clearance(robot, detector, q)
-    return 0.0 if clearance > detector.safe_distance_m else max(detector.safe_distance_m - clearance, 1e-12)
+    steps = max(np.rint((detector.safe_distance_m - clearance) / 1e-9), 1.0)
+    return 0.0 if clearance > detector.safe_distance_m else float(steps * 1e-9)
 
 
 # ---- surface points

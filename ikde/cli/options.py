@@ -78,7 +78,6 @@ def read_detector(
 
     from ikde.errors import InputError
     from ikde.io.units import LENGTHS_M
-    from ikde.model.validate import check_detector_components, nearest
 
     detector = robot.detector(name)
     if detector is None:
@@ -86,11 +85,7 @@ def read_detector(
     if pairs is not None:
         if pairs not in robot.pair_lists:
             known = ", ".join(robot.pair_lists)
-            raise InputError(
-                f"no pair list is called {pairs!r}{nearest(pairs, robot.pair_lists)}; {robot.name} has {known}",
-                ("pairs",),
-            )
-        check_detector_components(robot, detector.spheres, pairs, ("pairs",))
+            raise InputError(f"no pair list is called {pairs!r}; {robot.name} has {known}", ("pairs",))
         detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}")
     if safe_distance is not None:
         if not 0.0 <= safe_distance < float("inf"):

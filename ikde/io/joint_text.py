@@ -5,11 +5,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import read_yaml
 from ikde.model.robot import Robot
-from ikde.model.validate import nearest
 
 MINUS_SIGNS = str.maketrans("−–—‐‑", "-----")  # a row pasted from a paper carries a typographer's minus
 SEPARATORS = re.compile(r"[\s,;()\[\]]+")

@@ -5,13 +5,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
 from ikde.model.robot import NO_DETECTOR, Detector, Frame, Joint, Provenance, Robot, SphereRow
 from ikde.model.rotation import rotation_from_rpy
-from ikde.model.validate import NON_ADJACENT, check_robot, nearest
+from ikde.model.validate import NON_ADJACENT, check_robot
 
 Name = Annotated[str, StringConstraints(min_length=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, products overflow

@@ -3,11 +3,10 @@
 from functools import lru_cache
 from pathlib import Path
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.io.robot_file import parse_robot
 from ikde.io.yaml_file import read_yaml
 from ikde.model.robot import Robot
-from ikde.model.validate import nearest
 
 FOLDER = Path(__file__).parent.parent / "robots"
 

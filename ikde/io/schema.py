@@ -5,9 +5,8 @@ from typing import Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from ikde.errors import FileError
+from ikde.errors import FileError, nearest
 from ikde.io.yaml_file import Document, Where
-from ikde.model.validate import nearest
 
 EXPECTED = {
     "missing": "this key is missing",

@@ -15,7 +15,7 @@ from ikde.kernels.rng import next_index, next_uniform
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
 IGNORE, REJECT, FEASIBILITY = range(3)
-SMALLEST_DEPTH = 1e-12  # m: spheres that touch exactly at the safe distance collide, with this depth
+DEPTH_STEP = 1e-9  # m: depths are whole steps, at least one, so that rounding noise cannot decide between equals
 
 
 class Workspace(NamedTuple):
@@ -73,7 +73,7 @@ def compute_depth(detector, T_world_body, bounds, centres):
     if not collides(detector, bounds, centres):
         return 0.0
     clearance, _ = compute_clearance(detector, bounds, centres)
-    return max(detector.safe_distance - clearance, SMALLEST_DEPTH)
+    return max(np.rint((detector.safe_distance - clearance) / DEPTH_STEP), 1.0) * DEPTH_STEP
 
 
 @inline_kernel

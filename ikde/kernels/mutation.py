@@ -25,6 +25,7 @@ LARGEST_DRAW = 5
 
 REPAIRS = ("redraw", "clip", "parent", "midpoint", "none")
 REDRAW, CLIP, PARENT, MIDPOINT, NONE = range(5)
+FARTHEST = 1e5  # m or rad: where nothing is repaired a population may run away, and sines end here
 
 
 @inline_kernel
@@ -64,8 +65,10 @@ def mutate(strategy, x, i, best, r, F, k):  # noqa: PLR0911 - a formula a line
 @inline_kernel
 def repair_bound(repair, state, value, parent, lower, upper):
     """Bring one coordinate of a donor back into [lower, upper]; `parent` is the member it would replace."""
-    if lower <= value <= upper or repair == NONE:
+    if lower <= value <= upper:
         return value
+    if repair == NONE:
+        return min(max(value, -FARTHEST), FARTHEST)
     if repair == REDRAW:
         return lower + next_uniform(state) * (upper - lower)
     bound = lower if value < lower else upper

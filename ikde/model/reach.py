@@ -50,21 +50,25 @@ def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Flo
         R = R @ body.T_parent_body[:3, :3]
         slides.append((R @ body.axis, lower[body.joint], upper[body.joint]))
     if not rest:
-        centre, runs = centre + R @ p_body_tool, []
-    else:
-        centre = centre + R @ rest[0].T_parent_body[:3, 3]
-        R = R @ rest[0].T_parent_body[:3, :3]
-        runs = _runs(robot, rest, p_body_tool, lower, upper)
-    gap, slack = _clamp_to_box(p_world_tool - centre, slides)
-    if not runs:
+        gap, slack = _clamp_to_box(p_world_tool - centre - R @ p_body_tool, slides)
         return max(0.0, float(np.linalg.norm(gap)) - slack)
-    axis = R @ rest[0].axis
-    if any(PARALLEL < abs(float(direction @ axis)) < 1.0 - PARALLEL for direction, _, _ in slides):
-        return max(0.0, float(np.linalg.norm(gap)) - slack - sum(run.length for run in runs))
+    centre = centre + R @ rest[0].T_parent_body[:3, 3]
+    axis = R @ rest[0].T_parent_body[:3, :3] @ rest[0].axis
+    runs = _runs(robot, rest, p_body_tool, lower, upper)
+    beyond = sum(run.length for run in runs[1:])
+    if any(_is_oblique(direction, axis) for direction, _, _ in slides):
+        gap, slack = _clamp_to_box(p_world_tool - centre, slides)
+        return max(0.0, float(np.linalg.norm(gap)) - slack - runs[0].length - beyond)
+    gap, slack = _clamp_to_box(p_world_tool - centre - runs[0].along * axis, slides)
     height = float(gap @ axis)
     flat = float(np.linalg.norm(gap - height * axis))
-    outside = np.hypot(max(0.0, flat - runs[0].across), height - runs[0].along)
-    return max(0.0, float(outside) - runs[0].slack - slack - sum(run.length for run in runs[1:]))
+    outside = float(np.hypot(max(0.0, flat - runs[0].across), height))
+    return max(0.0, outside - runs[0].slack - slack - beyond)
+
+
+def _is_oblique(direction: Floats, axis: Floats) -> bool:
+    """True unless two unit vectors are parallel or perpendicular."""
+    return abs(float(direction @ axis)) > PARALLEL and float(np.linalg.norm(np.cross(direction, axis))) > PARALLEL
 
 
 def _chain_to_tool(robot: Robot) -> tuple[list[Body], Floats]:

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
 
 WORLD = "world"
@@ -125,6 +125,7 @@ class Robot:
     def detector(self, choice: "str | Detector | None") -> Detector | None:
         """Resolve a detector: a name, a `Detector`, or None for the robot's default; `"none"` looks at nothing."""
         if isinstance(choice, Detector):
+            check_detector(self, choice, ("detector",))
             return choice
         name = self.default_detector if choice is None else choice
         if name == NO_DETECTOR:
@@ -138,3 +139,21 @@ class Robot:
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
         return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))
+
+
+def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
+    """Raise `InputError` unless the detector's names exist and its approximation describes what its pairs name."""
+    for key, what, name, known in (
+        ("spheres", "approximation", detector.spheres, robot.approximations),
+        ("pairs", "pair list", detector.pairs, robot.pair_lists),
+    ):
+        if name not in known:
+            raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
+    if not 0.0 <= detector.safe_distance_m < np.inf:
+        raise InputError("expected a distance of at least 0", (*where, "safe_distance"))
+    described = robot.components(detector.spheres)
+    for component in {c for pair in robot.pair_lists[detector.pairs] for c in pair}:
+        if component not in described:
+            raise InputError(
+                f"the approximation {detector.spheres!r} has no component {component!r}", (*where, "pairs")
+            )

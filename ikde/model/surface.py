@@ -12,7 +12,7 @@ M_STEPS, N_STEPS = 36, 18
 
 
 def surface_directions(m_steps: int = M_STEPS, n_steps: int = N_STEPS) -> Floats:
-    """Unit vectors (cos m, sin m cos n, sin m sin n) of the grid [m_steps * n_steps, 3], without repeats at its ends."""
+    """Unit vectors (cos m, sin m cos n, sin m sin n) of the grid [m_steps * n_steps, 3], each end once."""
     m = np.repeat(np.arange(m_steps) * 2.0 * np.pi / m_steps, n_steps)
     n = np.tile(np.arange(n_steps) * np.pi / n_steps, m_steps)
     return np.column_stack([np.cos(m), np.sin(m) * np.cos(n), np.sin(m) * np.sin(n)])

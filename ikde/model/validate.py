@@ -1,14 +1,14 @@
 """Everything that can be wrong with a robot, found in one place and named by the path of the offending value."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 
 import numpy as np
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.model.pairs import component_bodies, non_adjacent_pairs
-from ikde.model.robot import NO_DETECTOR, WORLD, Frame, Robot, SphereRow
+from ikde.model.robot import NO_DETECTOR, WORLD, Frame, Robot, SphereRow, check_detector
+from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
 
 NON_ADJACENT = "non_adjacent"
@@ -27,7 +27,9 @@ def check_robot(draft: Robot) -> Robot:
     bodies: dict[str, int] = {}
     for name, rows in robot.approximations.items():
         _check_rows(rows, tree, ("spheres", name))
-        bodies |= component_bodies(rows, tree)
+        for component, body in component_bodies(rows, tree).items():
+            same = bodies.setdefault(component, body) == body
+            _require(same, f"{component!r} lies on another body than in the other approximations", "spheres", name)
     _check_pairs(robot, bodies)
     shared = [set(robot.components(name)) for name in robot.approximations]
     common = {c: body for c, body in bodies.items() if all(c in components for components in shared)}
@@ -36,12 +38,6 @@ def check_robot(draft: Robot) -> Robot:
     _check_detectors(robot)
     _check_conventions(robot)
     return robot
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """` (did you mean 'x'?)`, or nothing when no known name is close."""
-    close = get_close_matches(name, list(known), n=1)
-    return f" (did you mean {close[0]!r}?)" if close else ""
 
 
 def _check_name(name: str, known: Iterable[str], where: tuple[str | int, ...], what: str) -> None:
@@ -55,8 +51,14 @@ def _require(condition: bool, message: str, *where: str | int) -> None:
         raise InputError(message, where)
 
 
+def _check_unique(names: Sequence[str], section: str) -> None:
+    for name in names:
+        _require(names.count(name) == 1, "this name is given twice", section, name)
+
+
 def _check_joints(robot: Robot) -> None:
     _require(bool(robot.joints), "expected at least one joint", "joints")
+    _check_unique(robot.joint_names, "joints")
     for joint in robot.joints:
         where = ("joints", joint.name)
         for key in ("lower", "upper", "home"):
@@ -69,6 +71,7 @@ def _check_joints(robot: Robot) -> None:
 def _sort_frames(robot: Robot) -> tuple[Frame, ...]:
     """Parents before children; otherwise in the order they were written."""
     frames = {frame.name: frame for frame in robot.frames}
+    _check_unique([frame.name for frame in robot.frames], "frames")
     for frame in robot.frames:
         _check_frame(robot, frame, frames)
     moved = [frame.joint for frame in robot.frames if frame.joint is not None]
@@ -106,12 +109,13 @@ def _check_frame(robot: Robot, frame: Frame, frames: Mapping[str, Frame]) -> Non
     _require(frame.name != WORLD, f"{WORLD!r} is the root and cannot be defined", *where)
     _check_name(frame.parent, [WORLD, *frames], (*where, "parent"), "frame")
     _require(bool(np.all(np.isfinite(frame.p_parent_frame))), "expected finite numbers", *where, "xyz")
+    check_rotation(frame.R_parent_frame)
     if frame.joint is None:
         _require(frame.axis is None, "an axis needs a joint", *where, "axis")
         return
     _check_name(frame.joint, robot.joint_names, (*where, "joint"), "joint")
     _require(frame.axis is not None, "a frame with a joint needs an axis", *where)
-    unit = frame.axis is not None and abs(float(np.linalg.norm(frame.axis)) - 1.0) < 1e-9
+    unit = frame.axis is not None and abs(float(np.linalg.norm(frame.axis)) - 1.0) < 1e-12
     _require(unit, "expected an axis that is not zero", *where, "axis")
 
 
@@ -125,6 +129,10 @@ def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int,
         _require(row.count >= 1, "expected a count of at least 1", *here, "count")
         body = tree.frame_body[row.start]
         _require(body == tree.frame_body[row.end], "a joint moves one end of this line against the other", *here, "to")
+        length = np.linalg.norm(tree.T_body_frame[row.start][:3, 3] - tree.T_body_frame[row.end][:3, 3])
+        _require(
+            row.count == 1 or bool(length > 0.0), "several spheres need two key points to stand between", *here, "to"
+        )
         _require(
             body_of.setdefault(row.component, body) == body,
             f"the rows of {row.component!r} lie on different bodies; a component is rigid",
@@ -149,20 +157,8 @@ def _check_detectors(robot: Robot) -> None:
     for name, detector in robot.detectors.items():
         where = ("detectors", name)
         _require(name != NO_DETECTOR, f"{NO_DETECTOR!r} is taken: it stands for no detector at all", *where)
-        _check_name(detector.spheres, robot.approximations, (*where, "spheres"), "approximation")
-        _check_name(detector.pairs, robot.pair_lists, (*where, "pairs"), "pair list")
-        ok = 0.0 <= detector.safe_distance_m < np.inf
-        _require(ok, "expected a distance of at least 0", *where, "safe_distance")
-        check_detector_components(robot, detector.spheres, detector.pairs, (*where, "pairs"))
+        check_detector(robot, detector, where)
     _check_name(robot.default_detector, [*robot.detectors, NO_DETECTOR], ("default_detector",), "detector")
-
-
-def check_detector_components(robot: Robot, spheres: str, pairs: str, where: tuple[str | int, ...] = ()) -> None:
-    """Raise `InputError` if a pair list names a component that the approximation does not describe."""
-    described = robot.components(spheres)
-    for component in {c for pair in robot.pair_lists[pairs] for c in pair}:
-        if component not in described:
-            raise InputError(f"the approximation {spheres!r} has no component {component!r}", where)
 
 
 def _check_conventions(robot: Robot) -> None:

@@ -41,9 +41,10 @@ def grade(
     q.setflags(write=False)
     graded = verify(problem.robot, target, q, settings=problem.settings, detector=problem.detector or "none")
     gap = compute_disagreement(problem, target, q, graded)
-    if gap > AGREEMENT and strict:
+    agree = gap <= AGREEMENT  # False for NaN
+    if strict and not agree:
         raise VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
-    story = _tell(problem, target, found, run, graded, gap, probe)
+    story = _tell(problem, target, found, run, graded, agree, probe)
     return SolveResult(
         reached=story.stop_reason is StopReason.REACHED,
         stop_reason=story.stop_reason,
@@ -52,7 +53,7 @@ def grade(
         q=q,
         joint_names=problem.robot.joint_names,
         verification=graded,
-        verified=gap <= AGREEMENT,
+        verified=agree,
         method="de",
         detector=problem.detector.name if problem.detector else "none",
         seed=run.seed,
@@ -67,9 +68,9 @@ def grade(
 
 
 def _tell(
-    problem: Problem, target: Target, found: Found, run: Run, graded: Verification, gap: float, probe: bool
+    problem: Problem, target: Target, found: Found, run: Run, graded: Verification, agree: bool, probe: bool
 ) -> Explanation:
-    if not graded.accepted or gap > AGREEMENT:
+    if not (graded.accepted and agree):
         if probe:
             return explain(problem, target, found, graded, run.seed)
         return explain_from_counts(problem, found)
@@ -93,4 +94,4 @@ def compute_disagreement(problem: Problem, target: Target, q: Floats, graded: Ve
     ]
     if graded.clearance_m is not None:
         gaps.append(abs(figures[CLEARANCE] - graded.clearance_m))
-    return float(max(gaps))
+    return float(np.max(gaps))

@@ -5,11 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
 from ikde.model.robot import Robot
-from ikde.model.validate import nearest
 
 JointValues = ArrayLike | Mapping[str, float]
 

@@ -64,7 +64,8 @@ def search(
             block = np.array([begin, min(begin + ATTEMPTS_PER_CALL, last)])
             outputs = (q[index], score[index], counts[index], pair_counts[index])
             stream = np.int64(streams[index])
-            solve_lane(robot, detector, packed, index, settings, np.uint64(seed), stream, block, *outputs)
+            with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
+                solve_lane(robot, detector, packed, index, settings, np.uint64(seed), stream, block, *outputs)
 
     _on_threads(run, count, threads or usable_cores(), stop)
     return Found(q=q, counts=counts, pair_counts=pair_counts)

@@ -143,14 +143,12 @@ def solve_many(
 
 
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
-    """True if some revolute joint differs by more than 0.1 rad (around the circle) or some slide by more than 50 mm."""
-    for joint, difference in zip(robot.joints, np.abs(q - other), strict=True):
-        if joint.kind == "prismatic" and difference > SLIDE_APART_M:
-            return True
-        turn = difference % (2.0 * np.pi)
-        if joint.kind == "revolute" and min(turn, 2.0 * np.pi - turn) > TURN_APART_RAD:
-            return True
-    return False
+    """True if a revolute joint differs by more than 0.1 rad (around the circle) or the slides by more than 50 mm."""
+    slides = np.array([joint.kind == "prismatic" for joint in robot.joints])
+    difference = np.abs(q - other)
+    turns = difference[~slides] % (2.0 * np.pi)
+    turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
+    return bool(np.any(turned) or np.linalg.norm(difference[slides]) > SLIDE_APART_M)
 
 
 def check_seed(seed: int) -> int:

@@ -11,7 +11,7 @@ from ikde.kernels.clearance import (
     compute_pair_clearance,
     count_colliding_pairs,
 )
-from ikde.kernels.evolution import SMALLEST_DEPTH, compute_depth
+from ikde.kernels.evolution import DEPTH_STEP, compute_depth
 from ikde.model.pack import pack_detector
 from tests import reference
 from tests.conftest import random_q
@@ -118,7 +118,7 @@ def test_touching_at_the_safe_distance_collides_with_the_smallest_depth():
     detector, centres, bounds = two_spheres(2.0, (1.0, 0.5), safe_distance=0.5)
     world = np.eye(3, 4)[None]
     assert collides(detector, bounds, centres)
-    assert compute_depth(detector, world, bounds, centres) == SMALLEST_DEPTH
+    assert compute_depth(detector, world, bounds, centres) == DEPTH_STEP
 
 
 def test_without_pairs_the_clearance_is_infinite(qiao):

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.model.robot import Detector, Frame, Joint, Robot, SphereRow
-from ikde.model.validate import NON_ADJACENT, check_detector_components, check_robot, nearest
+from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.random_robots import make_frame
 
 
@@ -280,10 +280,31 @@ def test_a_detector_whose_pairs_its_spheres_do_not_describe():
     reject(message, "detectors", "d", "pairs", approximations=approximations, detectors=make_detector(spheres="coarse"))
 
 
-def test_components_of_a_detector_can_be_checked_alone():
+def test_a_detector_made_by_hand_is_checked_when_it_is_used():
     robot = check_robot(make_draft())
-    check_detector_components(robot, "fine", "some")
-    check_detector_components(robot, "fine", NON_ADJACENT)
+    good = Detector(name="mine", spheres="fine", pairs=NON_ADJACENT)
+    assert robot.detector(good) is good
+    for bad in ({"spheres": "fin"}, {"pairs": "all"}, {"safe_distance_m": -1.0}, {"safe_distance_m": np.nan}):
+        with pytest.raises(InputError, match="detector"):
+            robot.detector(replace(good, **bad))
+
+
+def test_names_are_unique():
+    draft = make_draft()
+    reject("given twice", "joints", draft.joints[0].name, joints=(*draft.joints, draft.joints[0]))
+    reject("given twice", "frames", draft.frames[0].name, frames=(*draft.frames, draft.frames[0]))
+
+
+def test_several_spheres_need_a_line():
+    row = replace(make_row("G", "world", "world"), count=2)
+    reject("several spheres need two key points", "spheres", "fine", 0, "to", approximations={"fine": (row,)})
+
+
+def test_a_frame_that_is_no_rotation_is_refused():
+    draft = make_draft()
+    bent = replace(draft.frames[0], R_parent_frame=np.full((3, 3), np.nan))
+    with pytest.raises(InputError, match="rotation matrix"):
+        check_robot(replace(draft, frames=(bent, *draft.frames[1:])))
 
 
 def test_a_detector_may_use_the_pairs_that_ikde_makes():

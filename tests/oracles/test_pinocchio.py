@@ -79,9 +79,7 @@ def kernel_frames(robot, q):
 
 def kernel_jacobian(robot, q):
     jacobian = np.empty((6, len(robot.joints)))
-    compute_jacobian(
-        pack_robot(robot), kernel_bodies(robot, q), kernel_frames(robot, q)[robot.tool], jacobian
-    )
+    compute_jacobian(pack_robot(robot), kernel_bodies(robot, q), kernel_frames(robot, q)[robot.tool], jacobian)
     return jacobian
 
 
@@ -92,9 +90,7 @@ def difference_jacobian(robot, q):
     v = (ahead[:, :3, 3] - behind[:, :3, 3]) / (2.0 * STEP)
     R = ikde.forward(robot, q)[robot.tool][:3, :3]
     W = (ahead[:, :3, :3] - behind[:, :3, :3]) @ R.T / (2.0 * STEP)
-    omega = 0.5 * np.stack(
-        [W[:, 2, 1] - W[:, 1, 2], W[:, 0, 2] - W[:, 2, 0], W[:, 1, 0] - W[:, 0, 1]], axis=1
-    )
+    omega = 0.5 * np.stack([W[:, 2, 1] - W[:, 1, 2], W[:, 0, 2] - W[:, 2, 0], W[:, 1, 0] - W[:, 0, 1]], axis=1)
     return np.vstack([v.T, omega.T])
 
 
@@ -119,9 +115,7 @@ def test_kernels_give_the_frames_of_pinocchio(any_robot, configurations):
             np.testing.assert_allclose(Ts_world[name], T[:3], rtol=0, atol=EXACT, err_msg=name)
 
 
-def test_every_body_of_the_kernels_stands_and_slides_or_turns_as_its_joint_in_pinocchio(
-    any_robot, configurations
-):
+def test_every_body_of_the_kernels_stands_and_slides_or_turns_as_its_joint_in_pinocchio(any_robot, configurations):
     arrays, oracle = pack_robot(any_robot), Oracle(any_robot)
     for q in configurations:
         oracle.frames(q)

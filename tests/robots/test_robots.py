@@ -98,9 +98,7 @@ def has_numbers(frame):
 def number_entries(data):
     """Path of every entry of a robot file that holds numbers or says which pairs count."""
     found = [("frames", name) for name, frame in data["frames"].items() if has_numbers(frame)]
-    found += [
-        ("spheres", name, i) for name, rows in data.get("spheres", {}).items() for i in range(len(rows))
-    ]
+    found += [("spheres", name, i) for name, rows in data.get("spheres", {}).items() for i in range(len(rows))]
     found += [(section, name) for section in NAMED_ENTRIES for name in data.get(section, {})]
     return found + ([("adjacent",)] if "adjacent" in data else [])
 
@@ -190,9 +188,7 @@ def test_classical_and_key_point_limits_and_homes_of_qiao2021_are_the_same_set(q
     classical = ikde.load_robot("qiao2021_dh")
     assert classical.joint_names == qiao.joint_names
     for key in ("lower", "upper", "home"):
-        np.testing.assert_allclose(
-            getattr(classical, key), to_classical(getattr(qiao, key)), rtol=0, atol=1e-14
-        )
+        np.testing.assert_allclose(getattr(classical, key), to_classical(getattr(qiao, key)), rtol=0, atol=1e-14)
 
 
 def test_qiao2021_dh_is_the_product_of_its_table(rng):
