@@ -60,15 +60,11 @@ def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: st
     offsets = convention_offsets(robot, convention)
     shown = to_convention(robot, result.q, convention)
     for joint, value, own, offset in zip(robot.joints, shown, result.q, offsets, strict=True):
-        limits = [units.joint_value(joint, limit + offset) for limit in (joint.lower, joint.upper)]
-        table.add_row(
-            joint.name,
-            format_fixed(units.joint_value(joint, value), 6),
-            units.joint_unit(joint),
-            f"{limits[0]:.4g}",
-            _bar(own, joint.lower, joint.upper),
-            f"{limits[1]:.4g}",
-        )
+        limits = [f"{units.joint_value(joint, limit):.4g}" for limit in (joint.lower, joint.upper)]
+        lower, upper = ("", "") if offset else limits  # shifted limits, brought to (-pi, pi], are no interval
+        number = format_fixed(units.joint_value(joint, value), 6)
+        bar = _bar(own, joint.lower, joint.upper)
+        table.add_row(joint.name, number, units.joint_unit(joint), lower, bar, upper)
     return table
 
 
