@@ -34,3 +34,10 @@ def random_q(robot, rng, count=None):
     """Uniform joint values inside the limits, [N] or [count, N]."""
     size = len(robot.joints) if count is None else (count, len(robot.joints))
     return rng.uniform(robot.lower, robot.upper, size)
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Say at the end what was left out and how to run it."""
+    left_out = len(terminalreporter.stats.get("deselected", []))
+    if left_out:
+        terminalreporter.write_line(f"left out: {left_out} tests, the slow ones; `python -m pytest -m slow` runs them")

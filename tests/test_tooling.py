@@ -10,7 +10,7 @@ ROOT = Path(__file__).parent.parent
 TOOLS = {
     "style": ["ruff", "check", "."],
     "format": ["ruff", "format", "--check", "."],
-    "types": ["pyright"],
+    "types": ["pyright", "--pythonpath", sys.executable],
     "floors": ["lint-imports"],
 }
 
