@@ -21,10 +21,10 @@ from ikde.errors import InputError
 UsageError: type[Exception] = typer.BadParameter.__bases__[
     0
 ]  # click's, wherever typer keeps it: newer ones carry their own copy
+INTERRUPTED = "ikde: interrupted"
 
 app = typer.Typer(
     name="ikde",
-    help="Collision-aware inverse kinematics: a search proposes, sphere checks reject, separate code grades.",
     add_completion=False,
     pretty_exceptions_enable=False,
     no_args_is_help=True,
@@ -55,7 +55,7 @@ for command in (solve, fk, check, doctor):
 app.add_typer(robots, name="robots")
 
 
-def main() -> NoReturn:
+def run_and_exit() -> NoReturn:
     """Run the command line and exit."""
     skip_garbage_collection()
     sys.exit(run(sys.argv[1:]))
@@ -64,25 +64,38 @@ def main() -> NoReturn:
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code and turns every error into one line on stderr."""
     try:
-        return int(app(arguments, prog_name="ikde", standalone_mode=False) or ExitCode.OK)
-    except BrokenPipeError:  # the reader has seen enough: `ikde check | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return ExitCode.OK
+        code = int(app(arguments, prog_name="ikde", standalone_mode=False) or ExitCode.OK)
     except BaseException as error:
+        if _reader_has_gone(error):  # `ikde check | head` has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return ExitCode.OK
         code, line = explain_error(error)
-        print_note(line)
+        if line:
+            print_note(line)
         return code
+    if code == ExitCode.INTERRUPTED:  # typer has turned Ctrl-C into this code already
+        print_note(INTERRUPTED)
+    return code
+
+
+def _reader_has_gone(error: BaseException | None) -> bool:
+    """True for a closed pipe, also behind the exit that typer makes of it."""
+    if isinstance(error, SystemExit):
+        return _reader_has_gone(error.__context__)
+    return isinstance(error, BrokenPipeError)
 
 
 def explain_error(error: BaseException) -> tuple[ExitCode, str]:
     """The exit code and the one line for an error; of a bug the traceback is written as well."""
     if isinstance(error, UsageError):
         usage: Any = error
+        if not usage.format_message():  # no command at all: the help has been printed
+            return ExitCode.BAD_INPUT, ""
         path = usage.ctx.command_path if usage.ctx else "ikde"
         return ExitCode.BAD_INPUT, f"{path}: {' '.join(usage.format_message().split())}"
     if isinstance(error, InputError):
         return ExitCode.BAD_INPUT, f"ikde: {error}"
     if isinstance(error, KeyboardInterrupt | typer.Abort):
-        return ExitCode.INTERRUPTED, "ikde: interrupted"
+        return ExitCode.INTERRUPTED, INTERRUPTED
     traceback.print_exception(error)
     return ExitCode.BUG, f"ikde: this is a bug, please report it: {type(error).__name__}: {error}"

@@ -42,6 +42,7 @@ def fk(
     values = read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
     check_drawable(plot)
+    model.detector(detector)  # a wrong name is found before anything is printed
     if as_json:
         print_json(forward_json(model, values, frames, outside))
     else:

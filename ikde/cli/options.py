@@ -60,14 +60,18 @@ QOption = Annotated[
 ]
 
 
-def read_q(robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None) -> "Floats":
+def read_q(
+    robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None, key: str = "q"
+) -> "Floats":
     """Joint values [N] in the robot's own convention; joints that are not named stay at home."""
     from ikde.io.joint_text import parse_joints
+    from ikde.model.convention import convention_offsets
     from ikde.solver.joints import read_joints
 
+    convention_offsets(robot, convention)  # a wrong name is an error even if nothing is to be converted
     if text is None:
         return robot.home
-    return read_joints(robot, parse_joints(robot, text, unit, angles), convention, default=robot.home)
+    return read_joints(robot, parse_joints(robot, text, unit, angles, key), convention, default=robot.home)
 
 
 def read_detector(
@@ -81,6 +85,8 @@ def read_detector(
 
     detector = robot.detector(name)
     if detector is None:
+        if pairs is not None or safe_distance is not None:
+            raise InputError("--pairs and --safe-distance need a detector, and there is none")
         return "none"
     if pairs is not None:
         if pairs not in robot.pair_lists:
@@ -119,6 +125,15 @@ def check_drawable(path: Path | None) -> None:
         raise FileError(path, f"cannot be drawn: expected a name that ends in {', '.join(FIGURE_ENDINGS)}")
     if not path.parent.is_dir() or path.is_dir():
         raise FileError(path, "cannot be written: expected a file name in a folder that exists")
+
+
+def read_positive(value: float | None, option: str) -> float | None:
+    """A number above 0, or None."""
+    from ikde.errors import InputError
+
+    if value is not None and not 0.0 < value < float("inf"):
+        raise InputError(f"expected a finite number above 0, got {value:g}", (option,))
+    return value
 
 
 def draw(

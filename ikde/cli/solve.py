@@ -21,6 +21,7 @@ from ikde.cli.options import (
     draw,
     read_detector,
     read_freeze,
+    read_positive,
     read_q,
 )
 from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
@@ -112,6 +113,7 @@ def solve(
     from ikde.io.robots import load_robot
     from ikde.io.target import make_target
     from ikde.io.units import ANGLES_RAD, LENGTHS_M
+    from ikde.model.convention import convention_offsets
     from ikde.report.solve import format_solve, solve_json
     from ikde.report.units import Units
     from ikde.solver.settings import SolveSettings
@@ -119,6 +121,8 @@ def solve(
 
     model = load_robot(robot)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
+    read_positive(tolerance, "--tolerance")
+    read_positive(orientation_tolerance, "--orientation-tolerance")
     settings = SolveSettings.for_method(method).with_changes(
         position_tolerance_m=None if tolerance is None else tolerance * LENGTHS_M[unit],
         orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * ANGLES_RAD[angles],
@@ -133,7 +137,8 @@ def solve(
         update=update,
     )
     judge = read_detector(model, detector, pairs, safe_distance, unit)
-    start = None if near is None else read_q(model, near, unit, angles, convention)
+    start = None if near is None else read_q(model, near, unit, angles, convention, "near")
+    convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = read_freeze(model, freeze, unit, angles, convention)
     check_drawable(plot)
     with working("searching ..."):

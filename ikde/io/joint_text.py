@@ -42,7 +42,8 @@ def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, f
     frozen: dict[str, float | None] = {}
     for word in filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS).strip())):
         name, equals, value = word.partition("=")
-        _known(name, robot.joint_names, "freeze")
+        if _known(name, robot.joint_names, "freeze") in frozen:
+            raise InputError("this joint is given twice", ("freeze", name))
         frozen[name] = None
         if equals:
             parsed = parse_joints(robot, f"{name}={value}", unit, angles, "freeze")

@@ -23,7 +23,19 @@ def convention_offsets(robot: Robot, convention: str | None) -> Floats:
 
 
 def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
-    """From the named convention to the robot's own, inside the limits where a full turn allows it. `q` [..., N]."""
+    """From the named convention to the robot's own, inside the limits where a full turn allows it.
+
+    Args:
+        robot: the robot.
+        q: joint values [..., N] in the named convention, m and rad.
+        convention: its name; None or the robot's own leaves `q` as it is.
+
+    Returns:
+        Joint values [..., N] in the robot's own convention.
+
+    Raises:
+        InputError: for an unknown convention.
+    """
     offsets = convention_offsets(robot, convention)
     own = _wrap(q - offsets)
     for turn in (-2.0 * np.pi, 2.0 * np.pi):
@@ -34,7 +46,19 @@ def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
 
 
 def to_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
-    """From the robot's own convention to the named one. `q` [..., N]."""
+    """From the robot's own convention to the named one; a shifted joint comes out in (-pi, pi].
+
+    Args:
+        robot: the robot.
+        q: joint values [..., N] in the robot's own convention, m and rad.
+        convention: the wanted one; None or the robot's own leaves `q` as it is.
+
+    Returns:
+        Joint values [..., N] in the named convention.
+
+    Raises:
+        InputError: for an unknown convention.
+    """
     offsets = convention_offsets(robot, convention)
     return np.where(offsets == 0.0, q, _wrap(q + offsets))
 

@@ -10,6 +10,7 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import check_rotation, rotation_with_z
 
+FARTHEST = 1e9  # beyond it, squares and sums would lose everything
 TargetKind = Literal["position", "axis", "pose"]
 
 
@@ -71,8 +72,8 @@ def _read_vector(values: ArrayLike, name: str) -> Floats:
         raise InputError(
             f"expected 3 numbers, got {'shape ' + str(vector.shape) if vector.ndim != 1 else vector.size}", (name,)
         )
-    if not np.all(np.isfinite(vector)):
-        raise InputError(f"expected finite numbers, got {vector.tolist()}", (name,))
+    if not np.all(np.abs(vector) <= FARTHEST):  # False for NaN
+        raise InputError(f"expected finite numbers below {FARTHEST:g}, got {vector.tolist()}", (name,))
     return vector
 
 

@@ -39,7 +39,8 @@ def plot_pose(robot: Robot, q: Floats, *, detector: Detector | None = None, targ
         axes.scatter(*target.p_world_tool, marker="*", s=160, color=TARGET, label="target", depthshade=False, zorder=11)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=title)
     _set_equal(axes, robot, detector, q, target)
-    axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
     return figure
 
 

@@ -6,18 +6,22 @@ from typing import Any
 from ikde.io.units import LENGTHS_M
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
-from ikde.report.render import make_table, render
+from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
 from ikde.solver.check import CheckResult
 
 
 def forward_json(robot: Robot, q: Floats, Ts_world: Mapping[str, Floats], outside: tuple[str, ...]) -> dict[str, Any]:
-    """Frames by name: `p_world` [3] in m and `R_world` [3][3]; q in the robot's own convention."""
+    """Frames by name: `p_world` [3] in m and `R_world` [3][3]; q in the robot's own convention.
+
+    The tool's frame is there as `tool` whatever the robot calls it.
+    """
+    named = {**Ts_world, "tool": Ts_world[robot.tool]}
     return {
         "robot": robot.name,
         "q": dict(zip(robot.joint_names, q.tolist(), strict=True)),
         "outside_limits": list(outside),
-        "frames": {name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in Ts_world.items()},
+        "frames": {name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in named.items()},
     }
 
 
@@ -30,7 +34,9 @@ def format_forward(
     for name, T in Ts_world.items():
         digits = 1 if unit == "mm" else 4
         origin = [format_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
-        table.add_row("tool" if name == robot.tool else name, *origin, _direction(T[:3, 0]), _direction(T[:3, 2]))
+        table.add_row(
+            "tool" if name == robot.tool else plain(name), *origin, _direction(T[:3, 0]), _direction(T[:3, 2])
+        )
     return render(table, *_outside_line(outside), color=color)
 
 
@@ -39,7 +45,7 @@ def _direction(axis: Floats) -> str:
 
 
 def _outside_line(outside: tuple[str, ...]) -> list[str]:
-    return [f"[yellow]outside the limits[/]: {', '.join(outside)}"] if outside else []
+    return [f"[yellow]outside the limits[/]: {plain(', '.join(outside))}"] if outside else []
 
 
 def check_json(robot: Robot, result: CheckResult) -> dict[str, Any]:
@@ -66,11 +72,11 @@ def format_check(result: CheckResult, units: Units, *, color: bool = False) -> s
             "no detector, no pairs: nothing was looked at", *_outside_line(result.outside_limits), color=color
         )
     verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
-    head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {result.detector}"
+    head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {plain(result.detector)}"
     if result.safe_distance_m:
         head += f", safe distance {units.format_length(result.safe_distance_m)}"
     table = make_table("pair", f">clearance [{units.length}]", "")
     for pair in result.pairs:
         gap = f"{pair.clearance_m / LENGTHS_M[units.length]:.{2 if units.length == 'mm' else 5}f}"
-        table.add_row(f"{pair.a} - {pair.b}", gap, "[red]collides[/]" if pair.collides else "")
+        table.add_row(plain(f"{pair.a} - {pair.b}"), gap, "[red]collides[/]" if pair.collides else "")
     return render(head, *_outside_line(result.outside_limits), table, color=color)

@@ -13,7 +13,14 @@ def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
     for renderable in renderables:
         console.print(renderable)
     lines = [line.rstrip() for line in buffer.getvalue().splitlines()]
-    return "\n".join(line for line, before in zip(lines, ["x", *lines], strict=False) if line or before).rstrip()
+    return "\n".join(line for line, before in zip(lines, ["x", *lines], strict=False) if line or before).strip("\n")
+
+
+def plain(text: str) -> str:
+    """Text that is shown as it is: names and reasons may hold brackets, which rich would read as markup."""
+    from rich.markup import escape
+
+    return escape(text)
 
 
 def make_table(*columns: str, title: str | None = None) -> Any:
@@ -21,7 +28,9 @@ def make_table(*columns: str, title: str | None = None) -> Any:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    table = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(
+        title=plain(title) if title else None, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False
+    )
     for column in columns:
-        table.add_column(column.removeprefix(">"), justify="right" if column.startswith(">") else "left")
+        table.add_column(plain(column.removeprefix(">")), justify="right" if column.startswith(">") else "left")
     return table

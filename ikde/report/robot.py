@@ -6,7 +6,7 @@ from typing import Any
 
 from ikde.io.units import LENGTHS_M
 from ikde.model.robot import Robot
-from ikde.report.render import make_table, render
+from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units
 
 
@@ -22,7 +22,8 @@ def format_robots(robots: Iterable[Robot], *, color: bool = False) -> str:
     """A line a robot."""
     table = make_table("robot", ">joints", "detectors", "title")
     for robot in robots:
-        table.add_row(robot.name, str(len(robot.joints)), ", ".join(robot.detectors) or "none", robot.title)
+        names = ", ".join(robot.detectors) or "none"
+        table.add_row(plain(robot.name), str(len(robot.joints)), plain(names), plain(robot.title))
     return render(table, color=color)
 
 
@@ -57,7 +58,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
 
 def format_robot(robot: Robot, units: Units, *, color: bool = False) -> str:
     """A robot for the terminal: joints, frames, detectors and the provenance of its numbers."""
-    head = f"[bold]{robot.name}[/]: {robot.title}"
+    head = f"[bold]{plain(robot.name)}[/]: {plain(robot.title)}"
     tables = [_joint_table(robot, units), _frame_table(robot, units), _detector_table(robot, units), _sources(robot)]
     return render(head, "", *tables, color=color)
 
@@ -76,7 +77,7 @@ def _joint_table(robot: Robot, units: Units) -> Any:
     for joint in robot.joints:
         values = [f"{units.joint_value(joint, v):.6g}" for v in (joint.lower, joint.home, joint.upper)]
         source = robot.provenance.get(("joints", joint.name, "lower")) or robot.provenance.get(("joints", joint.name))
-        table.add_row(joint.name, joint.kind, *values, units.joint_unit(joint), source.kind if source else "")
+        table.add_row(plain(joint.name), joint.kind, *values, units.joint_unit(joint), source.kind if source else "")
     return table
 
 
@@ -85,7 +86,9 @@ def _frame_table(robot: Robot, units: Units) -> Any:
     for frame in robot.frames:
         offset = " ".join(f"{v / LENGTHS_M[units.length]:.6g}" for v in frame.p_parent_frame)
         source = robot.provenance.get(("frames", frame.name))
-        table.add_row(frame.name, frame.parent, offset, frame.joint or "", source.kind if source else "")
+        table.add_row(
+            plain(frame.name), plain(frame.parent), offset, plain(frame.joint or ""), source.kind if source else ""
+        )
     return table
 
 
@@ -96,7 +99,7 @@ def _detector_table(robot: Robot, units: Units) -> Any:
         pairs = len(robot.pair_lists[detector.pairs])
         shown = f"{name} (default)" if name == robot.default_detector else name
         distance = units.format_length(detector.safe_distance_m)
-        table.add_row(shown, detector.spheres, str(spheres), detector.pairs, str(pairs), distance)
+        table.add_row(plain(shown), plain(detector.spheres), str(spheres), plain(detector.pairs), str(pairs), distance)
     return table
 
 
@@ -104,5 +107,5 @@ def _sources(robot: Robot) -> Any:
     table = make_table("provenance", ">entries", "source", title="where the numbers come from")
     counts = Counter((source.kind, source.text) for source in robot.provenance.values())
     for (kind, text), count in sorted(counts.items()):
-        table.add_row(kind, str(count), text.replace("[", r"\["))
+        table.add_row(kind, str(count), plain(text))
     return table

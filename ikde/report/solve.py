@@ -1,12 +1,13 @@
 """A solve's result as text and as JSON."""
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
-from ikde.report.render import make_table, render
+from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
 from ikde.solver.result import SolveResult
 
@@ -31,6 +32,7 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "self_collision": result.self_collision,
         "outside_limits": list(result.verification.outside_limits),
         "method": result.method,
+        "settings": asdict(result.settings),
         "detector": result.detector,
         "seed": result.seed,
         "attempts": result.attempts,
@@ -48,9 +50,9 @@ def format_solve(
 ) -> str:
     """A result for the terminal: the verdict, the joints within their ranges, the graded figures, the cost."""
     mark, style = ("reached", "bold green") if result.reached else ("not reached", "bold red")
-    lines = [f"[{style}]{mark}[/]: {result.reason}"]
+    lines = [f"[{style}]{mark}[/]: {plain(result.reason)}"]
     if result.hint:
-        lines.append(f"[yellow]what would help[/]: {result.hint}")
+        lines.append(f"[yellow]what would help[/]: {plain(result.hint)}")
     return render(*lines, _joint_table(robot, result, units, convention), _figure_table(result, units), color=color)
 
 
@@ -64,7 +66,7 @@ def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: st
         lower, upper = ("", "") if offset else limits  # shifted limits, brought to (-pi, pi], are no interval
         number = format_fixed(units.joint_value(joint, value), 6)
         bar = _bar(own, joint.lower, joint.upper)
-        table.add_row(joint.name, number, units.joint_unit(joint), lower, bar, upper)
+        table.add_row(plain(joint.name), number, units.joint_unit(joint), lower, bar, upper)
     return table
 
 
@@ -83,9 +85,9 @@ def _figure_table(result: SolveResult, units: Units) -> Any:
         table.add_row("clearance", "not looked at (detector none)")
     else:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
-        table.add_row("clearance", f"{units.format_length(result.clearance_m)} {between}")
+        table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
     table.add_row("self-collision", "yes" if result.self_collision else "no")
-    table.add_row("outside limits", ", ".join(result.verification.outside_limits) or "none")
+    table.add_row("outside limits", plain(", ".join(result.verification.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
     table.add_row(
         "cost",
@@ -94,5 +96,7 @@ def _figure_table(result: SolveResult, units: Units) -> Any:
     )
     if result.compile_seconds:
         table.add_row("compiled first", f"{result.compile_seconds:.1f} s, once on this machine")
-    table.add_row("repeat with", f"method {result.method}, seed {result.seed}")
+    search = result.settings
+    table.add_row("engine", f"{result.method} {search.strategy}, population {search.population}, {search.collision}")
+    table.add_row("repeat with", f"the same command, seed {result.seed}: the same bits")
     return table

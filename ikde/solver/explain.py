@@ -61,6 +61,8 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
     if colliding == 0 and problem.detector is not None:
         probe = _probe(problem.with_settings(collision="reject"), target, seed)
         colliding, blocking = int(probe.counts[0, COLLIDING]), count_blocking_pairs(problem, probe.pair_counts[0])
+        if probe.counts[0, REACHED]:
+            return _spent(problem, graded, "more restarts: a search that only tests the best (reject) found a solution")
     remedy = _try_remedies(problem, target, seed)
     if colliding > 0:
         worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])
@@ -70,25 +72,28 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
             hint=remedy or "a detector with tighter spheres, or another target",
             blocking_pairs=blocking,
         )
-    error = f"{graded.position_error_m:.3g} m and {graded.orientation_error_rad:.3g} rad"
     if remedy:
         return Explanation(
             stop_reason=StopReason.LIMITS,
-            reason=f"no configuration inside the joint ranges meets the target; the best is off by {error}",
+            reason=f"no configuration inside the joint ranges meets the target; {_best(graded)}",
             hint=remedy,
             blocking_pairs={},
         )
-    return Explanation(
-        stop_reason=StopReason.BUDGET,
-        reason=f"{problem.settings.restarts} attempts spent; the best is off by {error}",
-        hint=_tolerance_hint(problem, graded),
-        blocking_pairs={},
-    )
+    return _spent(problem, graded, _tolerance_hint(problem, graded))
+
+
+def _spent(problem: Problem, graded: Verification, hint: str | None) -> Explanation:
+    attempts = problem.settings.restarts
+    reason = f"{attempts} attempt{'s' if attempts != 1 else ''} spent; {_best(graded)}"
+    return Explanation(stop_reason=StopReason.BUDGET, reason=reason, hint=hint, blocking_pairs={})
+
+
+def _best(graded: Verification) -> str:
+    return f"the best is off by {graded.position_error_m:.3g} m and {graded.orientation_error_rad:.3g} rad"
 
 
 def _probe(problem: Problem, target: Target, seed: int) -> Found:
-    attempts = min(PROBE_ATTEMPTS, problem.settings.restarts)
-    return search(problem, [target], seed=seed, streams=[0], attempts=attempts)
+    return search(problem, [target], seed=seed, streams=[0], attempts=PROBE_ATTEMPTS)
 
 
 def _widened(problem: Problem) -> tuple[Floats, Floats]:
@@ -114,7 +119,7 @@ def _try_remedies(problem: Problem, target: Target, seed: int) -> str | None:
         outside = (found.q[0] < problem.lower) | (found.q[0] > problem.upper)
         names = [joint.name for joint, out in zip(robot.joints, outside, strict=True) if out]
         if names:
-            return f"a wider range for {', '.join(names)}: a solution was found outside it"
+            return f"a wider range for {', '.join(names)}: a solution was found beyond the limits"
     return None
 
 
@@ -137,5 +142,13 @@ def _tolerance_hint(problem: Problem, graded: Verification) -> str | None:
     close = close and graded.orientation_error_rad <= GENEROUS * settings.orientation_tolerance_rad
     if not close or graded.self_collision:
         return "more generations or restarts, or another target"
-    found = f"{graded.position_error_m:.2g} m and {graded.orientation_error_rad:.2g} rad"
-    return f"a tolerance of {found} would accept the best"
+    wanted = f"{_round_up(graded.position_error_m)} m"
+    if graded.orientation_error_rad > 0.0:
+        wanted += f" and {_round_up(graded.orientation_error_rad)} rad"
+    return f"a tolerance of {wanted} would accept the best"
+
+
+def _round_up(value: float) -> str:
+    """Two digits, never below the value."""
+    step = 10.0 ** (np.floor(np.log10(value)) - 1)
+    return f"{np.ceil(value / step) * step:.2g}"

@@ -44,7 +44,7 @@ def grade(
     agree = gap <= AGREEMENT  # False for NaN
     if strict and not agree:
         raise VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
-    story = _tell(problem, target, found, run, graded, agree, probe)
+    story = _unverified(gap) if not agree else _tell(problem, target, found, run, graded, probe)
     return SolveResult(
         reached=story.stop_reason is StopReason.REACHED,
         stop_reason=story.stop_reason,
@@ -55,6 +55,7 @@ def grade(
         verification=graded,
         verified=agree,
         method="de",
+        settings=problem.settings,
         detector=problem.detector.name if problem.detector else "none",
         seed=run.seed,
         stream=run.stream,
@@ -67,10 +68,13 @@ def grade(
     )
 
 
-def _tell(
-    problem: Problem, target: Target, found: Found, run: Run, graded: Verification, agree: bool, probe: bool
-) -> Explanation:
-    if not (graded.accepted and agree):
+def _unverified(gap: float) -> Explanation:
+    reason = f"kernels and verify disagree by {gap:.3g}: a bug, please report it"
+    return Explanation(stop_reason=StopReason.UNVERIFIED, reason=reason, hint=None, blocking_pairs={})
+
+
+def _tell(problem: Problem, target: Target, found: Found, run: Run, graded: Verification, probe: bool) -> Explanation:
+    if not graded.accepted:
         if probe:
             return explain(problem, target, found, graded, run.seed)
         return explain_from_counts(problem, found)

@@ -10,6 +10,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
 from ikde.model.robot import Robot
 
+FARTHEST = 1e5  # m or rad: beyond it an angle has lost its last digits
 JointValues = ArrayLike | Mapping[str, float]
 
 
@@ -21,10 +22,9 @@ def read_joints(
     A mapping may leave joints out only if `default` [N] is given. Raises `InputError` for a wrong count, an unknown
     joint, NaN or infinity.
     """
-    values = _from_mapping(robot, q, convention, default) if isinstance(q, Mapping) else _from_array(robot, q)
-    if not np.all(np.isfinite(values)):
-        raise InputError("expected finite joint values, got NaN or infinity", ("q",))
-    return values if isinstance(q, Mapping) else from_convention(robot, values, convention)
+    if isinstance(q, Mapping):
+        return _from_mapping(robot, q, convention, default)
+    return from_convention(robot, _from_array(robot, q), convention)
 
 
 def _from_array(robot: Robot, q: ArrayLike) -> Floats:
@@ -36,6 +36,8 @@ def _from_array(robot: Robot, q: ArrayLike) -> Floats:
     if values.ndim == 0 or values.shape[-1] != len(names):
         count = values.shape[-1] if values.ndim else 1
         raise InputError(f"expected {len(names)} joint values ({', '.join(names)}), got {count}", ("q",))
+    if not np.all(np.abs(values) <= FARTHEST):  # False for NaN
+        raise InputError(f"expected finite joint values below {FARTHEST:g}, got {values.tolist()}", ("q",))
     return values
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from ikde.kernels.arrays import Floats
+from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Verification
 
 
@@ -20,6 +21,8 @@ class StopReason(StrEnum):
     """The pose was met only outside the joint limits (or with a frozen joint set free)."""
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
+    UNVERIFIED = "unverified"
+    """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -40,10 +43,12 @@ class SolveResult:
     """Kernels and `verify` agree on this `q` to 1e-11 (a larger gap raises, or in bulk is recorded here)."""
     method: str
     """The engine that answered."""
+    settings: SolveSettings
+    """What the engine was told; with the seed and the stream it repeats the search bit for bit."""
     detector: str
     seed: int
     stream: int
-    """Index of the target in its batch; (seed, stream) repeats the search bit for bit."""
+    """Index of the target in its batch."""
     attempts: int
     evaluations: int
     """Forward kinematics with pose error."""

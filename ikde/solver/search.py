@@ -11,10 +11,12 @@ import numpy as np
 from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.lanes import COUNTS, REACHED, solve_lane
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.reach import reach_excess_m
 from ikde.model.target import Target
 from ikde.solver.problem import ROUNDING, Problem, pack_search
 
 ATTEMPTS_PER_CALL = 16  # Python hears Ctrl-C between calls
+OUT_OF_REACH_ATTEMPTS = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,7 +45,8 @@ def search(
 ) -> Found:
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
-    `attempts` defaults to the settings' restarts; 0 searches nothing and only compiles or loads the kernel.
+    `attempts` defaults to what is left of the settings' restarts, or to a few for a target that is proved out of reach;
+    0 searches nothing and only compiles or loads the kernel.
 
     The answer for a target hangs on (seed, stream, attempt) only: not on the other targets, the number of threads, or
     how the attempts are cut into calls.
@@ -54,10 +57,10 @@ def search(
     q, score = np.zeros((count, len(problem.robot.joints))), np.full((count, 2), np.inf)
     counts = np.zeros((count, COUNTS), dtype=np.int64)
     pair_counts = np.zeros((count, detector.pairs.shape[0]), dtype=np.int64)
-    last = first_attempt + (problem.settings.restarts if attempts is None else attempts)
     stop = threading.Event()
 
     def run(index: int) -> None:
+        last = _last_attempt(problem, targets[index], first_attempt) if attempts is None else first_attempt + attempts
         for begin in range(first_attempt, max(last, first_attempt + 1), ATTEMPTS_PER_CALL):
             if stop.is_set() or counts[index, REACHED]:
                 return
@@ -69,6 +72,14 @@ def search(
 
     _on_threads(run, count, threads or usable_cores(), stop)
     return Found(q=q, counts=counts, pair_counts=pair_counts)
+
+
+def _last_attempt(problem: Problem, target: Target, first_attempt: int) -> int:
+    """Where to stop: a target that is proved out of reach only needs showing how close the tool can come."""
+    excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
+    if excess > problem.settings.position_tolerance_m:
+        return min(first_attempt + OUT_OF_REACH_ATTEMPTS, problem.settings.restarts)
+    return problem.settings.restarts
 
 
 def usable_cores() -> int:

@@ -9,7 +9,6 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.kernels.jit import compile_clock
 from ikde.kernels.lanes import ATTEMPTS
-from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
 from ikde.solver.grade import Run, grade
@@ -19,7 +18,6 @@ from ikde.solver.result import SolveResult
 from ikde.solver.search import Found, search
 from ikde.solver.settings import SolveSettings
 
-OUT_OF_REACH_ATTEMPTS = 4  # enough to show how close the tool can come
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
 
 
@@ -55,9 +53,7 @@ def solve(
         InputError: for what does not fit the robot.
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
-    problem = make_problem(
-        robot, settings or SolveSettings.for_method(method), detector=detector, near=near, freeze=freeze
-    )
+    problem = make_problem(robot, _choose(settings, method), detector=detector, near=near, freeze=freeze)
     found, run = _search_one(problem, target, check_seed(seed), announce_compile)
     return grade(problem, target, found, run)
 
@@ -82,7 +78,7 @@ def solve_distinct(
     """
     if count < 1:
         raise InputError(f"expected a whole number of at least 1, got {count}", ("count",))
-    chosen = settings or SolveSettings.for_method(method)
+    chosen = _choose(settings, method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
     solutions: list[SolveResult] = []
     attempt = 0
@@ -119,7 +115,7 @@ def solve_many(
     """
     if threads is not None and threads < 1:
         raise InputError(f"expected a whole number of at least 1, got {threads}", ("threads",))
-    chosen = settings or SolveSettings.for_method(method)
+    chosen = _choose(settings, method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
     streams = list(range(len(targets)))
     if not targets:
@@ -158,17 +154,19 @@ def check_seed(seed: int) -> int:
     return int(seed)
 
 
+def _choose(settings: SolveSettings | None, method: str) -> SolveSettings:
+    """The settings, or the method's own; a wrong name is an error either way."""
+    own = SolveSettings.for_method(method)
+    return own if settings is None else settings
+
+
 def _search_one(
     problem: Problem, target: Target, seed: int, announce: Callable[[], None] | None, first_attempt: int = 0
 ) -> tuple[Found, Run]:
-    """Search one target; a target that is proved out of reach gets a few attempts only."""
-    excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
-    attempts = problem.settings.restarts - first_attempt
-    if excess > problem.settings.position_tolerance_m:
-        attempts = min(OUT_OF_REACH_ATTEMPTS, attempts)
+    """Search one target from an attempt on, with the time it took."""
     with compile_clock(announce) as clock:
         search(problem, [target], seed=seed, streams=[0], attempts=0)
         started = time.perf_counter()
-        found = search(problem, [target], seed=seed, streams=[0], first_attempt=first_attempt, attempts=attempts)
+        found = search(problem, [target], seed=seed, streams=[0], first_attempt=first_attempt)
         seconds = time.perf_counter() - started
     return found, Run(seed=seed, stream=0, solve_seconds=seconds, compile_seconds=clock.seconds)

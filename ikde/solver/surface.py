@@ -42,6 +42,14 @@ def check_surface(
     d_i + d_j + safe distance, with d_i computed from the grid. A sphere deep inside another touches no surface and is
     seen by neither: centres ([Qiao2021, eq. 21], `check`) do not have that flaw.
 
+    Args:
+        robot: the robot.
+        q: joint values [N] or a mapping by joint name; m and rad.
+        detector: a name, a `Detector`, or None for the robot's default.
+        rule: `"eq. 18"` or `"eq. 20"`.
+        m_steps: steps of the angle m over the full circle.
+        n_steps: steps of the angle n over the half circle.
+
     Raises:
         InputError: for a detector without pairs, and as `check` does.
     """

@@ -1,0 +1,70 @@
+"""Commands in this process: quick, with what they print and their exit code."""
+
+import json
+import sys
+from dataclasses import dataclass
+
+import pytest
+
+import ikde
+from ikde.cli.app import run
+
+BLAS_PROBE = "scipy.linalg.cython_blas"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command did."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def data(self):
+        return json.loads(self.out)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _kernels_are_compiled():
+    """So that no command has to say that it compiles."""
+    settings = ikde.SolveSettings(population=6, generations=1, restarts=1)
+    ikde.solve_many(ikde.load_robot("qiao2021"), [ikde.Target((0, 0, 1))], settings, explain_failures=False)
+
+
+@pytest.fixture(autouse=True)
+def _scipy_stays_whole():
+    """`ikde solve` hides one module of scipy from its own process; other tests need it."""
+    yield
+    if sys.modules.get(BLAS_PROBE, run) is None:
+        del sys.modules[BLAS_PROBE]
+
+
+@pytest.fixture
+def cli(capsys):
+    """Run one command."""
+
+    def call(*arguments):
+        capsys.readouterr()
+        code = run([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return Outcome(code, captured.out, captured.err)
+
+    return call
+
+
+@pytest.fixture
+def refuse(cli, tmp_path, monkeypatch):
+    """Run one command that must be refused: exit code 2, one line on stderr, nothing on stdout, nothing written."""
+
+    def call(*arguments):
+        monkeypatch.chdir(tmp_path)
+        before = sorted(tmp_path.rglob("*"))
+        outcome = cli(*arguments)
+        assert (outcome.code, outcome.out) == (2, ""), outcome
+        assert len(outcome.err.splitlines()) == 1, outcome.err
+        assert outcome.err.startswith("ikde")
+        assert sorted(tmp_path.rglob("*")) == before
+        return outcome.err
+
+    return call

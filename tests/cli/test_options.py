@@ -1,0 +1,147 @@
+"""Options that commands share: units, joint values, detectors, frozen joints, and what is refused."""
+
+import json
+
+import pytest
+
+from ikde.cli.options import AngleUnit, LengthUnit, check_drawable, draw, read_detector, read_freeze, read_q
+from ikde.errors import FileError, InputError
+
+SOLVE = ("solve", "--position", "0.8", "0.5", "1")
+EVERY_COMMAND = [SOLVE, ("fk",), ("check",)]
+every_command = pytest.mark.parametrize("command", EVERY_COMMAND, ids=["solve", "fk", "check"])
+q_commands = pytest.mark.parametrize("command", [("fk",), ("check",)], ids=["fk", "check"])
+
+
+@every_command
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--robot qiao", "did you mean 'qiao2021'"),
+        ("--robot nope.yaml", "nope.yaml: no such file"),
+        ("--robot .", "no robot is called '.'"),
+        ("--robot ./", "this is a folder"),
+        ("--detector improv", "no detector 'improv'"),
+        ("--unit cm", "'cm' is not one of 'm', 'mm'"),
+        ("--angles grad", "'grad' is not one of 'rad', 'deg'"),
+        ("--convention dh", "no convention 'dh'"),
+        ("--colour", "No such option: --colour"),
+        ("extra", "extra"),
+        ("--robot", "requires an argument"),
+        ("--plot nowhere/a.png", "folder that exists"),
+        ("--plot a.xyz", "ends in .png, .svg, .pdf"),
+        ("--plot .", "cannot be drawn"),
+    ],
+)
+def test_what_every_command_refuses(refuse, command, options, words):
+    assert words in refuse(*command, *options.split())
+
+
+@q_commands
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "expected 9 joint values"),
+        ("1 2 3", "expected 9 joint values"),
+        ("1 2 3 4 5 6 7 8 x", "expected a number, got 'x'"),
+        ("nan 0 0 0 0 0 0 0 0", "finite"),
+        ("0 0 0 0 0 0 0 0 inf", "finite"),
+        ("q1=nan", "finite"),
+        ("q1=inf", "finite"),
+        ("q9=1", "no joint is called 'q9'"),
+        ("q1=1 q1=2", "given twice"),
+        ("nowhere.json", "no such file"),
+        ("folder.yaml", "this is a folder"),
+        ("bad.yaml", "bad.yaml:"),
+    ],
+)
+def test_bad_joint_values_are_refused(refuse, tmp_path, command, text, words):
+    (tmp_path / "folder.yaml").mkdir()
+    (tmp_path / "bad.yaml").write_text("q1: 1\nq2: [\n")
+    assert words in refuse(*command, "--q", text)
+
+
+@pytest.mark.parametrize("command", [SOLVE, ("check",)], ids=["solve", "check"])
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--pairs non_adj", "no pair list is called 'non_adj'"),
+        ("--robot qiao2021_dh --pairs non_adj", "pair"),
+        ("--detector none --pairs non_adj", "pair"),
+        ("--safe-distance -1", "at least 0"),
+        ("--safe-distance nan", "at least 0"),
+        ("--safe-distance inf", "at least 0"),
+        ("--safe-distance far", "--safe-distance"),
+    ],
+)
+def test_bad_detector_options_are_refused(refuse, command, options, words):
+    assert words in refuse(*command, *options.split())
+
+
+def test_without_text_the_joints_are_home(qiao):
+    assert read_q(qiao, None, LengthUnit.m, AngleUnit.rad, None).tolist() == qiao.home.tolist()
+
+
+def test_joints_that_are_not_named_stay_at_home(qiao):
+    q = read_q(qiao, "d_x=250 q2=90", LengthUnit.mm, AngleUnit.deg, None)
+    assert q == pytest.approx([0.25, 0, 0, 1.5707963267948966, 1.5707963267948966, 0, 0, 0, 0])
+
+
+def test_a_convention_counts_the_named_joints_only(qiao):
+    q = read_q(qiao, "q5=180", LengthUnit.m, AngleUnit.deg, "classical")
+    assert q == pytest.approx(qiao.home)
+
+
+@pytest.mark.parametrize("content", [{"q1": 0.5}, [0, 0, 0, 0.5, 0, 0, 0, 0, 0]])
+def test_joints_may_stand_in_a_file(qiao, tmp_path, content):
+    path = tmp_path / "q.json"
+    path.write_text(json.dumps(content))
+    assert read_q(qiao, str(path), LengthUnit.m, AngleUnit.rad, None).tolist() == [0, 0, 0, 0.5, 0, 0, 0, 0, 0]
+
+
+def test_a_detector_is_read_with_its_changes(qiao):
+    plain = read_detector(qiao, None, None, None, LengthUnit.m)
+    assert plain == qiao.detectors["improved"]
+    changed = read_detector(qiao, "typical", "arm_arm", 25.0, LengthUnit.mm)
+    assert (changed.spheres, changed.pairs) == ("typical", "arm_arm")
+    assert changed.safe_distance_m == pytest.approx(0.025)
+
+
+def test_no_detector_is_called_none(qiao):
+    assert read_detector(qiao, "none", None, None, LengthUnit.m) == "none"
+
+
+def test_frozen_joints_are_read_in_the_users_units_and_convention(qiao):
+    frozen = read_freeze(qiao, "d_x=200,q_z,q5=180", LengthUnit.mm, AngleUnit.deg, "classical")
+    assert frozen == {"d_x": pytest.approx(0.2), "q_z": None, "q5": pytest.approx(0.0)}
+    assert read_freeze(qiao, None, LengthUnit.m, AngleUnit.rad, None) is None
+
+
+@pytest.mark.parametrize("text", ["d_z", "d_x=a", "d_x=", "d_x=1=2", "d_x=nan", "d_x=inf", "d_x=1,d_x=2"])
+def test_a_bad_freeze_is_refused(qiao, text):
+    with pytest.raises(InputError):
+        read_freeze(qiao, text, LengthUnit.m, AngleUnit.rad, None)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.SVG", "a.pdf"])
+def test_a_name_that_can_be_drawn_is_accepted(tmp_path, name):
+    check_drawable(tmp_path / name)
+    check_drawable(None)
+
+
+@pytest.mark.parametrize("name", ["a.bmp", "a", "folder.png", "nowhere/a.png"])
+def test_a_name_that_cannot_be_drawn_is_refused(tmp_path, name):
+    (tmp_path / "folder.png").mkdir()
+    with pytest.raises(FileError):
+        check_drawable(tmp_path / name)
+
+
+def test_nothing_is_drawn_without_a_path(qiao, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    draw(None, qiao, qiao.home, None)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_drawing_writes_the_file(qiao, tmp_path):
+    draw(tmp_path / "a.png", qiao, qiao.home, "none")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,95 @@
+"""`ikde robots`: list, show, validate; what is wrong with a file is one line."""
+
+import pytest
+
+import ikde
+from tests.io.test_robot_file import GOOD
+
+
+@pytest.mark.parametrize("command", [("robots",), ("robots", "list")])
+def test_every_robot_is_listed(cli, command):
+    outcome = cli(*command)
+    assert (outcome.code, outcome.err) == (0, "")
+    for name in ikde.robot_names():
+        assert name in outcome.out
+
+
+def test_the_list_as_json(cli):
+    data = cli("robots", "list", "--json").data
+    assert [entry["name"] for entry in data] == list(ikde.robot_names())
+    assert {frozenset(entry) for entry in data} == {frozenset({"name", "title", "joints", "detectors"})}
+
+
+def test_a_robot_is_shown_with_its_sources(cli, any_robot):
+    outcome = cli("robots", "show", any_robot.name)
+    assert (outcome.code, outcome.err) == (0, "")
+    for name in any_robot.joint_names:
+        assert name in outcome.out
+    assert "where the numbers come from" in outcome.out
+
+
+def test_a_robot_as_json_is_in_metres_and_radians(cli, any_robot):
+    data = cli("robots", "show", any_robot.name, "--json").data
+    assert data["name"] == any_robot.name
+    assert [joint["upper"] for joint in data["joints"]] == any_robot.upper.tolist()
+    assert data["default_detector"] == any_robot.default_detector
+
+
+def test_a_good_file_is_valid(cli, tmp_path):
+    path = tmp_path / "two.yaml"
+    path.write_text(GOOD)
+    outcome = cli("robots", "validate", path)
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out == f"{path}: valid, robot two with 2 joints and 3 frames\n"
+    assert cli("robots", "validate", path, "--json").data == {"valid": True, "name": "two", "joints": 2, "frames": 3}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "words"),
+    [
+        ("radius: 200", "radius: -200", ":15 → spheres.coarse[0].radius", "above 0"),
+        ("radius: 200", "radius: 0", ":15 → spheres.coarse[0].radius", "above 0"),
+        ("lower: -90, upper: 90", "lower: 90, upper: -90", ":7 → joints.turn.upper", "upside down"),
+        ("parent: rail", "parent: tip", ":10 → frames.arm.parent", "a cycle"),
+        ("{box: [bar]}", "{box: [baz]}", ":18 → pairs.all.pairs.box", "did you mean 'bar'"),
+        ("home: 10", "hoem: 10", ":7 → joints.turn.hoem", "did you mean 'home'"),
+        ("tool: tip", "tol: tip", ":12 → tol", "did you mean 'tool'"),
+        ("[0, 0, 500]", "[0, 500]", ":10 → frames.arm.xyz", "expected 3 values, got 2"),
+        ("[0, 0, 500]", "[0, 0, .nan]", ":10 → frames.arm.xyz[2]", "finite"),
+        ("upper: 1e3", "upper: .inf", ":6 → joints.slide.upper", "finite"),
+        ("axis: [0, 1, 0]", "axis: [0, 0, 0]", ":10 → frames.arm.axis", "not zero"),
+        ("[0, 0, 500]", "[0, 0, 500", ":10", "not YAML"),
+        ("name: two", "name: 2", ":1 → name", "text"),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_one_line(refuse, tmp_path, old, new, place, words):
+    assert old in GOOD
+    path = tmp_path / "bad.yaml"
+    path.write_text(GOOD.replace(old, new, 1))
+    line = refuse("robots", "validate", path)
+    assert line.startswith(f"ikde: {path}{place}")
+    assert words in line
+
+
+@pytest.mark.parametrize("text", ["", "just words", "[1, 2]", "{}"])
+def test_a_file_that_is_no_robot_is_refused(refuse, tmp_path, text):
+    path = tmp_path / "bad.yaml"
+    path.write_text(text)
+    assert str(path) in refuse("robots", "validate", path)
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("validate nope.yaml", "no such file"),
+        ("validate .", "this is a folder"),
+        ("validate", "Missing argument"),
+        ("show", "Missing argument"),
+        ("show ur", "did you mean 'ur5'"),
+        ("shwo ur5", "Did you mean 'show'"),
+        ("show ur5 --unit cm", "'cm' is not one of"),
+        ("list extra", "extra"),
+    ],
+)
+def test_what_robots_refuses(refuse, command, words):
+    assert words in refuse("robots", *command.split())

@@ -1,0 +1,278 @@
+"""`ikde solve`."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ikde
+from tests.solver.test_solve import are_apart
+
+GOLDEN = Path(__file__).parent / "golden_solve.json"
+PROMISED = {
+    "reached",
+    "stop_reason",
+    "q",
+    "position_error_m",
+    "orientation_error_rad",
+    "clearance_m",
+    "closest_pair",
+    "self_collision",
+    "method",
+    "detector",
+    "seed",
+    "evaluations",
+    "solve_seconds",
+    "compile_seconds",
+    "verified",
+}
+BEYOND = {
+    "reason",
+    "hint",
+    "robot",
+    "convention",
+    "outside_limits",
+    "attempts",
+    "rejected",
+    "blocking_pairs",
+    "settings",
+}
+SOLVE = ("solve", "--position", "0.8", "0.5", "1")
+SOLVE_MM = ("solve", "--position", "800", "500", "1000", "--unit", "mm")
+
+
+def error_m(robot, data):
+    tool = ikde.forward(robot, data["q"], data["convention"])[robot.tool]
+    return np.linalg.norm(tool[:3, 3] - [0.8, 0.5, 1.0])
+
+
+def test_json_has_the_promised_keys(cli, qiao):
+    outcome = cli(*SOLVE, "--seed", 7, "--json")
+    assert outcome.code == 0
+    data = outcome.data
+    assert set(data) == PROMISED | BEYOND
+    assert tuple(data["q"]) == qiao.joint_names
+    assert (data["reached"], data["stop_reason"], data["self_collision"]) == (True, "reached", False)
+    assert (data["detector"], data["seed"], data["verified"]) == ("improved", 7, True)
+    assert data["clearance_m"] == ikde.check(qiao, data["q"]).clearance_m
+    assert data["position_error_m"] == error_m(qiao, data) <= 1e-5
+
+
+def test_the_answer_is_the_golden_one_bit_for_bit(cli):
+    """The bits are promised to be the same everywhere; a change of kernels or defaults means a new golden file."""
+    assert cli(*SOLVE_MM, "--json", "--seed", 7).data["q"] == json.loads(GOLDEN.read_text())
+
+
+def test_units_change_the_last_bits_at_most(cli):
+    metres, millimetres = (cli(*command, "--json").data["q"] for command in (SOLVE, SOLVE_MM))
+    assert metres == pytest.approx(millimetres, abs=1e-9)
+
+
+def test_the_same_seed_gives_the_same_answer_and_another_another(cli):
+    first, again, other = (cli(*SOLVE, "--json", "--seed", seed).data["q"] for seed in (3, 3, 4))
+    assert first == again != other
+
+
+def test_text_shows_verdict_joints_and_figures(cli, qiao):
+    outcome = cli(*SOLVE_MM, "--angles", "deg")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.startswith("reached: within tolerance")
+    for words in (*qiao.joint_names, "position error", "clearance", "mm", "deg", "seed 0"):
+        assert words in outcome.out
+    assert "\x1b" not in outcome.out
+
+
+def test_the_classical_answer_goes_back_through_fk(cli):
+    solved = cli(*SOLVE, "--convention", "classical", "--json").data
+    text = " ".join(repr(value) for value in solved["q"].values())
+    frames = cli("fk", "--q", text, "--convention", "classical", "--json").data["frames"]
+    error = np.linalg.norm(np.array(frames["tool"]["p_world"]) - [0.8, 0.5, 1.0])
+    assert solved["convention"] == "classical"
+    assert error == pytest.approx(solved["position_error_m"], abs=1e-12)
+
+
+def test_the_convention_moves_q5_only(cli):
+    own, classical = (cli(*SOLVE, "--json", *options).data["q"] for options in ((), ("--convention", "classical")))
+    assert {name for name in own if own[name] != classical[name]} == {"q5"}
+
+
+@pytest.mark.parametrize(
+    ("options", "rotation"),
+    [
+        ("--quat-wxyz 0 2 0 0", np.diag([1, -1, -1])),
+        ("--rpy 180 0 0 --angles deg", np.diag([1, -1, -1])),
+        ("--rpy 0 0 1.5707963267948966", [[0, -1, 0], [1, 0, 0], [0, 0, 1]]),
+    ],
+)
+def test_a_pose_is_met(cli, qiao, options, rotation):
+    outcome = cli(*SOLVE, *options.split(), "--json")
+    assert outcome.code == 0
+    assert outcome.data["orientation_error_rad"] <= 1e-4
+    tool = ikde.forward(qiao, outcome.data["q"])["tool"]
+    assert tool[:3, :3] == pytest.approx(np.array(rotation), abs=2e-4)
+
+
+def test_an_axis_is_met(cli, qiao):
+    outcome = cli(*SOLVE, "--axis", 0, 0, -3, "--json")
+    assert outcome.code == 0
+    assert ikde.forward(qiao, outcome.data["q"])["tool"][:3, 2] == pytest.approx([0, 0, -1], abs=2e-4)
+
+
+def test_tolerances_are_in_the_units_asked_for(cli):
+    options = ("--tolerance", "2", "--orientation-tolerance", "1", "--angles", "deg", "--axis", "0", "0", "1")
+    data = cli(*SOLVE_MM, *options, "--json").data
+    assert 1e-5 < data["position_error_m"] <= 2e-3
+    assert 1e-4 < data["orientation_error_rad"] <= np.radians(1)
+
+
+def test_several_solutions_are_distinct_and_numbered(cli, qiao):
+    outcome = cli(*SOLVE, "--count", 3, "--json")
+    assert outcome.code == 0
+    solutions = [list(entry["q"].values()) for entry in outcome.data["solutions"]]
+    assert len(solutions) == 3
+    assert solutions[0] == list(outcome.data["q"].values())
+    for i, q in enumerate(solutions):
+        assert all(are_apart(qiao, q, other) for other in solutions[:i])
+    assert "solution 3 of 3" in cli(*SOLVE, "--count", 3).out
+
+
+def test_fewer_solutions_than_asked_for_exit_with_1(cli, qiao):
+    frozen = ",".join(qiao.joint_names)
+    tool = ikde.forward(qiao, qiao.home)["tool"][:3, 3]
+    outcome = cli("solve", "--position", *tool, "--freeze", frozen, "--count", 2, "--restarts", 2, "--json")
+    assert outcome.code == 1
+    assert outcome.data["reached"] is True
+    assert len(outcome.data["solutions"]) == 1
+
+
+def test_frozen_joints_keep_their_values(cli):
+    data = cli(*SOLVE_MM, "--freeze", "d_x=200,q_z=10", "--angles", "deg", "--json").data
+    assert data["reached"] is True
+    assert data["q"]["d_x"] == 0.2
+    assert data["q"]["q_z"] == np.radians(10)
+
+
+def test_near_keeps_the_answer_close(cli):
+    start = cli(*SOLVE, "--seed", 5, "--json").data["q"]
+    text = " ".join(f"{name}={value!r}" for name, value in start.items())
+    near = cli(*SOLVE, "--near", text, "--json").data["q"]
+    far = cli(*SOLVE, "--json").data["q"]
+    distances = [max(abs(q[name] - start[name]) for name in start) for q in (near, far)]
+    assert distances[0] < 0.5 * distances[1]
+
+
+def test_an_unreachable_target_exits_with_1_and_says_why(cli):
+    outcome = cli("solve", "--position", 0, 0, 5, "--json")
+    assert outcome.code == 1
+    assert outcome.err == ""
+    assert (outcome.data["reached"], outcome.data["stop_reason"]) == (False, "out_of_reach")
+    assert outcome.data["hint"]
+    text = cli("solve", "--position", 0, 0, 5)
+    assert text.code == 1
+    assert text.out.startswith("not reached: out of reach")
+    assert "what would help" in text.out
+
+
+def test_a_target_at_the_end_of_the_world_is_not_a_bug(cli):
+    assert cli("solve", "--position", "1e300", 0, 0, "--restarts", 1).code in (1, 2)
+
+
+def test_the_papers_method_is_recorded(cli):
+    data = cli(*SOLVE, "--method", "de", "--json").data
+    assert (data["reached"], data["method"]) == (True, "de")
+    assert data["position_error_m"] <= 5e-5
+
+
+@pytest.mark.parametrize("method", ["auto", "de"])
+def test_the_same_command_with_the_seed_that_the_text_names_repeats_the_answer(cli, method):
+    def joints(*options):
+        lines = cli(*SOLVE, "--method", method, *options).out.splitlines()
+        return [line for line in lines if line.lstrip().startswith(("d_", "q"))], lines[-1]
+
+    first, line = joints("--seed", "7")
+    assert line.split()[:2] == ["repeat", "with"]
+    again, _ = joints("--seed", line.partition("seed ")[2].partition(":")[0])
+    assert again == first
+
+
+def test_no_detector_looks_at_nothing(cli):
+    data = cli(*SOLVE, "--detector", "none", "--json").data
+    assert (data["detector"], data["clearance_m"], data["closest_pair"]) == ("none", None, None)
+    assert "not looked at" in cli(*SOLVE, "--detector", "none").out
+
+
+def test_the_safe_distance_is_kept(cli):
+    data = cli(*SOLVE_MM, "--safe-distance", 30, "--json").data
+    assert data["reached"] is True
+    assert data["clearance_m"] > 0.03
+
+
+def test_a_figure_is_written(cli, tmp_path):
+    outcome = cli(*SOLVE, "--plot", tmp_path / "pose.png")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert (tmp_path / "pose.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--position nan 0 0", "finite"),
+        ("--position 0 0 inf", "finite"),
+        ("--position 1e400 0 0", "finite"),
+        ("--position a 0 0", "--position"),
+        ("--position 1 2", "requires 3 arguments"),
+        ("--tolerance 0", "--tolerance: expected a finite number above 0"),
+        ("--tolerance -1", "--tolerance: expected a finite number above 0"),
+        ("--tolerance nan", "--tolerance: expected a finite number above 0"),
+        ("--tolerance inf", "--tolerance: expected a finite number above 0"),
+        ("--orientation-tolerance 0", "--orientation-tolerance: expected a finite number above 0"),
+        ("--orientation-tolerance nan", "--orientation-tolerance: expected a finite number above 0"),
+        ("--quat-wxyz 0 0 0 0", "length 0"),
+        ("--quat-wxyz nan 0 0 0", "finite"),
+        ("--quat-wxyz 1 0 0", "requires 4 arguments"),
+        ("--axis 0 0 0", "length 0"),
+        ("--rpy inf 0 0", "finite"),
+        ("--rpy 0 0 0 --axis 0 0 1", "--rpy and --axis"),
+        ("--rpy 0 0 0 --quat-wxyz 1 0 0 0", "--quat-wxyz and --rpy"),
+        ("--seed -1", "seed"),
+        ("--seed 18446744073709551616", "seed"),
+        ("--seed 1.5", "--seed"),
+        ("--count 0", "count"),
+        ("--count -2", "count"),
+        ("--method ga", "method"),
+        ("--collision no", "settings.collision"),
+        ("--strategy rand/9", "settings.strategy"),
+        ("--bounds wrap", "settings.bounds"),
+        ("--update never", "settings.update"),
+        ("--population 5", "settings.population"),
+        ("--generations 0", "settings.generations"),
+        ("--restarts 0", "settings.restarts"),
+        ("--weight nan", "settings.weight"),
+        ("--crossover 1.5", "settings.crossover"),
+        ("--freeze d_z", "did you mean 'q_z'"),
+        ("--freeze d_x=a", "freeze.d_x"),
+        ("--freeze d_x=9", "outside the limits"),
+        ("--freeze d_x=nan", "finite"),
+        ("--freeze d_x=1,d_x=2", "d_x"),
+        ("--near 1,2,3", "expected 9 joint values"),
+        ("--near q9=1", "no joint is called 'q9'"),
+        ("--near q1=nan", "finite"),
+    ],
+)
+def test_what_solve_refuses(refuse, options, words):
+    assert words in refuse(*SOLVE, *options.split())
+
+
+def test_a_position_is_needed(refuse):
+    assert "--position" in refuse("solve")
+
+
+def test_a_figure_that_cannot_be_written_is_refused_before_the_search(refuse, monkeypatch):
+    monkeypatch.setattr("ikde.solver.solve.solve_distinct", None)  # would be a bug if it were called
+    refuse(*SOLVE, "--plot", "nowhere/a.png")
+
+
+def test_an_unknown_convention_is_refused_before_the_search(refuse, monkeypatch):
+    monkeypatch.setattr("ikde.solver.solve.solve_distinct", None)
+    refuse(*SOLVE, "--convention", "dh")

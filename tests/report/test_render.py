@@ -1,0 +1,41 @@
+"""Rich renderables as plain text."""
+
+import pytest
+
+from ikde.report.render import make_table, render
+
+ESCAPE = "\x1b"
+
+
+def test_plain_text_has_no_colour():
+    text = render("[bold red]alarm[/]: all is well")
+    assert text == "alarm: all is well"
+
+
+def test_colour_comes_only_if_asked_for():
+    assert ESCAPE in render("[bold red]alarm[/]", color=True)
+
+
+def test_columns_are_aligned_as_their_names_say():
+    table = make_table("name", ">value")
+    table.add_row("a", "1")
+    table.add_row("longer", "1000")
+    lines = render(table).strip("\n").splitlines()
+    assert lines[0].split() == ["name", "value"]
+    assert lines[-2].endswith("    1")
+    assert lines[-1].endswith(" 1000")
+
+
+@pytest.mark.parametrize("name", ["clearance [mm]", ">x [m]", "[deg]"])
+def test_a_unit_in_brackets_is_no_markup(name):
+    assert name.removeprefix(">") in render(make_table(name, "other"))
+
+
+def test_no_line_ends_in_blanks_and_no_two_lines_are_empty():
+    text = render("a", "", "", make_table("b", title="c"), "d")
+    assert all(line == line.rstrip() for line in text.splitlines())
+    assert "\n\n\n" not in text
+
+
+def test_long_lines_are_folded_at_the_width():
+    assert max(map(len, render("word " * 100, width=40).splitlines())) <= 40

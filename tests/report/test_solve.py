@@ -1,0 +1,127 @@
+"""A result as text and as JSON: nothing is lost, units and convention are the user's."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.report.solve import BAR, format_solve, solve_json
+from ikde.report.units import Units
+
+TARGET = ikde.Target((0.8, 0.5, 1.0))
+MM_DEG = Units("mm", "deg")
+
+
+@pytest.fixture(scope="module")
+def result(qiao):
+    return ikde.solve(qiao, TARGET, seed=7)
+
+
+@pytest.fixture(scope="module")
+def blocked(qiao):
+    """A target inside the platform, which stands still."""
+    settings = ikde.SolveSettings.for_method("auto").with_changes(restarts=2, generations=500)
+    return ikde.solve(qiao, ikde.Target((0.34, 0, 0.2)), settings, freeze={"d_x": 0, "d_y": 0, "q_z": 0})
+
+
+def bars(text):
+    return [word for word in text.split() if "●" in word]
+
+
+def test_json_holds_the_figures_to_the_last_bit(qiao, result):
+    data = json.loads(json.dumps(solve_json(qiao, result), allow_nan=False))
+    assert list(data["q"].values()) == result.q.tolist()
+    assert list(data["q"]) == list(qiao.joint_names)
+    for name in ("position_error_m", "orientation_error_rad", "clearance_m", "seed", "evaluations", "verified"):
+        assert data[name] == getattr(result, name)
+    assert data["closest_pair"] == list(result.closest_pair)
+
+
+def test_json_is_in_the_convention_asked_for(qiao, result):
+    data = solve_json(qiao, result, "classical")
+    assert data["convention"] == "classical"
+    assert ikde.from_convention(qiao, np.array(list(data["q"].values())), "classical") == pytest.approx(result.q)
+    assert solve_json(qiao, result)["convention"] == "key_point"
+
+
+def test_json_of_a_failure_names_reason_hint_and_pairs(qiao, blocked):
+    data = json.loads(json.dumps(solve_json(qiao, blocked), allow_nan=False))
+    assert (data["reached"], data["stop_reason"]) == (False, "self_collision")
+    assert data["reason"] == blocked.reason
+    assert data["hint"] == blocked.hint
+    first = next(iter(blocked.blocking_pairs.items()))
+    assert data["blocking_pairs"][0] == {"a": first[0][0], "b": first[0][1], "count": first[1]}
+
+
+def test_json_without_a_detector_has_nulls(qiao):
+    data = solve_json(qiao, ikde.solve(qiao, TARGET, detector="none"))
+    assert (data["clearance_m"], data["closest_pair"], data["self_collision"]) == (None, None, False)
+
+
+def test_text_says_the_verdict_first(qiao, result, blocked):
+    assert format_solve(qiao, result, Units()).startswith("reached: ")
+    text = format_solve(qiao, blocked, Units())
+    assert text.startswith("not reached: only colliding solutions")
+    assert "what would help: " in text
+
+
+def test_text_shows_every_joint_in_its_unit(qiao, result):
+    lines = {line.split()[0]: line.split() for line in format_solve(qiao, result, MM_DEG).splitlines() if line.strip()}
+    for joint, value in zip(qiao.joints, result.q, strict=True):
+        shown = lines[joint.name]
+        assert float(shown[1]) == pytest.approx(MM_DEG.joint_value(joint, value), abs=1e-6)
+        assert shown[2] == ("mm" if joint.kind == "prismatic" else "deg")
+        assert float(shown[3]) == pytest.approx(MM_DEG.joint_value(joint, joint.lower), rel=1e-3)
+        assert float(shown[5]) == pytest.approx(MM_DEG.joint_value(joint, joint.upper), rel=1e-3)
+
+
+def test_a_bar_shows_where_a_joint_stands(qiao, result):
+    for q, place in ((qiao.lower, 0), (qiao.upper, BAR - 1), (0.5 * (qiao.lower + qiao.upper), (BAR - 1) // 2)):
+        drawn = bars(format_solve(qiao, replace(result, q=q), Units()))
+        assert [bar.index("●") for bar in drawn] == [place] * 9
+        assert {len(bar) for bar in drawn} == {BAR}
+
+
+def test_text_in_another_convention_shifts_value_and_limits(qiao, result):
+    text = format_solve(qiao, result, MM_DEG, convention="classical")
+    row = next(line.split() for line in text.splitlines() if line.strip().startswith("q5"))
+    shown = ikde.to_convention(qiao, result.q, "classical")[7]
+    assert "classical convention" in text
+    assert float(row[1]) == pytest.approx(np.degrees(shown), abs=1e-6)
+
+
+@pytest.mark.parametrize("q5", [-1.0, 1.0])
+def test_no_limits_are_shown_that_the_value_shown_is_not_between(qiao, result, q5):
+    q = result.q.copy()
+    q[7] = q5
+    text = format_solve(qiao, replace(result, q=q), MM_DEG, convention="classical")
+    row = next(line.split() for line in text.splitlines() if line.strip().startswith("q5"))
+    limits = [float(word) for word in row[3:] if "●" not in word]
+    assert limits == [] or limits[0] <= float(row[1]) <= limits[1]
+
+
+def test_text_shows_the_graded_figures(qiao, result):
+    text = format_solve(qiao, result, MM_DEG)
+    a, b = result.closest_pair
+    assert f"{result.clearance_m * 1e3:.6g} mm between {a} and {b}, detector improved" in text
+    assert f"{result.position_error_m * 1e3:.3g} mm" in text
+    assert "seed 7" in text
+    assert "1 attempt\n" in text
+
+
+def test_a_compilation_is_on_its_own_line(qiao, result):
+    assert "compiled first" not in format_solve(qiao, replace(result, compile_seconds=0.0), Units())
+    text = format_solve(qiao, replace(result, compile_seconds=12.34), Units())
+    assert "12.3 s" in next(line for line in text.splitlines() if "compiled first" in line)
+
+
+def test_rejected_attempts_are_counted(qiao, result):
+    assert "3 attempts, 2 rejected for collision" in format_solve(
+        qiao, replace(result, attempts=3, rejected=2), Units()
+    )
+
+
+def test_a_reason_with_brackets_is_shown_as_it_is(qiao, result):
+    assert "see [1]" in format_solve(qiao, replace(result, reason="see [1] and [/]"), Units())

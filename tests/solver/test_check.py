@@ -1,0 +1,111 @@
+"""`check`: the clearance of every pair, worst first; collision begins at the safe distance, which belongs to it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from tests.conftest import ROBOTS, random_q
+
+DETECTORS = [(name, detector) for name in ROBOTS for detector in ikde.load_robot(name).detectors]
+every_detector = pytest.mark.parametrize(("name", "detector"), DETECTORS)
+
+
+@every_detector
+def test_every_pair_is_there_once_and_the_worst_is_first(name, detector, rng):
+    robot = ikde.load_robot(name)
+    result = ikde.check(robot, random_q(robot, rng), detector)
+    clearances = [pair.clearance_m for pair in result.pairs]
+    assert clearances == sorted(clearances)
+    assert result.clearance_m == clearances[0]
+    pairs = robot.pair_lists[robot.detectors[detector].pairs]
+    assert sorted((pair.a, pair.b) for pair in result.pairs) == sorted(pairs)
+    assert result.detector == detector
+
+
+@every_detector
+def test_a_pair_collides_exactly_from_the_safe_distance_on(name, detector, rng):
+    robot = ikde.load_robot(name)
+    q = robot.home
+    for pair in ikde.check(robot, q, detector).pairs:
+        if pair.clearance_m < 0.0:
+            continue
+        for distance, collides in (
+            (pair.clearance_m, True),
+            (np.nextafter(pair.clearance_m, np.inf), True),
+            (max(0.0, np.nextafter(pair.clearance_m, -np.inf)), False),
+        ):
+            judge = replace(robot.detectors[detector], safe_distance_m=float(distance))
+            found = {(other.a, other.b): other.collides for other in ikde.check(robot, q, judge).pairs}
+            assert found[pair.a, pair.b] is collides
+
+
+def test_collision_means_that_some_pair_collides(qiao, rng):
+    verdicts = set()
+    for q in random_q(qiao, rng, 60):
+        result = ikde.check(qiao, q)
+        verdicts.add(result.collision)
+        assert result.collision == any(pair.collides for pair in result.pairs) == (result.clearance_m <= 0.0)
+        assert all(pair.collides == (pair.clearance_m <= 0.0) for pair in result.pairs)
+    assert verdicts == {True, False}
+
+
+def test_clearance_does_not_depend_on_where_the_base_stands(qiao, rng):
+    for q in random_q(qiao, rng, 10):
+        moved = q + np.array([1.5, -2.0, 0.7, 0, 0, 0, 0, 0, 0])
+        assert ikde.check(qiao, moved).clearance_m == pytest.approx(ikde.check(qiao, q).clearance_m, abs=1e-12)
+
+
+def test_clearance_is_the_distance_of_the_closest_spheres(qiao):
+    """J4 and J6 at home, written out: centres of two single spheres, radius 70 mm each."""
+    frames = ikde.forward(qiao, qiao.home)
+    distance = np.linalg.norm(frames["O3"][:3, 3] - frames["O6"][:3, 3])
+    pairs = {(pair.a, pair.b): pair.clearance_m for pair in ikde.check(qiao, qiao.home).pairs}
+    assert pairs["J4", "J6"] == pytest.approx(distance - 0.14, abs=1e-15)
+
+
+@pytest.mark.parametrize(("name", "choice"), [("qiao2021", "none"), ("qiao2021_dh", None)])
+def test_without_a_detector_nothing_is_looked_at(name, choice):
+    robot = ikde.load_robot(name)
+    result = ikde.check(robot, robot.home, choice)
+    assert (result.collision, result.clearance_m, result.pairs) == (False, None, ())
+    assert (result.detector, result.safe_distance_m) == ("none", 0.0)
+
+
+def test_values_outside_the_limits_are_named_not_refused(qiao):
+    q = qiao.home
+    q[0], q[4] = 5.5, -3.0
+    assert ikde.check(qiao, q).outside_limits == ("d_x", "q2")
+    assert ikde.check(qiao, qiao.home).outside_limits == ()
+
+
+def test_q_comes_back_in_the_robots_own_convention(qiao):
+    said = ikde.to_convention(qiao, qiao.home, "classical")
+    result = ikde.check(qiao, said, convention="classical")
+    assert result.q == pytest.approx(qiao.home)
+    assert result.clearance_m == pytest.approx(ikde.check(qiao, qiao.home).clearance_m, abs=1e-12)
+
+
+def test_a_detector_of_ones_own_is_used(qiao):
+    mine = ikde.Detector(name="mine", spheres="typical", pairs="arm_arm", safe_distance_m=0.01)
+    result = ikde.check(qiao, qiao.home, mine)
+    assert (result.detector, result.safe_distance_m) == ("mine", 0.01)
+    assert len(result.pairs) == len(qiao.pair_lists["arm_arm"])
+
+
+@pytest.mark.parametrize(
+    ("q", "options", "words"),
+    [
+        ([0.0] * 8, {}, "expected 9 joint values"),
+        ([np.nan] * 9, {}, "finite"),
+        ([0.0] * 9, {"detector": "improv"}, "no detector 'improv'"),
+        ([0.0] * 9, {"convention": "dh"}, "no convention 'dh'"),
+        ([0.0] * 9, {"detector": ikde.Detector(name="a", spheres="b", pairs="arm_arm")}, "'b'"),
+        ([0.0] * 9, {"detector": ikde.Detector(name="a", spheres="typical", pairs="b")}, "'b'"),
+    ],
+)
+def test_what_does_not_fit_the_robot_is_refused(qiao, q, options, words):
+    with pytest.raises(InputError, match=words):
+        ikde.check(qiao, q, **options)

@@ -1,0 +1,162 @@
+"""Why there is no solution: the word is right, the figures are right, and the hint works."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.kernels.lanes import ATTEMPTS, COLLIDING, COUNTS, REACHED
+from ikde.model.reach import reach_excess_m
+from ikde.solver.search import Found
+
+QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=6, generations=500)
+TARGET = ikde.Target((0.8, 0.5, 1.0))
+INSIDE_THE_PLATFORM = ikde.Target((0.34, 0.0, 0.2))
+PARKED = {"d_x": 0.0, "d_y": 0.0, "q_z": 0.0}
+
+
+def with_base_range(robot, half_m):
+    """The robot whose slides go from -half to half."""
+
+    def cut(joint):
+        return replace(joint, lower=-half_m, upper=half_m) if joint.kind == "prismatic" else joint
+
+    return replace(robot, joints=tuple(cut(joint) for joint in robot.joints))
+
+
+def excess_m(robot, position, *, frozen=False):
+    lower, upper = robot.lower, robot.upper
+    if frozen:
+        lower[:3] = upper[:3] = 0.0
+    return reach_excess_m(robot, np.array(position), lower, upper)
+
+
+def test_out_of_reach_states_the_excess(qiao):
+    result = ikde.solve(qiao, ikde.Target((20.0, 0.0, 1.0)), QUICK)
+    assert result.stop_reason == "out_of_reach"
+    excess = excess_m(qiao, (20.0, 0.0, 1.0))
+    assert f"at least {excess:.3f} m beyond" in result.reason
+    assert 0.0 < excess <= result.position_error_m
+    assert result.blocking_pairs == {}
+
+
+def test_out_of_reach_is_known_after_a_few_attempts(qiao):
+    result = ikde.solve(qiao, ikde.Target((20.0, 0.0, 1.0)), QUICK.with_changes(restarts=1000))
+    assert result.attempts == 4
+
+
+def test_the_hint_of_a_larger_range_works(qiao):
+    small, position = with_base_range(qiao, 0.01), (1.9, 0.0, 0.6)
+    result = ikde.solve(small, ikde.Target(position), QUICK)
+    assert result.stop_reason == "out_of_reach"
+    assert result.hint == "a larger range for d_x, d_y would bring it into reach"
+    assert ikde.solve(with_base_range(qiao, 2.0), ikde.Target(position)).reached
+
+
+def test_the_hint_of_freeing_joints_works(qiao):
+    target = ikde.Target((3.0, 0.0, 1.0))
+    result = ikde.solve(qiao, target, QUICK, freeze=["d_x", "d_y"])
+    assert result.stop_reason == "out_of_reach"
+    assert result.hint.startswith("free d_x, d_y")
+    assert ikde.solve(qiao, target).reached
+
+
+def test_no_range_helps_a_target_above_the_arm(qiao):
+    result = ikde.solve(qiao, ikde.Target((0.0, 0.0, 5.0)), QUICK)
+    assert result.stop_reason == "out_of_reach"
+    assert result.hint.startswith("a target closer to the robot")
+    assert excess_m(with_base_range(qiao, 1e3), (0.0, 0.0, 5.0)) > 3.0
+
+
+@pytest.mark.parametrize("collision", ["feasibility", "reject"])
+def test_a_target_inside_the_platform_is_met_by_colliding_configurations_only(qiao, collision):
+    settings = QUICK.with_changes(collision=collision)
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, settings, freeze=PARKED)
+    assert result.stop_reason == "self_collision"
+    assert not result.reached
+    assert result.reason.startswith("only colliding solutions found")
+    assert ("M", "LT") in result.blocking_pairs
+    counts = list(result.blocking_pairs.values())
+    assert counts == sorted(counts, reverse=True)
+    assert counts[-1] > 0
+    assert result.hint
+
+
+def test_blocking_pairs_count_at_most_once_an_attempt(qiao):
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK.with_changes(collision="reject"), freeze=PARKED)
+    assert max(result.blocking_pairs.values()) <= result.rejected <= result.attempts
+
+
+def test_self_collision_names_frozen_joints_if_freeing_them_helps(qiao):
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK.with_changes(generations=1000), freeze=PARKED)
+    assert result.hint.startswith("free d_x, d_y, q_z")
+    assert ikde.solve(qiao, INSIDE_THE_PLATFORM).reached
+
+
+def test_a_detector_that_collides_everywhere_is_named_by_its_pairs(qiao):
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK, detector="single", freeze=PARKED)
+    assert result.stop_reason == "self_collision"
+    assert ("M", "LT") in result.blocking_pairs
+    assert result.detector == "single"
+
+
+def test_a_target_just_outside_the_joint_ranges_names_the_joints_to_widen(qiao):
+    small, target = with_base_range(qiao, 0.1), ikde.Target((1.9, 0.0, 0.6))
+    result = ikde.solve(small, target, QUICK)
+    assert result.stop_reason == "limits"
+    assert result.reason.startswith("no configuration inside the joint ranges")
+    assert result.hint.startswith("a wider range for d_x")
+    wide = ikde.solve(with_base_range(qiao, 0.4), target)
+    assert wide.reached
+    assert abs(wide.q[0]) > 0.1
+
+
+def test_a_target_that_frozen_joints_exclude_names_them(qiao):
+    frozen = PARKED | {"q1": 0.0, "q2": 0.0}
+    result = ikde.solve(qiao, TARGET, QUICK, freeze=frozen)
+    assert result.stop_reason == "limits"
+    assert result.hint.startswith("free d_x, d_y, q_z, q1, q2")
+
+
+def test_a_spent_budget_is_called_so(qiao):
+    settings = QUICK.with_changes(restarts=1, generations=3)
+    result = ikde.solve(qiao, TARGET, settings)
+    assert result.stop_reason == "budget"
+    assert result.reason.startswith("1 attempt")
+    assert f"{result.position_error_m:.3g} m" in result.reason
+    assert "more generations or restarts" in result.hint
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_near_miss_hints_at_a_tolerance_that_accepts_it(qiao, seed):
+    coarse = ikde.SolveSettings(update="in_place", generations=400, restarts=1, position_tolerance_m=1e-5)
+    missed = ikde.solve(qiao, TARGET, coarse, detector="none", seed=seed)
+    assert missed.stop_reason == "budget"
+    assert missed.hint.startswith("a tolerance of")
+    tolerance_m = float(missed.hint.split()[3])
+    again = ikde.solve(qiao, TARGET, coarse.with_changes(position_tolerance_m=tolerance_m), detector="none", seed=seed)
+    assert again.reached
+
+
+def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monkeypatch):
+    def probe(problem, targets, **options):
+        counts = np.zeros((1, COUNTS), dtype=np.int64)
+        counts[0, [REACHED, ATTEMPTS, COLLIDING]] = 1, 2, 1
+        return Found(q=qiao.home[None], counts=counts, pair_counts=np.ones((1, 35), dtype=np.int64))
+
+    monkeypatch.setattr("ikde.solver.explain.search", probe)
+    result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, generations=3))
+    assert result.stop_reason != "self_collision"
+    assert not result.reason.startswith("only colliding")
+
+
+def test_an_explanation_repeats(qiao):
+    first, again = (ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK, freeze=PARKED, seed=3) for _ in range(2))
+    assert (first.reason, first.hint, first.blocking_pairs) == (again.reason, again.hint, again.blocking_pairs)
+
+
+@pytest.mark.parametrize("position", [(0.0, 0.0, 5.0), (0.34, 0.0, 0.2)])
+def test_a_reason_and_a_hint_are_one_line(qiao, position):
+    result = ikde.solve(qiao, ikde.Target(position), QUICK, freeze=PARKED)
+    assert "\n" not in result.reason + result.hint

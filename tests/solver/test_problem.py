@@ -1,0 +1,145 @@
+"""What holds in a search: ranges after freezing, the start, and the numbers that the kernels get."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.kernels.evolution import FEASIBILITY, IGNORE, REJECT
+from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.solver.problem import make_problem, pack_search
+
+
+def make(robot, settings=None, **options):
+    given = {"detector": None, "near": None, "freeze": None} | options
+    return make_problem(robot, settings or ikde.SolveSettings(), **given)
+
+
+def frozen_values(robot, problem):
+    """Value of every joint whose range is one point; these are the joints called frozen."""
+    fixed = {
+        name: float(lower)
+        for name, lower, upper in zip(robot.joint_names, problem.lower, problem.upper, strict=True)
+        if lower == upper
+    }
+    assert set(problem.frozen) == set(fixed)
+    return fixed
+
+
+def test_nothing_frozen_leaves_the_limits(qiao):
+    problem = make(qiao)
+    assert problem.lower.tolist() == qiao.lower.tolist()
+    assert problem.upper.tolist() == qiao.upper.tolist()
+    assert (problem.frozen, problem.near) == ((), None)
+    assert problem.detector == qiao.detectors["improved"]
+
+
+@pytest.mark.parametrize(
+    ("freeze", "near", "expected"),
+    [
+        ({"d_x": 0.2, "q1": -1.0}, None, {"d_x": 0.2, "q1": -1.0}),
+        ({"q1": None}, None, {"q1": np.pi / 2}),
+        (["q1", "d_y"], None, {"q1": np.pi / 2, "d_y": 0.0}),
+        (("q1",), {"q1": 0.5}, {"q1": 0.5}),
+        ({"q1": None, "q2": 0.1}, {"q1": 0.5, "q2": 0.9}, {"q1": 0.5, "q2": 0.1}),
+        (iter(["q2"]), {"q1": 0.5}, {"q2": 0.0}),
+        ({}, None, {}),
+        ([], {"q1": 0.5}, {}),
+    ],
+)
+def test_every_form_of_freeze(qiao, freeze, near, expected):
+    assert frozen_values(qiao, make(qiao, freeze=freeze, near=near)) == expected
+
+
+@pytest.mark.parametrize("side", ["lower", "upper"])
+def test_a_joint_may_be_frozen_on_its_limit(qiao, side):
+    limit = float(getattr(qiao, side)[4])
+    assert frozen_values(qiao, make(qiao, freeze={"q2": limit})) == {"q2": limit}
+
+
+@pytest.mark.parametrize(
+    ("freeze", "words"),
+    [
+        ({"d_x": 5.1}, r"freeze\.d_x: 5\.1 is outside the limits \[-5, 5\]"),
+        ({"q2": -3.0}, r"freeze\.q2: -3 is outside the limits"),
+        ({"q9": 0.0}, "no joint 'q9'"),
+        (["q9"], "no joint 'q9'"),
+        ({"q1": np.nan}, "finite"),
+        ({"q1": "a"}, "expected numbers"),
+    ],
+)
+def test_a_bad_freeze_is_refused(qiao, freeze, words):
+    with pytest.raises(InputError, match=words):
+        make(qiao, freeze=freeze)
+
+
+def test_freezing_at_a_start_outside_the_limits_is_refused(qiao):
+    with pytest.raises(InputError, match=r"freeze\.d_x: 7 is outside"):
+        make(qiao, near={"d_x": 7.0}, freeze=["d_x"])
+
+
+def test_near_is_clipped_to_the_ranges_that_hold(qiao):
+    problem = make(qiao, near={"d_x": 9.0, "q2": -9.0, "q3": 0.5}, freeze={"q3": 0.1})
+    assert problem.near[[0, 4, 5]].tolist() == [5.0, qiao.lower[4], 0.1]
+
+
+def test_joints_that_near_leaves_out_start_at_home(qiao):
+    problem = make(qiao, near={"d_x": 1.0})
+    assert problem.near.tolist() == [1.0, *qiao.home[1:]]
+
+
+def test_the_robots_limits_are_not_written_over(qiao):
+    before = qiao.lower.tolist()
+    make(qiao, freeze={"d_x": 0.2})
+    assert qiao.lower.tolist() == before
+
+
+def test_other_ranges_free_the_joints(qiao):
+    problem = make(qiao, freeze=["d_x"]).with_ranges(qiao.lower, qiao.upper)
+    assert problem.frozen == ()
+    assert problem.lower[0] == -5.0
+
+
+def test_changed_settings_leave_the_rest(qiao):
+    problem = make(qiao, freeze=["d_x"])
+    changed = problem.with_settings(collision="reject")
+    assert (changed.settings.collision, changed.frozen, problem.settings.collision) == (
+        "reject",
+        ("d_x",),
+        "feasibility",
+    )
+
+
+@pytest.mark.parametrize(
+    ("detector", "collision", "rule"),
+    [(None, "reject", REJECT), (None, "feasibility", FEASIBILITY), ("none", "reject", IGNORE)],
+)
+def test_the_collision_rule_is_packed(qiao, detector, collision, rule):
+    settings = ikde.SolveSettings(collision=collision)
+    assert pack_search(make(qiao, settings, detector=detector)).collision_rule == rule
+
+
+def test_numbers_are_packed_as_they_are(qiao):
+    settings = ikde.SolveSettings(
+        population=9, generations=8, weight=1, crossover=0, strategy="best/2", bounds="clip", update="in_place"
+    )
+    packed = pack_search(make(qiao, settings))
+    assert (packed.population, packed.generations, packed.weight, packed.crossover) == (9, 8, 1.0, 0.0)
+    assert (STRATEGIES[packed.strategy], REPAIRS[packed.repair], packed.in_place) == ("best/2", "clip", True)
+    assert packed.ranges[:2].tolist() == [qiao.lower.tolist(), qiao.upper.tolist()]
+
+
+def test_without_near_the_whole_range_is_searched_at_once(qiao):
+    assert pack_search(make(qiao)).first_box == 1.0
+    packed = pack_search(make(qiao, near=qiao.home))
+    assert packed.first_box == 1 / 64
+    assert packed.ranges[2].tolist() == qiao.home.tolist()
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-12, 1e-300])
+def test_kernels_aim_a_hair_below_the_tolerance(qiao, tolerance):
+    settings = ikde.SolveSettings(position_tolerance_m=tolerance, orientation_tolerance_rad=tolerance)
+    packed = pack_search(make(qiao, settings))
+    for aim in (packed.position_tolerance, packed.orientation_tolerance):
+        assert 0.5 * tolerance <= aim < tolerance
+        assert tolerance - aim <= 1e-12

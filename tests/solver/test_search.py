@@ -1,0 +1,120 @@
+"""The one place that calls the search kernels: bits do not hang on threads or calls, and Ctrl-C gets through."""
+
+import threading
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.kernels.lanes import ATTEMPTS, EVALUATIONS, REACHED
+from ikde.solver import search as module
+from ikde.solver.problem import make_problem
+from ikde.solver.search import search, usable_cores
+
+CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=3)
+TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
+
+
+@pytest.fixture
+def problem(qiao):
+    return make_problem(qiao, CHEAP, detector=None, near=None, freeze=None)
+
+
+def bits(found):
+    return found.q.tobytes(), found.counts.tobytes(), found.pair_counts.tobytes()
+
+
+def run(problem, targets=TARGETS, streams=range(5), **options):
+    return search(problem, targets, seed=7, streams=list(streams), **options)
+
+
+@pytest.mark.parametrize("threads", [2, 3, 16, None])
+def test_threads_do_not_change_the_bits(problem, threads):
+    assert bits(run(problem, threads=threads)) == bits(run(problem, threads=1))
+
+
+def test_an_answer_hangs_on_its_stream_not_on_its_neighbours(problem):
+    whole = run(problem)
+    for k, target in enumerate(TARGETS):
+        assert bits(run(problem, [target], [k])) == bits(whole.row(k))
+
+
+def test_cutting_attempts_into_calls_does_not_change_the_bits(problem, monkeypatch):
+    whole = run(problem)
+    monkeypatch.setattr(module, "ATTEMPTS_PER_CALL", 1)
+    assert bits(run(problem)) == bits(whole)
+
+
+def test_streams_and_seeds_are_different_searches(problem):
+    same_target = run(problem, [TARGETS[0]] * 3, range(3)).q
+    assert len({q.tobytes() for q in same_target}) == 3
+    other = search(problem, TARGETS[:1], seed=8, streams=[0]).q
+    assert other.tobytes() != same_target[:1].tobytes()
+
+
+def test_attempts_and_evaluations_are_counted(problem):
+    counts = run(problem).counts
+    assert counts[:, REACHED].tolist() == [0] * 5
+    assert counts[:, ATTEMPTS].tolist() == [3] * 5
+    assert np.all(counts[:, EVALUATIONS] >= 3 * 8 * 5)
+
+
+def test_no_attempts_search_nothing(problem):
+    found = run(problem, attempts=0)
+    assert not found.q.any()
+    assert not found.counts.any()
+
+
+def test_later_attempts_are_other_attempts(problem):
+    first, second = (run(problem, first_attempt=k, attempts=1) for k in (0, 1))
+    assert first.q.tobytes() != second.q.tobytes()
+
+
+def test_a_reached_target_is_not_searched_further(qiao):
+    settings = ikde.SolveSettings.for_method("auto")
+    found = search(
+        make_problem(qiao, settings, detector=None, near=None, freeze=None), TARGETS, seed=1, streams=range(5)
+    )
+    assert found.counts[:, REACHED].tolist() == [1] * 5
+    assert found.counts[:, ATTEMPTS].max() < settings.restarts
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_ctrl_c_inside_a_lane_gets_through(problem, monkeypatch, threads):
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "solve_lane", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run(problem, threads=threads)
+
+
+def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch):
+    begun = []
+    wait = threading.Event()
+
+    def lane(robot, detector, target, index, *rest):
+        begun.append(index)
+        if index == 0:
+            raise KeyboardInterrupt
+        wait.wait(0.05)  # long enough that the first is heard of
+
+    monkeypatch.setattr(module, "solve_lane", lane)
+    monkeypatch.setattr(module, "ATTEMPTS_PER_CALL", 1)
+    targets = TARGETS * 20
+    with pytest.raises(KeyboardInterrupt):
+        run(problem, targets, range(100), threads=2, attempts=50)
+    assert len(begun) < 100
+
+
+def test_an_error_inside_a_lane_gets_through(problem, monkeypatch):
+    def broken(*arguments):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(module, "solve_lane", broken)
+    with pytest.raises(ZeroDivisionError):
+        run(problem, threads=2)
+
+
+def test_there_is_a_core_to_use():
+    assert usable_cores() >= 1

@@ -1,0 +1,87 @@
+"""Settings: the defaults of each method, and what is refused."""
+
+from dataclasses import FrozenInstanceError, fields
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.kernels.mutation import REPAIRS, STRATEGIES
+
+GOOD = {
+    "strategy": STRATEGIES,
+    "bounds": REPAIRS,
+    "update": ("generation", "in_place"),
+    "collision": ("reject", "feasibility"),
+    "population": (6, 1000),
+    "generations": (1,),
+    "restarts": (1,),
+    "crossover": (0.0, 0, 1.0, 1),
+    "weight": (1e-9, 1, 2.5),
+    "position_tolerance_m": (1e-300, 1, 0.5),
+    "orientation_tolerance_rad": (1e-300, 4.0),
+}
+NO_NUMBERS = (np.nan, np.inf, -np.inf, -1, "1", None, True)
+BAD = {
+    **dict.fromkeys(("position_tolerance_m", "orientation_tolerance_rad", "weight"), (0, 0.0, *NO_NUMBERS)),
+    "crossover": (1.01, *NO_NUMBERS),
+    "population": (5, 50.0, *NO_NUMBERS),
+    **dict.fromkeys(("generations", "restarts"), (0, 1.0, *NO_NUMBERS)),
+    **dict.fromkeys(("strategy", "bounds", "update", "collision"), ("", "Rand/1", None, 0)),
+}
+
+
+def cases(table):
+    return [(name, value) for name, values in table.items() for value in values]
+
+
+def test_every_setting_is_tested():
+    assert {field.name for field in fields(ikde.SolveSettings)} == set(GOOD) == set(BAD)
+
+
+def test_the_papers_method_has_the_papers_numbers():
+    settings = ikde.SolveSettings.for_method("de")
+    assert (settings.position_tolerance_m, settings.collision, settings.strategy) == (5e-5, "reject", "rand/1")
+    assert (settings.population, settings.weight, settings.crossover) == (50, 0.5, 0.9)
+    assert (settings.generations, settings.update) == (1000, "generation")
+
+
+def test_ikdes_own_method_is_finer():
+    settings = ikde.SolveSettings.for_method("auto")
+    assert (settings.position_tolerance_m, settings.orientation_tolerance_rad) == (1e-5, 1e-4)
+    assert (settings.collision, settings.update) == ("feasibility", "in_place")
+
+
+@pytest.mark.parametrize("name", ["ga", "", "DE"])
+def test_an_unknown_method_is_refused(name):
+    with pytest.raises(InputError, match="expected one of auto, de"):
+        ikde.SolveSettings.for_method(name)
+
+
+@pytest.mark.parametrize(("name", "value"), cases(GOOD))
+def test_good_values_are_kept(name, value):
+    assert getattr(ikde.SolveSettings(**{name: value}), name) == value
+
+
+@pytest.mark.parametrize(("name", "value"), cases(BAD))
+def test_bad_values_are_refused_by_name(name, value):
+    with pytest.raises(InputError, match=rf"^settings\.{name}: expected .*, got ") as caught:
+        ikde.SolveSettings(**{name: value})
+    assert "\n" not in str(caught.value)
+
+
+def test_none_changes_nothing():
+    settings = ikde.SolveSettings(population=8)
+    assert settings.with_changes(population=None, weight=None) == settings
+    assert settings.with_changes(weight=0.7) == ikde.SolveSettings(population=8, weight=0.7)
+
+
+def test_a_change_is_checked():
+    with pytest.raises(InputError, match=r"settings\.weight"):
+        ikde.SolveSettings().with_changes(weight=-1)
+
+
+def test_settings_cannot_be_changed_in_place():
+    with pytest.raises(FrozenInstanceError):
+        ikde.SolveSettings().weight = 1.0

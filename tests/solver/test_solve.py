@@ -1,0 +1,308 @@
+"""`solve`, `solve_distinct`, `solve_many`: targets are met, figures are true, and equal seeds give equal bits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.solver.solve import are_distinct
+from tests.conftest import ROBOTS, random_q
+
+WITH_SPHERES = [name for name in ROBOTS if ikde.load_robot(name).detectors]
+KINDS = ("position", "axis", "pose")
+QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=8)
+CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=1)
+TARGET = ikde.Target((0.8, 0.5, 1.0))
+
+
+def free_q(robot, rng):
+    """Joint values without self-collision, the base near the origin."""
+    while True:
+        q = random_q(robot, rng)
+        slides = [joint.kind == "prismatic" for joint in robot.joints]
+        q[slides] *= 0.1
+        if not ikde.check(robot, q).collision:
+            return q
+
+
+def make_target(robot, q, kind):
+    """Where the tool is at `q`, so that it can be reached."""
+    T = ikde.forward(robot, q)[robot.tool]
+    if kind == "pose":
+        return ikde.Target(T[:3, 3], R_world_tool=T[:3, :3])
+    return ikde.Target(T[:3, 3], axis_world_tool=T[:3, 2] if kind == "axis" else None)
+
+
+def are_apart(robot, q, other):
+    """More than 0.1 rad in a turn, around the circle, or more than 50 mm in a slide."""
+    for joint, a, b in zip(robot.joints, q, other, strict=True):
+        if joint.kind == "prismatic" and abs(a - b) > 0.05:
+            return True
+        if joint.kind == "revolute" and abs(np.angle(np.exp(1j * (a - b)))) > 0.1:
+            return True
+    return False
+
+
+def assert_true_to_its_figures(robot, target, result, settings):
+    """A reached result is inside, free, within tolerance, and its figures are `verify`'s."""
+    graded = ikde.verify(robot, target, result.q, settings=settings)
+    assert result.verification == graded
+    assert graded.accepted
+    assert result.verified
+    assert result.reached
+    assert result.stop_reason == "reached"
+    assert result.hint is None
+    assert result.position_error_m <= settings.position_tolerance_m
+    assert result.orientation_error_rad <= settings.orientation_tolerance_rad
+    assert np.all(robot.lower <= result.q)
+    assert np.all(result.q <= robot.upper)
+    assert not result.self_collision
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", WITH_SPHERES)
+def test_targets_of_every_kind_are_reached_on_every_robot(name, kind, rng):
+    robot = ikde.load_robot(name)
+    target = make_target(robot, free_q(robot, rng), kind)
+    result = ikde.solve(robot, target, seed=1)
+    assert_true_to_its_figures(robot, target, result, ikde.SolveSettings.for_method("auto"))
+    assert result.joint_names == robot.joint_names
+    assert result.detector == robot.default_detector
+
+
+@pytest.mark.parametrize("name", WITH_SPHERES)
+def test_the_papers_method_reaches_its_own_tolerance(name, rng):
+    robot = ikde.load_robot(name)
+    target = make_target(robot, free_q(robot, rng), "position")
+    result = ikde.solve(robot, target, method="de")
+    assert_true_to_its_figures(robot, target, result, ikde.SolveSettings.for_method("de"))
+    assert result.method == "de"
+
+
+def test_a_method_is_a_set_of_defaults(qiao):
+    implied = ikde.solve(qiao, TARGET, method="de", seed=3)
+    stated = ikde.solve(qiao, TARGET, ikde.SolveSettings.for_method("de"), seed=3)
+    assert implied.q.tobytes() == stated.q.tobytes()
+
+
+def test_a_robot_without_spheres_is_solved_and_nothing_is_looked_at():
+    result = ikde.solve(ikde.load_robot("qiao2021_dh"), TARGET)
+    assert result.reached
+    assert (result.detector, result.clearance_m, result.closest_pair, result.self_collision) == (
+        "none",
+        None,
+        None,
+        False,
+    )
+
+
+def test_the_same_seed_gives_the_same_bits(qiao):
+    first, again, other = (ikde.solve(qiao, TARGET, QUICK, seed=seed) for seed in (5, 5, 6))
+    assert first.q.tobytes() == again.q.tobytes() != other.q.tobytes()
+    assert (first.evaluations, first.attempts, first.seed) == (again.evaluations, again.attempts, 5)
+
+
+def test_the_result_cannot_be_written_over(qiao):
+    with pytest.raises(ValueError, match="read-only"):
+        ikde.solve(qiao, TARGET, CHEAP).q[0] = 1.0
+
+
+def test_the_largest_seed_is_accepted(qiao):
+    assert ikde.solve(qiao, TARGET, CHEAP, seed=2**64 - 1).seed == 2**64 - 1
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64, 1.0, True, "1", None])
+def test_what_is_no_seed_is_refused(qiao, seed):
+    for call in (
+        lambda: ikde.solve(qiao, TARGET, CHEAP, seed=seed),
+        lambda: ikde.solve_many(qiao, [TARGET], CHEAP, seed=seed),
+        lambda: ikde.solve_distinct(qiao, TARGET, 1, CHEAP, seed=seed),
+    ):
+        with pytest.raises(InputError, match=r"^seed: expected a whole number"):
+            call()
+
+
+def test_near_finds_a_closer_answer(qiao, rng):
+    start = free_q(qiao, rng)
+    target = make_target(qiao, start + rng.uniform(-0.02, 0.02, start.size), "position")
+    near, far = ikde.solve(qiao, target, near=start), ikde.solve(qiao, target)
+    assert near.reached
+    assert far.reached
+    assert np.abs(near.q - start).max() < np.abs(far.q - start).max()
+
+
+def test_an_answer_of_the_first_attempt_is_inside_the_first_box(qiao, rng):
+    start = free_q(qiao, rng)
+    result = ikde.solve(qiao, make_target(qiao, start, "position"), near=start)
+    assert (result.reached, result.attempts) == (True, 1)
+    assert np.all(np.abs(result.q - start) <= (qiao.upper - qiao.lower) / 64 + 1e-12)
+
+
+def test_near_may_name_some_joints_only(qiao):
+    by_name = ikde.solve(qiao, TARGET, QUICK, near={"d_x": 0.2})
+    start = qiao.home
+    start[0] = 0.2
+    assert by_name.q.tobytes() == ikde.solve(qiao, TARGET, QUICK, near=start).q.tobytes()
+
+
+@pytest.mark.parametrize("value", [0.1 + 0.2, -1 / 3, 0.0])
+def test_a_frozen_joint_keeps_its_bits(qiao, value):
+    result = ikde.solve(qiao, TARGET, freeze={"q_z": value})
+    assert result.reached
+    assert result.q[2].tobytes() == np.float64(value).tobytes()
+
+
+def test_with_everything_frozen_the_configuration_is_judged_as_it_is(qiao, rng):
+    q = free_q(qiao, rng)
+    target = make_target(qiao, q, "pose")
+    frozen = dict(zip(qiao.joint_names, q.tolist(), strict=True))
+    result = ikde.solve(qiao, target, QUICK, freeze=frozen)
+    assert result.q.tobytes() == q.tobytes()
+    assert result.reached
+    elsewhere = ikde.solve(qiao, TARGET, CHEAP, freeze=qiao.joint_names)
+    assert elsewhere.q.tobytes() == qiao.home.tobytes()
+    assert not elsewhere.reached
+
+
+def test_a_frozen_joint_outside_its_limits_is_refused(qiao):
+    with pytest.raises(InputError, match=r"freeze\.d_x: 6 is outside the limits \[-5, 5\]"):
+        ikde.solve(qiao, TARGET, freeze={"d_x": 6})
+
+
+def test_the_safe_distance_is_kept(qiao):
+    careful = replace(qiao.detectors["improved"], safe_distance_m=0.03)
+    result = ikde.solve(qiao, TARGET, detector=careful)
+    assert result.reached
+    assert result.clearance_m > 0.03
+
+
+def test_an_unreached_target_gives_the_best_found_and_a_reason(qiao):
+    result = ikde.solve(qiao, TARGET, CHEAP)
+    assert not result.reached
+    assert result.stop_reason != "reached"
+    assert result.reason
+    assert result.verified
+    assert result.verification == ikde.verify(qiao, TARGET, result.q, settings=CHEAP)
+    assert (result.attempts, result.position_error_m > 1e-5) == (1, True)
+
+
+def test_the_cost_is_counted(qiao):
+    result = ikde.solve(qiao, ikde.Target((0.0, 0.0, 9.0)), CHEAP)
+    assert result.attempts == 1
+    assert result.evaluations >= CHEAP.population * CHEAP.generations
+    assert result.solve_seconds >= 0.0
+    assert result.compile_seconds >= 0.0
+
+
+def test_distinct_solutions_are_pairwise_distinct_and_the_first_is_that_of_solve(qiao):
+    found = ikde.solve_distinct(qiao, TARGET, 4, seed=2)
+    assert len(found) == 4
+    assert found[0].q.tobytes() == ikde.solve(qiao, TARGET, seed=2).q.tobytes()
+    for i, result in enumerate(found):
+        assert_true_to_its_figures(qiao, TARGET, result, QUICK)
+        assert all(are_apart(qiao, result.q, other.q) for other in found[:i])
+
+
+def test_more_solutions_than_there_are_come_as_fewer(qiao, rng):
+    q = free_q(qiao, rng)
+    frozen = dict(zip(qiao.joint_names, q.tolist(), strict=True))
+    found = ikde.solve_distinct(qiao, make_target(qiao, q, "position"), 3, QUICK, freeze=frozen)
+    assert len(found) == 1
+    assert found[0].reached
+
+
+def test_without_a_solution_there_is_one_result_with_the_reason(qiao):
+    found = ikde.solve_distinct(qiao, ikde.Target((0.0, 0.0, 9.0)), 3, CHEAP)
+    assert [result.stop_reason for result in found] == ["out_of_reach"]
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_a_count_below_one_is_refused(qiao, count):
+    with pytest.raises(InputError, match="count: expected a whole number of at least 1"):
+        ikde.solve_distinct(qiao, TARGET, count)
+
+
+@pytest.mark.parametrize(
+    ("joint", "difference", "distinct"),
+    [
+        ("d_x", 0.049, False),
+        ("d_x", 0.051, True),
+        ("q1", 0.099, False),
+        ("q1", 0.101, True),
+        ("q_z", 2 * np.pi - 0.099, False),
+        ("q_z", 2 * np.pi - 0.101, True),
+        ("q_z", 2 * np.pi, False),
+    ],
+)
+def test_distinct_is_0_1_rad_around_the_circle_or_50_mm(qiao, joint, difference, distinct):
+    q, other = np.zeros(9), np.zeros(9)
+    other[qiao.joint_names.index(joint)] = difference
+    for pair in ((q, other), (other, q)):
+        assert are_distinct(qiao, *pair) is distinct
+        assert are_apart(qiao, *pair) is distinct
+
+
+def test_many_targets_come_back_in_order(qiao, rng):
+    targets = [make_target(qiao, free_q(qiao, rng), kind) for kind in KINDS * 2]
+    results = ikde.solve_many(qiao, targets, seed=4)
+    assert [result.stream for result in results] == list(range(6))
+    for target, result in zip(targets, results, strict=True):
+        assert_true_to_its_figures(qiao, target, result, ikde.SolveSettings.for_method("auto"))
+
+
+def test_many_targets_hang_on_seed_and_place_only(qiao):
+    targets = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(4)]
+    whole = ikde.solve_many(qiao, targets, QUICK, seed=9)
+    others = ikde.solve_many(qiao, [TARGET, TARGET, targets[2]], QUICK, seed=9, threads=1)
+    assert others[2].q.tobytes() == whole[2].q.tobytes()
+    assert whole[0].q.tobytes() == ikde.solve(qiao, targets[0], QUICK, seed=9).q.tobytes()
+
+
+def test_equal_targets_have_streams_of_their_own(qiao):
+    first, second = ikde.solve_many(qiao, [TARGET, TARGET], QUICK, seed=9)
+    assert first.q.tobytes() != second.q.tobytes()
+
+
+def test_threads_do_not_change_the_bits(qiao):
+    targets = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(4)]
+    one, two = (ikde.solve_many(qiao, targets, QUICK, threads=threads) for threads in (1, 2))
+    assert [result.q.tobytes() for result in one] == [result.q.tobytes() for result in two]
+
+
+def test_no_targets_give_no_results(qiao):
+    assert ikde.solve_many(qiao, []) == []
+
+
+@pytest.mark.parametrize("threads", [0, -1])
+def test_fewer_than_one_thread_is_refused(qiao, threads):
+    with pytest.raises(InputError, match="threads: expected a whole number of at least 1"):
+        ikde.solve_many(qiao, [TARGET], CHEAP, threads=threads)
+
+
+def test_unreached_targets_are_told_from_their_counts_alone(qiao):
+    far = ikde.Target((0.0, 0.0, 9.0))
+    plain, explained = (
+        ikde.solve_many(qiao, [TARGET, far], CHEAP, explain_failures=explain)[1] for explain in (False, True)
+    )
+    assert (plain.reached, plain.stop_reason, plain.hint) == (False, "budget", None)
+    assert explained.stop_reason == "out_of_reach"
+    assert plain.q.tobytes() == explained.q.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"method": "ga"}, "no method is called 'ga'"),
+        ({"detector": "improv"}, "no detector 'improv'"),
+        ({"near": [1, 2]}, "expected 9 joint values"),
+        ({"near": [np.nan] * 9}, "finite"),
+        ({"freeze": ["q9"]}, "no joint 'q9'"),
+        ({"freeze": {"q1": np.inf}}, "finite"),
+    ],
+)
+def test_what_does_not_fit_the_robot_is_refused(qiao, options, words):
+    for call in (ikde.solve, lambda robot, target, **o: ikde.solve_many(robot, [target], **o)):
+        with pytest.raises(InputError, match=words):
+            call(qiao, TARGET, **options)

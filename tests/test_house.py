@@ -1,0 +1,159 @@
+"""House rules that a linter cannot check, read from the source of `ikde/`."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "ikde"
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
+FORBIDDEN_NAMES = {"utils", "util", "types", "core", "base", "helpers", "common", "misc"}
+LONGEST_FILE, LONGEST_BODY = 400, 60
+KERNEL_DECORATORS = {"kernel", "inline_kernel"}
+PROVENANCE = {"published", "derived", "calibrated"}
+CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
+NO_TEST_OF_ITS_OWN = {
+    "__main__.py": "two lines; tests/cli/test_app.py runs them in a process",
+    "errors.py": "every test of a refusal reads its messages",
+    "cli/exit_codes.py": "an enumeration; tests/cli/test_app.py",
+    "cli/output.py": "tests/cli/test_app.py sees what it writes",
+    "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",
+    "cli/machine.py": "tests/cli/test_doctor.py",
+    "io/units.py": "two tables; every test in mm or deg uses them",
+    "io/schema.py": "tests/io/test_robot_file.py reads its messages",
+    "io/target.py": "tests/cli/test_solve.py makes every kind of target",
+    "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
+    "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",
+    "kernels/figures.py": "tests/solver/test_grade.py compares it with plain numpy",
+    "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
+    "model/surface.py": "tests/solver/test_surface.py",
+    "solver/result.py": "a dataclass; tests/solver/test_solve.py",
+}
+
+every_file = pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(PACKAGE)))
+
+
+def inside(path, package):
+    return PACKAGE / package in path.parents
+
+
+def functions(path):
+    return [node for node in ast.walk(TREES[path]) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+
+
+def body_length(function):
+    """Lines of the body without its docstring."""
+    body = function.body[1:] if ast.get_docstring(function) else function.body
+    return body[-1].end_lineno - body[0].lineno + 1 if body else 0
+
+
+def imported(path):
+    """Top-level names of everything that a file imports."""
+    for node in ast.walk(TREES[path]):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in node.names)
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module.split(".")[0]
+
+
+def calls(path):
+    return {ast.unparse(node.func) for node in ast.walk(TREES[path]) if isinstance(node, ast.Call)}
+
+
+def is_kernel(function):
+    return any(getattr(decorator, "id", None) in KERNEL_DECORATORS for decorator in function.decorator_list)
+
+
+def has_code(path):
+    return any(isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Assign) for node in TREES[path].body)
+
+
+def citations(path):
+    return set(CITATION.findall(path.read_text(encoding="utf-8")))
+
+
+@every_file
+def test_a_file_says_in_its_name_what_it_holds(path):
+    assert path.stem not in FORBIDDEN_NAMES
+
+
+@every_file
+def test_a_file_is_short(path):
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
+
+
+@every_file
+def test_a_function_is_short(path):
+    assert {f.name: body_length(f) for f in functions(path) if body_length(f) > LONGEST_BODY} == {}
+
+
+@every_file
+def test_a_file_opens_with_what_it_is_for(path):
+    assert ast.get_docstring(TREES[path])
+
+
+@every_file
+def test_only_the_command_line_prints(path):
+    if not inside(path, "cli"):
+        assert {"print", "sys.stdout.write", "sys.stderr.write", "sys.exit"} & calls(path) == set()
+
+
+@every_file
+def test_arithmetic_is_strict(path):
+    keywords = {node.arg for node in ast.walk(TREES[path]) if isinstance(node, ast.keyword)}
+    texts = {node.value for node in ast.walk(TREES[path]) if isinstance(node, ast.Constant)}
+    assert "fastmath" not in keywords | texts
+
+
+@every_file
+def test_only_kernels_know_numba(path):
+    if not inside(path, "kernels"):
+        assert "numba" not in set(imported(path))
+
+
+@every_file
+def test_a_kernel_says_what_it_computes(path):
+    assert [f.name for f in functions(path) if is_kernel(f) and not ast.get_docstring(f)] == []
+
+
+@every_file
+def test_a_kernel_never_raises_or_prints(path):
+    bodies = [node for f in functions(path) if is_kernel(f) for node in ast.walk(f)]
+    assert not [node for node in bodies if isinstance(node, ast.Raise | ast.Try)]
+
+
+@every_file
+def test_a_module_with_code_has_a_test_file_of_its_name(path):
+    name = str(path.relative_to(PACKAGE))
+    if path.name == "__init__.py" or not has_code(path):
+        return
+    test = ROOT / "tests" / path.relative_to(PACKAGE).parent / f"test_{path.name}"
+    assert test.exists() != (name in NO_TEST_OF_ITS_OWN), f"{test}: missing, or no exception any more"
+
+
+def test_every_exception_is_a_file():
+    assert [name for name in NO_TEST_OF_ITS_OWN if not (PACKAGE / name).exists()] == []
+
+
+def test_every_citation_has_its_reference():
+    table = (ROOT / "docs" / "references.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^\| \[(\w+)\]", table, flags=re.MULTILINE))
+    texts = [*SOURCES, *PACKAGE.rglob("*.yaml"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+    cited = {key for path in texts for key in citations(path)}
+    assert cited - listed == set()
+    assert listed - cited == set()
+
+
+def test_provenance_has_three_words():
+    kinds = set()
+    for path in (PACKAGE / "robots").glob("*.yaml"):
+        kinds |= set(re.findall(r"\{kind: (\w+),\s+text:", path.read_text(encoding="utf-8")))
+    assert kinds == PROVENANCE
+
+
+def test_the_tests_mirror_the_package():
+    folders = {path.parent.relative_to(PACKAGE) for path in SOURCES if has_code(path)}
+    assert [str(folder) for folder in folders if not (ROOT / "tests" / folder).is_dir()] == []
