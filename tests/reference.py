@@ -304,7 +304,9 @@ def evolve(problem, target, stream):
         for i in range(population):
             if generation == 0:
                 width = problem.upper - problem.lower
-                trial = problem.lower + np.array([stream.uniform() for _ in range(joints)]) * width
+                trial = problem.near
+                if i > 0 or problem.near is None:
+                    trial = problem.lower + np.array([stream.uniform() for _ in range(joints)]) * width
             else:
                 trial = make_trial(problem, stream, x, i, best)
             score, meets = compute_score(problem, target, trial)

@@ -51,7 +51,7 @@ def check(
     result = check_configuration(model, values, judge)
     check_drawable(plot)
     if as_json:
-        print_json(check_json(model, result))
+        print_json(check_json(model, result, convention))
     else:
         print_result(format_check(result, Units(unit, angles), color=use_color()))
     draw(plot, model, values, judge)

@@ -44,7 +44,7 @@ def fk(
     check_drawable(plot)
     model.detector(detector)  # a wrong name is found before anything is printed
     if as_json:
-        print_json(forward_json(model, values, frames, outside))
+        print_json(forward_json(model, values, frames, outside, convention))
     else:
         print_result(format_forward(model, frames, outside, Units(unit, angles), color=use_color()))
     draw(plot, model, values, detector)

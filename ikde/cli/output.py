@@ -39,4 +39,7 @@ def working(text: str) -> AbstractContextManager[Any]:
 
 def announce_compile() -> None:
     """Said once, when kernels must be compiled before the first solve."""
-    print_note("compiling the kernels: once on this machine, about 15 s ...")
+    from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
+
+    often = "once on this machine" if CACHE_IS_WRITABLE else f"every time, since {CACHE_FOLDER} cannot be written"
+    print_note(f"compiling the kernels: {often}, about 15 s ...")

@@ -12,10 +12,10 @@ robots = typer.Typer(help="The robots that ship with ikde, and files of your own
 
 
 @robots.callback(invoke_without_command=True)
-def default(context: typer.Context) -> None:
+def default(context: typer.Context, as_json: JsonOption = False) -> None:
     """List the robots if nothing else is asked for."""
     if context.invoked_subcommand is None:
-        list_robots()
+        list_robots(as_json)
 
 
 @robots.command("list")

@@ -24,7 +24,7 @@ from ikde.cli.options import (
     read_positive,
     read_q,
 )
-from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
+from ikde.cli.output import announce_compile, print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
 
 Vector = tuple[float, float, float]
@@ -161,5 +161,7 @@ def solve(
         if count > 1:
             pages = [f"solution {number} of {len(results)}\n{page}" for number, page in enumerate(pages, 1)]
         print_result("\n\n".join(pages))
+    if results[0].reached and len(results) < count:
+        print_note(f"found {len(results)} distinct solutions of {count}; more --restarts may find more")
     draw(plot, model, results[0].q, judge, target)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)

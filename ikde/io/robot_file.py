@@ -14,7 +14,7 @@ from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import NON_ADJACENT, check_robot
 
 Name = Annotated[str, StringConstraints(min_length=1)]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, products overflow
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Vector = tuple[Number, Number, Number]
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""

@@ -98,8 +98,12 @@ def find_best(score):
 
 
 @inline_kernel
-def fill_start(lower, upper, state, work):
-    """A member of the first population, drawn uniformly from its ranges."""
+def fill_start(search, lower, upper, state, work, i):
+    """Member `i` of the first population, drawn uniformly from its ranges; the first is `near` where one is given."""
+    if i == 0 and search.first_box < 1.0:
+        for k in range(work.trial.size):
+            work.trial[k] = search.ranges[2, k]
+        return
     for k in range(work.trial.size):
         work.trial[k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
 
@@ -149,7 +153,7 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
     for generation in range(search.generations + 1):
         for i in range(population):
             if generation == 0:
-                fill_start(lower, upper, state, work)
+                fill_start(search, lower, upper, state, work, i)
             else:
                 fill_trial(search, lower, upper, state, work, i, best)
             cost, depth, meets = score_point(robot, detector, target, index, search, work.trial, work, work.score[i])

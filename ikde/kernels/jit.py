@@ -24,7 +24,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 def cache_folder() -> Path:
     """Folder of the compiled kernels: `$IKDE_CACHE_DIR`, else the user's cache folder; one per kernel source."""
     root = os.environ.get("IKDE_CACHE_DIR")
-    base = Path(root) if root else Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "ikde"
+    base = Path(root) if root else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ikde"
     digest = hashlib.sha256()
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())

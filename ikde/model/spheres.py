@@ -58,7 +58,7 @@ def expand_rows(robot: Robot, tree: Tree, approximation: str) -> tuple[Sphere, .
 
 
 def bounding_sphere(spheres: list[Sphere]) -> tuple[Floats, float]:
-    """A sphere around spheres of one body, by Ritter-like growth from the middle of their box.
+    """A sphere around spheres of one body, centred on the middle of their box.
 
     The radius is a hair too large on purpose, so that rounding can never let a contact slip past it.
     """

@@ -10,7 +10,8 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import check_rotation, rotation_with_z
 
-FARTHEST = 1e9  # beyond it, squares and sums would lose everything
+FARTHEST = 1e6  # m: beyond it, doubles hold less than a nanometre
+LONGEST = 1e100  # of an axis, whose length says nothing
 TargetKind = Literal["position", "axis", "pose"]
 
 
@@ -46,9 +47,9 @@ class Target:
             kind, R = "pose", _read(R_world_tool, "R_world_tool")
             check_rotation(R)
         elif axis_world_tool is not None:
-            kind, R = "axis", rotation_with_z(_unit(_read_vector(axis_world_tool, "axis_world_tool")))
+            kind, R = "axis", rotation_with_z(_unit(_read_vector(axis_world_tool, "axis_world_tool", LONGEST)))
         object.__setattr__(self, "kind", kind)
-        object.__setattr__(self, "p_world_tool", _read_vector(p_world_tool, "p_world_tool"))
+        object.__setattr__(self, "p_world_tool", _read_vector(p_world_tool, "p_world_tool", FARTHEST))
         object.__setattr__(self, "R_world_tool", R)
         self.p_world_tool.setflags(write=False)
         self.R_world_tool.setflags(write=False)
@@ -66,14 +67,14 @@ def _read(values: ArrayLike, name: str) -> Floats:
         raise InputError(f"expected numbers, got {values!r}", (name,)) from None
 
 
-def _read_vector(values: ArrayLike, name: str) -> Floats:
+def _read_vector(values: ArrayLike, name: str, farthest: float) -> Floats:
     vector = _read(values, name)
     if vector.shape != (3,):
         raise InputError(
             f"expected 3 numbers, got {'shape ' + str(vector.shape) if vector.ndim != 1 else vector.size}", (name,)
         )
-    if not np.all(np.abs(vector) <= FARTHEST):  # False for NaN
-        raise InputError(f"expected finite numbers below {FARTHEST:g}, got {vector.tolist()}", (name,))
+    if not np.all(np.abs(vector) <= farthest):  # False for NaN
+        raise InputError(f"expected finite numbers up to {farthest:g}, got {vector.tolist()}", (name,))
     return vector
 
 

@@ -31,9 +31,10 @@ def check_robot(draft: Robot) -> Robot:
             same = bodies.setdefault(component, body) == body
             _require(same, f"{component!r} lies on another body than in the other approximations", "spheres", name)
     _check_pairs(robot, bodies)
-    shared = [set(robot.components(name)) for name in robot.approximations]
-    common = {c: body for c, body in bodies.items() if all(c in components for components in shared)}
-    every = non_adjacent_pairs(common, tree, robot.adjacent)
+    for name in robot.approximations:
+        missing = [component for component in bodies if component not in robot.components(name)]
+        _require(not missing, f"the other approximations also describe {', '.join(missing)}", "spheres", name)
+    every = non_adjacent_pairs(bodies, tree, robot.adjacent)
     robot = replace(robot, pair_lists={**robot.pair_lists, NON_ADJACENT: every})
     _check_detectors(robot)
     _check_conventions(robot)
@@ -128,7 +129,12 @@ def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int,
         _require(0.0 < row.radius_m < np.inf, "expected a radius above 0", *here, "radius")
         _require(row.count >= 1, "expected a count of at least 1", *here, "count")
         body = tree.frame_body[row.start]
-        _require(body == tree.frame_body[row.end], "a joint moves one end of this line against the other", *here, "to")
+        _require(
+            body == tree.frame_body[row.end],
+            "a joint moves these two frames against each other; add a fixed frame on one body",
+            *here,
+            "to",
+        )
         length = np.linalg.norm(tree.T_body_frame[row.start][:3, 3] - tree.T_body_frame[row.end][:3, 3])
         _require(
             row.count == 1 or bool(length > 0.0), "several spheres need two key points to stand between", *here, "to"

@@ -5,23 +5,23 @@ from typing import Any
 
 from ikde.io.units import LENGTHS_M
 from ikde.kernels.arrays import Floats
+from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
 from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
 from ikde.solver.check import CheckResult
 
 
-def forward_json(robot: Robot, q: Floats, Ts_world: Mapping[str, Floats], outside: tuple[str, ...]) -> dict[str, Any]:
-    """Frames by name: `p_world` [3] in m and `R_world` [3][3]; q in the robot's own convention.
-
-    The tool's frame is there as `tool` whatever the robot calls it.
-    """
-    named = {**Ts_world, "tool": Ts_world[robot.tool]}
+def forward_json(
+    robot: Robot, q: Floats, Ts_world: Mapping[str, Floats], outside: tuple[str, ...], convention: str | None = None
+) -> dict[str, Any]:
+    """Frames by name: `p_world` [3] in m and `R_world` [3][3]; q in the convention asked for."""
     return {
         "robot": robot.name,
-        "q": dict(zip(robot.joint_names, q.tolist(), strict=True)),
+        "convention": convention or robot.convention,
+        "q": dict(zip(robot.joint_names, to_convention(robot, q, convention).tolist(), strict=True)),
         "outside_limits": list(outside),
-        "frames": {name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in named.items()},
+        "frames": {name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in Ts_world.items()},
     }
 
 
@@ -34,9 +34,7 @@ def format_forward(
     for name, T in Ts_world.items():
         digits = 1 if unit == "mm" else 4
         origin = [format_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
-        table.add_row(
-            "tool" if name == robot.tool else plain(name), *origin, _direction(T[:3, 0]), _direction(T[:3, 2])
-        )
+        table.add_row(plain(name), *origin, _direction(T[:3, 0]), _direction(T[:3, 2]))
     return render(table, *_outside_line(outside), color=color)
 
 
@@ -48,8 +46,8 @@ def _outside_line(outside: tuple[str, ...]) -> list[str]:
     return [f"[yellow]outside the limits[/]: {plain(', '.join(outside))}"] if outside else []
 
 
-def check_json(robot: Robot, result: CheckResult) -> dict[str, Any]:
-    """A check as plain data; pairs worst first, lengths in m."""
+def check_json(robot: Robot, result: CheckResult, convention: str | None = None) -> dict[str, Any]:
+    """A check as plain data; pairs worst first, lengths in m, q in the convention asked for."""
     return {
         "robot": robot.name,
         "detector": result.detector,
@@ -60,7 +58,8 @@ def check_json(robot: Robot, result: CheckResult) -> dict[str, Any]:
             {"a": pair.a, "b": pair.b, "clearance_m": pair.clearance_m, "collides": pair.collides}
             for pair in result.pairs
         ],
-        "q": dict(zip(robot.joint_names, result.q.tolist(), strict=True)),
+        "convention": convention or robot.convention,
+        "q": dict(zip(robot.joint_names, to_convention(robot, result.q, convention).tolist(), strict=True)),
         "outside_limits": list(result.outside_limits),
     }
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
-from ikde.solver.joints import JointValues, joints_outside, read_joints
+from ikde.solver.joints import JointValues, joints_outside, read_configuration
 from ikde.solver.plain import compute_components, compute_gap
 
 
@@ -48,7 +48,7 @@ def check(
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
-    values = read_joints(robot, q, convention)
+    values = read_configuration(robot, q, convention)
     chosen = robot.detector(detector)
     pairs = compute_pairs(robot, chosen, values) if chosen else ()
     return CheckResult(

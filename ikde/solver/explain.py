@@ -68,7 +68,7 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
         worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])
         return Explanation(
             stop_reason=StopReason.SELF_COLLISION,
-            reason=f"only colliding solutions found: {colliding} met the target and all collided; blocked by {worst}",
+            reason=f"only colliding solutions found: {colliding} met the target, each in collision; blocked by {worst}",
             hint=remedy or "a detector with tighter spheres, or another target",
             blocking_pairs=blocking,
         )

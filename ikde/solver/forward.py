@@ -16,10 +16,10 @@ def forward(robot: Robot, q: JointValues, convention: str | None = None) -> dict
         convention: how `q` is counted; None for the robot's own.
 
     Returns:
-        Frame name -> T_world_frame [..., 4, 4], m.
+        Frame name -> T_world_frame [..., 4, 4], m; the tool's frame also as `tool`, whatever the robot calls it.
 
     Raises:
         InputError: for a wrong count, an unknown joint or convention, NaN or infinity.
     """
     Ts_world = compute_frames(robot, read_joints(robot, q, convention))
-    return {name: T for name, T in Ts_world.items() if name != WORLD}
+    return {name: T for name, T in Ts_world.items() if name != WORLD} | {"tool": Ts_world[robot.tool]}

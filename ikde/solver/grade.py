@@ -16,7 +16,7 @@ from ikde.solver.result import SolveResult, StopReason
 from ikde.solver.search import Found
 from ikde.solver.verify import Verification, verify
 
-AGREEMENT = 1e-11  # m, rad: kernels and `verify` must agree to this
+AGREEMENT = 1e-11  # m, rad: kernels and `verify` must agree to this; farther than 1 m from the origin, relative to it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +41,7 @@ def grade(
     q.setflags(write=False)
     graded = verify(problem.robot, target, q, settings=problem.settings, detector=problem.detector or "none")
     gap = compute_disagreement(problem, target, q, graded)
-    agree = gap <= AGREEMENT  # False for NaN
+    agree = gap <= AGREEMENT * max(1.0, float(np.abs(target.p_world_tool).max()))  # False for NaN
     if strict and not agree:
         raise VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
     story = _unverified(gap) if not agree else _tell(problem, target, found, run, graded, probe)
@@ -52,6 +52,7 @@ def grade(
         hint=story.hint,
         q=q,
         joint_names=problem.robot.joint_names,
+        target=target,
         verification=graded,
         verified=agree,
         method="de",

@@ -27,6 +27,14 @@ def read_joints(
     return from_convention(robot, _from_array(robot, q), convention)
 
 
+def read_configuration(robot: Robot, q: JointValues, convention: str | None = None) -> Floats:
+    """Like `read_joints`, for exactly one configuration [N]."""
+    values = read_joints(robot, q, convention)
+    if values.ndim != 1:
+        raise InputError(f"expected one configuration, got shape {values.shape}", ("q",))
+    return values
+
+
 def _from_array(robot: Robot, q: ArrayLike) -> Floats:
     try:
         values = np.array(q, dtype=float)

@@ -52,6 +52,8 @@ def make_problem(
     """Resolve names and ranges; raises `InputError` for what does not fit the robot."""
     lower, upper = robot.lower, robot.upper
     start = None if near is None else read_joints(robot, near, default=robot.home)
+    if start is not None and start.ndim != 1:
+        raise InputError(f"expected one configuration, got shape {start.shape}", ("near",))
     fixed = _read_freeze(robot, freeze, robot.home if start is None else start)
     for name, value in fixed.items():
         index = robot.joint_names.index(name)
@@ -73,7 +75,8 @@ def make_problem(
 def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[str, float]:
     if freeze is None:
         return {}
-    given = dict(freeze) if isinstance(freeze, Mapping) else dict.fromkeys(freeze)
+    names = [freeze] if isinstance(freeze, str) else freeze
+    given = dict(names) if isinstance(names, Mapping) else dict.fromkeys(names)
     start = dict(zip(robot.joint_names, default, strict=True))
     values = {name: start.get(name, 0.0) if value is None else value for name, value in given.items()}
     resolved = read_joints(robot, values, default=default)
@@ -91,8 +94,8 @@ def pack_search(problem: Problem) -> SearchArrays:
         first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
         position_tolerance=position - min(ROUNDING, 0.5 * position),
         orientation_tolerance=orientation - min(ROUNDING, 0.5 * orientation),
-        population=settings.population,
-        generations=settings.generations,
+        population=int(settings.population),
+        generations=int(settings.generations),
         strategy=STRATEGIES.index(settings.strategy),
         weight=float(settings.weight),
         crossover=float(settings.crossover),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from ikde.kernels.arrays import Floats
+from ikde.model.target import Target
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Verification
 
@@ -38,6 +39,7 @@ class SolveResult:
     q: Floats
     """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
     joint_names: tuple[str, ...]
+    target: Target
     verification: Verification
     verified: bool
     """Kernels and `verify` agree on this `q` to 1e-11 (a larger gap raises, or in bulk is recorded here)."""

@@ -45,7 +45,7 @@ def search(
 ) -> Found:
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
-    `attempts` defaults to what is left of the settings' restarts, or to a few for a target that is proved out of reach;
+    `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach;
     0 searches nothing and only compiles or loads the kernel.
 
     The answer for a target hangs on (seed, stream, attempt) only: not on the other targets, the number of threads, or
@@ -78,8 +78,8 @@ def _last_attempt(problem: Problem, target: Target, first_attempt: int) -> int:
     """Where to stop: a target that is proved out of reach only needs showing how close the tool can come."""
     excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
     if excess > problem.settings.position_tolerance_m:
-        return min(first_attempt + OUT_OF_REACH_ATTEMPTS, problem.settings.restarts)
-    return problem.settings.restarts
+        return first_attempt + min(OUT_OF_REACH_ATTEMPTS, problem.settings.restarts)
+    return first_attempt + problem.settings.restarts
 
 
 def usable_cores() -> int:

@@ -35,12 +35,12 @@ class SolveSettings:
     """CR, the crossover rate, [0, 1] [Qiao2022]."""
     generations: int = 1000
     """G, generations of one attempt [Qiao2022]."""
-    restarts: int = 1000
+    restarts: int = 40
     """Attempts, each from a new population, before the budget is spent."""
     bounds: str = "redraw"
     """What happens to a coordinate out of its range: drawn again uniformly, clipped, its parent's value, the midpoint
     between parent and bound, or none (then a solution out of range counts as not reached). The paper does not say."""
-    update: Update = "generation"
+    update: Update = "in_place"
     """When a better trial replaces its parent: at the end of the generation [Storn1997], or in place."""
     collision: Collision = "feasibility"
     """`reject`: search on the pose error alone, test the best, start again until it is free [Qiao2021].
@@ -49,12 +49,14 @@ class SolveSettings:
     def __post_init__(self) -> None:
         for name in ("position_tolerance_m", "orientation_tolerance_rad", "weight"):
             value = getattr(self, name)
-            _require(_is_number(value) and 0.0 < value < np.inf, name, "a finite number above 0", value)
-        _require(_is_number(self.crossover) and 0.0 <= self.crossover <= 1.0, "crossover", "0 to 1", self.crossover)
+            _require(_is_number(value) and bool(0.0 < value < np.inf), name, "a finite number above 0", value)
+        _require(
+            _is_number(self.crossover) and bool(0.0 <= self.crossover <= 1.0), "crossover", "0 to 1", self.crossover
+        )
         for name, least in (("population", LARGEST_DRAW + 1), ("generations", 1), ("restarts", 1)):
             value = getattr(self, name)
-            whole = isinstance(value, int) and not isinstance(value, bool) and value >= least
-            _require(whole, name, f"a whole number of at least {least}", value)
+            whole = isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least
+            _require(bool(whole), name, f"a whole number of at least {least}", value)
         for name, choices in CHOICES.items():
             _require(getattr(self, name) in choices, name, f"one of {', '.join(choices)}", getattr(self, name))
 
@@ -62,9 +64,9 @@ class SolveSettings:
     def for_method(cls, method: str) -> "SolveSettings":
         """Defaults of a method: `auto` is ikde's choice, `de` the paper's search at the paper's accuracy (5e-5 m)."""
         if method == "auto":
-            return cls(update="in_place", restarts=40)
+            return cls()
         if method == "de":
-            return cls(position_tolerance_m=5e-5, collision="reject")
+            return cls(position_tolerance_m=5e-5, collision="reject", update="generation", restarts=1000)
         raise InputError(f"no method is called {method!r}; expected one of {', '.join(get_args(Method))}", ("method",))
 
     def with_changes(self, **changes: object) -> "SolveSettings":
@@ -73,7 +75,7 @@ class SolveSettings:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
 def _require(condition: bool, name: str, expected: str, value: object) -> None:

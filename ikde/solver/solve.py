@@ -27,6 +27,7 @@ def solve(
     settings: SolveSettings | None = None,
     *,
     seed: int = 0,
+    stream: int = 0,
     method: str = "auto",
     detector: str | Detector | None = None,
     near: JointValues | None = None,
@@ -40,6 +41,7 @@ def solve(
         target: what the tool is asked to do.
         settings: tolerances and search settings; None for the method's own (`SolveSettings.for_method`).
         seed: same seed, same bits. 0 <= seed < 2^64.
+        stream: which random stream of the seed; `solve_many` gives its target k stream k.
         method: `"auto"`, ikde's choice, or `"de"`, the search of the paper.
         detector: a name, a `Detector`, `"none"`, or None for the robot's default.
         near: joint values to stay close to: the joint ranges are searched in growing boxes around them.
@@ -54,7 +56,7 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     problem = make_problem(robot, _choose(settings, method), detector=detector, near=near, freeze=freeze)
-    found, run = _search_one(problem, target, check_seed(seed), announce_compile)
+    found, run = _search_one(problem, target, check_seed(seed), stream, announce_compile)
     return grade(problem, target, found, run)
 
 
@@ -73,8 +75,8 @@ def solve_distinct(
 ) -> list[SolveResult]:
     """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
 
-    The first is that of `solve`. The list is shorter if the restarts run out; unreached, it holds one result with the
-    reason. Arguments as for `solve`.
+    The first is that of `solve`. The list is shorter if a search fails, or after `count` times the settings' restarts;
+    unreached, it holds one result with the reason. Arguments as for `solve`.
     """
     if count < 1:
         raise InputError(f"expected a whole number of at least 1, got {count}", ("count",))
@@ -82,8 +84,8 @@ def solve_distinct(
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
     solutions: list[SolveResult] = []
     attempt = 0
-    while len(solutions) < count and attempt < chosen.restarts:
-        found, run = _search_one(problem, target, check_seed(seed), announce_compile, attempt)
+    while len(solutions) < count and attempt < count * chosen.restarts:
+        found, run = _search_one(problem, target, check_seed(seed), 0, announce_compile, attempt)
         attempt += int(found.counts[0, ATTEMPTS])
         result = grade(problem, target, found, run, probe=not solutions)
         if not result.reached:
@@ -161,12 +163,17 @@ def _choose(settings: SolveSettings | None, method: str) -> SolveSettings:
 
 
 def _search_one(
-    problem: Problem, target: Target, seed: int, announce: Callable[[], None] | None, first_attempt: int = 0
+    problem: Problem,
+    target: Target,
+    seed: int,
+    stream: int,
+    announce: Callable[[], None] | None,
+    first_attempt: int = 0,
 ) -> tuple[Found, Run]:
     """Search one target from an attempt on, with the time it took."""
     with compile_clock(announce) as clock:
         search(problem, [target], seed=seed, streams=[0], attempts=0)
         started = time.perf_counter()
-        found = search(problem, [target], seed=seed, streams=[0], first_attempt=first_attempt)
+        found = search(problem, [target], seed=seed, streams=[stream], first_attempt=first_attempt)
         seconds = time.perf_counter() - started
-    return found, Run(seed=seed, stream=0, solve_seconds=seconds, compile_seconds=clock.seconds)
+    return found, Run(seed=seed, stream=stream, solve_seconds=seconds, compile_seconds=clock.seconds)

@@ -1,7 +1,7 @@
 """Self-collision judged by surface points, as the paper did it before it compared centres: slow, for comparison."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ikde.kernels.surface import compute_surface_from_centres, compute_surface_g
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.robot import Detector, Robot
 from ikde.model.surface import M_STEPS, N_STEPS, covering_angle_rad, surface_directions
-from ikde.solver.joints import JointValues, read_joints
+from ikde.solver.joints import JointValues, read_configuration
 
 Rule = Literal["eq. 18", "eq. 20"]
 
@@ -53,6 +53,10 @@ def check_surface(
     Raises:
         InputError: for a detector without pairs, and as `check` does.
     """
+    if rule not in get_args(Rule):
+        raise InputError(f"expected one of {', '.join(get_args(Rule))}, got {rule!r}", ("rule",))
+    if m_steps < 3 or n_steps < 2:
+        raise InputError(f"expected at least 3 x 2 steps, got {m_steps} x {n_steps}", ("m_steps",))
     chosen = robot.detector(detector)
     if chosen is None or not robot.pair_lists[chosen.pairs]:
         raise InputError("expected a detector with pairs", ("detector",))
@@ -61,7 +65,7 @@ def check_surface(
     T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))
     centres = np.empty((3, packed.radius.size))
     points = np.empty((packed.radius.size, len(directions), 3))
-    compute_bodies(arrays, read_joints(robot, q), T_world_body)
+    compute_bodies(arrays, read_configuration(robot, q), T_world_body)
     compute_centres(packed, T_world_body, centres)
     compute_surface_from_centres(packed, centres, directions, points)
     covering = covering_angle_rad(m_steps, n_steps) if rule == "eq. 20" else 0.0

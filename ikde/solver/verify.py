@@ -9,7 +9,7 @@ from ikde.model.robot import Detector, Robot
 from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import Target
 from ikde.solver.check import compute_pairs
-from ikde.solver.joints import JointValues, joints_outside, read_joints
+from ikde.solver.joints import JointValues, joints_outside, read_configuration
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import SolveSettings
 
@@ -54,7 +54,7 @@ def verify(
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
-    values = read_joints(robot, q, convention)
+    values = read_configuration(robot, q, convention)
     tolerances = settings or SolveSettings()
     chosen = robot.detector(detector)
     T_world_tool = compute_frames(robot, values)[robot.tool]

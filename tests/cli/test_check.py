@@ -13,6 +13,7 @@ def test_json_has_the_promised_keys_and_pairs_worst_first(cli, qiao):
     assert outcome.code == 0
     data = outcome.data
     assert set(data) == {
+        "convention",
         "robot",
         "detector",
         "safe_distance_m",

@@ -13,7 +13,7 @@ ROW_OPTIONS = ("--unit", "mm", "--angles", "rad", "--convention", "classical")
 
 def test_json_has_every_frame_by_name(cli, qiao):
     data = cli("fk", "--json").data
-    assert set(data) == {"robot", "q", "outside_limits", "frames"}
+    assert set(data) == {"robot", "convention", "q", "outside_limits", "frames"}
     assert set(FRAMES) <= set(data["frames"])
     assert data["q"] == dict(zip(qiao.joint_names, qiao.home.tolist(), strict=True))
     for name, T in ikde.forward(qiao, qiao.home).items():

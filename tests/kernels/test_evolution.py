@@ -103,7 +103,7 @@ def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rule, update, rng):
 
 def test_a_met_target_is_free_under_feasibility(qiao, rng):
     target = make_target(qiao, "position", rng)
-    problem = make_case(qiao, generations=60, position_tolerance_m=0.3)
+    problem = make_case(qiao, generations=60, position_tolerance_m=0.3, update="generation")
     for seed in range(20):
         x, score, best, meets, _, _ = run_evolve(problem, target, seed)
         assert meets

@@ -70,7 +70,7 @@ def test_on_a_limit_is_inside():
 
 def run_lane(robot, target, blocks, *, seed=3, detector=None, near=None, **changes):
     """Run the attempts block by block: (q, score, counts, pair counts)."""
-    settings = SolveSettings(**{"population": 8, "generations": 40, **changes})
+    settings = SolveSettings(**{"population": 8, "generations": 40, "update": "generation", **changes})
     problem = make_problem(robot, settings, detector=detector, near=near, freeze=None)
     packed, spheres = pack_robot(robot), pack_detector(robot, problem.detector)
     q, score, counts = np.zeros(len(robot.joints)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)
@@ -107,6 +107,15 @@ def test_no_attempts_touch_nothing(qiao):
     assert not counts.any()
     assert not pairs.any()
     assert np.all(score == np.inf)
+
+
+def test_a_start_that_solves_already_is_the_answer(qiao):
+    near = np.array([0.4, -0.2, 0.5, 1.0, 0.3, -0.9, 0.4, 0.2, 0.1])
+    target = Target(reference.compute_frames(qiao, near)["tool"][:3, 3])
+    q, _, counts, _ = run_lane(qiao, target, [(0, 1)], near=near)
+    assert counts[REACHED] == 1
+    assert counts[EVALUATIONS] == 1
+    np.testing.assert_array_equal(q, near)
 
 
 def test_unreached_attempts_and_evaluations_are_counted(qiao):

@@ -50,8 +50,14 @@ def test_a_target_is_read_only_and_keeps_its_own_copy():
         ({"p_world_tool": []}, "p_world_tool: expected 3 numbers, got 0"),
         ({"p_world_tool": 1.0}, "p_world_tool: expected 3 numbers, got shape ()"),
         ({"p_world_tool": [[1.0, 2.0, 3.0]]}, "p_world_tool: expected 3 numbers, got shape (1, 3)"),
-        ({"p_world_tool": [1.0, np.nan, 3.0]}, "p_world_tool: expected finite numbers below 1e+09, got [1.0, nan, 3.0]"),
-        ({"p_world_tool": [1.0, np.inf, 3.0]}, "p_world_tool: expected finite numbers below 1e+09, got [1.0, inf, 3.0]"),
+        (
+            {"p_world_tool": [1.0, np.nan, 3.0]},
+            "p_world_tool: expected finite numbers up to 1e+06, got [1.0, nan, 3.0]",
+        ),
+        (
+            {"p_world_tool": [1.0, np.inf, 3.0]},
+            "p_world_tool: expected finite numbers up to 1e+06, got [1.0, inf, 3.0]",
+        ),
         ({"p_world_tool": ["a", 2.0, 3.0]}, "p_world_tool: expected numbers, got ['a', 2.0, 3.0]"),
         ({"p_world_tool": None}, "p_world_tool: expected 3 numbers"),
         ({"p_world_tool": [1.0, [2.0], 3.0]}, "p_world_tool: expected numbers"),

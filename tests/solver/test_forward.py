@@ -10,7 +10,8 @@ from tests.conftest import random_q
 
 def test_every_frame_has_a_pose_and_the_world_is_left_out(any_robot):
     frames = ikde.forward(any_robot, any_robot.home)
-    assert list(frames) == [frame.name for frame in any_robot.frames]
+    assert set(frames) == {frame.name for frame in any_robot.frames} | {"tool"}
+    np.testing.assert_array_equal(frames["tool"], frames[any_robot.tool])
     assert all(T.shape == (4, 4) for T in frames.values())
 
 
