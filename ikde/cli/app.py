@@ -15,7 +15,7 @@ from ikde.cli.fk import fk
 from ikde.cli.output import print_note, print_result
 from ikde.cli.robots import robots
 from ikde.cli.solve import solve
-from ikde.cli.startup import skip_garbage_collection
+from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection
 from ikde.errors import InputError
 
 UsageError: type[Exception] = typer.BadParameter.__bases__[
@@ -58,7 +58,9 @@ app.add_typer(robots, name="robots")
 def run_and_exit() -> NoReturn:
     """Run the command line and exit."""
     skip_garbage_collection()
-    sys.exit(run(sys.argv[1:]))
+    code = run(sys.argv[1:])
+    leave_garbage_at_exit()
+    sys.exit(code)
 
 
 def run(arguments: list[str]) -> int:

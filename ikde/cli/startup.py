@@ -12,6 +12,11 @@ def skip_garbage_collection() -> None:
     gc.disable()
 
 
+def leave_garbage_at_exit() -> None:
+    """Python's last collection would walk everything once more, for 0.2 s, only to hand it to the system anyway."""
+    gc.freeze()
+
+
 def skip_blas_probe() -> None:
     """Keep numba from importing `scipy.linalg` just to learn whether BLAS is there: 0.2 s of every `ikde solve`.
 
