@@ -1,6 +1,7 @@
 """The table of every packed array: what `model.pack` gives and every kernel takes.
 
-All arrays are C-ordered, read-only, float64 or int64; metres and radians. A transform is its upper three rows, [3, 4]:
+All arrays are C-ordered and read-only; metres and radians. Numbers are float64 or int64; what is only ever an index into
+another array is uint64, since numba tests a signed index for being negative (0.06 us a collision check). A transform is its upper three rows, [3, 4]:
 rotation and translation. Points stand as [3, S], coordinate by coordinate, so that the compiler can vectorise.
 
 A *body* is what one joint moves. Body 0 is the world; body b > 0 is moved by one coordinate of q about or along the z
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Indices = NDArray[np.uint64]
 
 
 class RobotArrays(NamedTuple):
@@ -21,7 +23,7 @@ class RobotArrays(NamedTuple):
 
     bodies: Ints  # [B, 4] parent body, coordinate of q, 1 if it slides, 1 if the tool hangs on it
     T_parent_body: Floats  # [B, 3, 4] at q = 0
-    frame_body: Ints  # [F] the body a frame is fixed to
+    frame_body: Indices  # [F] the body a frame is fixed to
     T_body_frame: Floats  # [F, 3, 4]
 
 
@@ -34,10 +36,10 @@ class DetectorArrays(NamedTuple):
     safe_distance: float  # m
     p_body_sphere: Floats  # [3, S] m
     radius: Floats  # [S] m
-    components: Ints  # [C, 3] body, first sphere, sphere after the last
+    components: Indices  # [C, 3] body, first sphere, sphere after the last
     bounds: Floats  # [C, 4] centre in its body and radius of a sphere around the whole component, m
-    pairs: Ints  # [P, 2] two components, the one with more spheres first
-    rows: Ints  # [W, 4] frame of the first key point, of the second, first sphere, sphere after the last
+    pairs: Indices  # [P, 2] two components, the one with more spheres first
+    rows: Indices  # [W, 4] frame of the first key point, of the second, first sphere, sphere after the last
     offset: Floats  # [S] m along the row's line, from its middle
 
 

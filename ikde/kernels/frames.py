@@ -1,5 +1,7 @@
 """Forward kinematics of every body and frame, and the tool's geometric Jacobian."""
 
+import numpy as np
+
 from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PARENT, SLIDES
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import sin_cos
@@ -16,7 +18,7 @@ def compute_bodies(robot, q, out_T):
         for j in range(4):
             out_T[0, i, j] = 1.0 if i == j else 0.0
     for body in range(1, bodies.shape[0]):
-        parent = bodies[body, PARENT]
+        parent = np.uint64(bodies[body, PARENT])  # an index without a sign
         value = q[bodies[body, COORDINATE]]
         slides = bodies[body, SLIDES] == 1
         s, c = (0.0, 1.0) if slides else sin_cos(value)

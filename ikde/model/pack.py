@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.kernels.arrays import DetectorArrays, Floats, Ints, RobotArrays, TargetArrays
+from ikde.kernels.arrays import DetectorArrays, Floats, Indices, Ints, RobotArrays, TargetArrays
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.rotation import rotation_with_z
 from ikde.model.spheres import bounding_sphere, expand_rows
@@ -31,7 +31,7 @@ def pack_robot(robot: Robot) -> RobotArrays:
     return RobotArrays(
         bodies=_ints([_body_row(robot, body, c) for body, c in zip(tree.bodies, carries_tool, strict=True)]),
         T_parent_body=_floats([T[:3] for T in T_parent_body]),
-        frame_body=_ints([tree.frame_body[f] for f in frames]),
+        frame_body=_indices([tree.frame_body[f] for f in frames]),
         T_body_frame=_floats([T[:3] for T in T_body_frame]),
     )
 
@@ -122,5 +122,11 @@ def _ints(values: ArrayLike) -> Ints:
     return array
 
 
-def _table(rows: Sequence[Sequence[int]], columns: int) -> Ints:
-    return _ints(np.reshape(rows, (-1, columns)))
+def _indices(values: ArrayLike) -> Indices:
+    array = np.array(values, dtype=np.uint64, order="C")
+    array.setflags(write=False)
+    return array
+
+
+def _table(rows: Sequence[Sequence[int]], columns: int) -> Indices:
+    return _indices(np.reshape(rows, (-1, columns)))

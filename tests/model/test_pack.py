@@ -14,7 +14,8 @@ SHAPES = {
     "bodies": 2, "T_parent_body": 3, "frame_body": 1, "T_body_frame": 3, "p_body_sphere": 2, "radius": 1,
     "components": 2, "bounds": 2, "pairs": 2, "rows": 2, "offset": 1, "kind": 1, "T_world_tool": 3,
 }  # fmt: skip
-INTEGERS = {"bodies", "frame_body", "components", "pairs", "rows", "kind"}
+INDICES = ("frame_body", "components", "pairs", "rows")  # without a sign
+DTYPES = {"bodies": np.int64, "kind": np.int64} | dict.fromkeys(INDICES, np.uint64)
 
 
 def packed_arrays(robot):
@@ -34,7 +35,7 @@ def test_arrays_are_ordered_read_only_and_of_one_dtype(robot):
         assert array.flags.c_contiguous, name
         assert not array.flags.writeable, name
         assert array.flags.owndata or not array.base.flags.writeable, name
-        assert array.dtype == (np.int64 if name in INTEGERS else np.float64), name
+        assert array.dtype == DTYPES.get(name, np.float64), name
         assert array.ndim == SHAPES[name], name
 
 
