@@ -71,8 +71,14 @@ def main() -> None:
         cells = (times[name][:, stage] for name in sets)
         table.add_row(label, *(f"{np.median(t):.0f} [{np.percentile(t, 95):.0f}]" for t in cells))
     Console().print(table)
-    record = {name: dict(zip(STAGES, np.median(t, axis=0).tolist(), strict=True)) for name, t in times.items()}
-    RESULTS.write_text(json.dumps({"machine": describe(), "median_ns": record}, indent=1))
+    record = {
+        name: {
+            stage: {"median": float(np.median(column)), "p95": float(np.percentile(column, 95))}
+            for stage, column in zip(STAGES, t.T, strict=True)
+        }
+        for name, t in times.items()
+    }
+    RESULTS.write_text(json.dumps({"machine": describe(), "ns": record}, indent=1))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ Every solution is graded by `verify`. Times are those of one solve on one core; 
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -55,12 +56,12 @@ def run_cell(robot: ikde.Robot, target: ikde.Target, detector: str, seeds: int, 
     }
 
 
-def summarise(values: np.ndarray) -> dict[str, float]:
+def summarise(values: Sequence[float] | np.ndarray) -> dict[str, float]:
     """Median, 95th percentile and maximum over all."""
     return {
         "median": float(np.median(values)),
         "p95": float(np.percentile(values, 95)),
-        "max": float(values.max()),
+        "max": float(np.max(values)),
     }
 
 

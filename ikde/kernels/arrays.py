@@ -1,8 +1,9 @@
 """The table of every packed array: what `model.pack` gives and every kernel takes.
 
-All arrays are C-ordered and read-only; metres and radians. Numbers are float64 or int64; what is only ever an index into
-another array is uint64, since numba tests a signed index for being negative (0.06 us a collision check). A transform is its upper three rows, [3, 4]:
-rotation and translation. Points stand as [3, S], coordinate by coordinate, so that the compiler can vectorise.
+All arrays are C-ordered and read-only; metres and radians. Numbers are float64 or int64; what is only ever an index
+into another array is uint64, since numba tests a signed index for being negative (0.06 us a collision check). A
+transform is its upper three rows, [3, 4]: rotation and translation. Points stand as [3, S], coordinate by coordinate,
+so that the compiler can vectorise.
 
 A *body* is what one joint moves. Body 0 is the world; body b > 0 is moved by one coordinate of q about or along the z
 axis of its own frame (`pack` turns every joint axis to z, so that one formula serves all). Parents come first.
