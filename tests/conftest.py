@@ -39,5 +39,5 @@ def random_q(robot, rng, count=None):
 def pytest_terminal_summary(terminalreporter):
     """Say at the end what was left out and how to run it."""
     left_out = len(terminalreporter.stats.get("deselected", []))
-    if left_out:
+    if left_out and terminalreporter.config.option.markexpr == "not slow":
         terminalreporter.write_line(f"left out: {left_out} tests, the slow ones; `python -m pytest -m slow` runs them")

@@ -15,7 +15,7 @@ from ikde.cli.fk import fk
 from ikde.cli.output import print_note, print_result
 from ikde.cli.robots import robots
 from ikde.cli.solve import solve
-from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection
+from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread
 from ikde.errors import InputError
 
 UsageError: type[Exception] = typer.BadParameter.__bases__[
@@ -58,6 +58,7 @@ app.add_typer(robots, name="robots")
 def run_and_exit() -> NoReturn:
     """Run the command line and exit."""
     skip_garbage_collection()
+    use_one_blas_thread()
     code = run(sys.argv[1:])
     leave_garbage_at_exit()
     sys.exit(code)
