@@ -18,9 +18,8 @@ from ikde.cli.solve import solve
 from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread
 from ikde.errors import InputError
 
-UsageError: type[Exception] = typer.BadParameter.__bases__[
-    0
-]  # click's, wherever typer keeps it: newer ones carry their own copy
+# Click's UsageError, wherever typer keeps it: newer ones carry a copy of click of their own.
+UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 INTERRUPTED = "ikde: interrupted"
 
 app = typer.Typer(

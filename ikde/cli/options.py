@@ -127,13 +127,12 @@ def check_drawable(path: Path | None) -> None:
         raise FileError(path, "cannot be written: expected a file name in a folder that exists")
 
 
-def read_positive(value: float | None, option: str) -> float | None:
-    """A number above 0, or None."""
+def check_positive(value: float | None, option: str) -> None:
+    """Raise `InputError` unless the option is left out or a number above 0."""
     from ikde.errors import InputError
 
     if value is not None and not 0.0 < value < float("inf"):
         raise InputError(f"expected a finite number above 0, got {value:g}", (option,))
-    return value
 
 
 def draw(

@@ -18,10 +18,10 @@ from ikde.cli.options import (
     SafeDistanceOption,
     UnitOption,
     check_drawable,
+    check_positive,
     draw,
     read_detector,
     read_freeze,
-    read_positive,
     read_q,
 )
 from ikde.cli.output import announce_compile, print_json, print_note, print_result, use_color, working
@@ -121,8 +121,8 @@ def solve(
 
     model = load_robot(robot)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
-    read_positive(tolerance, "--tolerance")
-    read_positive(orientation_tolerance, "--orientation-tolerance")
+    check_positive(tolerance, "--tolerance")
+    check_positive(orientation_tolerance, "--orientation-tolerance")
     settings = SolveSettings.for_method(method).with_changes(
         position_tolerance_m=None if tolerance is None else tolerance * LENGTHS_M[unit],
         orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * ANGLES_RAD[angles],

@@ -13,11 +13,11 @@ def component_bodies(rows: tuple[SphereRow, ...], tree: Tree) -> dict[str, int]:
 
 def are_adjacent(tree: Tree, occupied: set[int], a: int, b: int) -> bool:
     """True if two bodies are one, or a joint connects them; a body that carries no component does not part them."""
-    return a == b or _carrier(tree, occupied, a) == b or _carrier(tree, occupied, b) == a
+    return a == b or nearest_carrier(tree, occupied, a) == b or nearest_carrier(tree, occupied, b) == a
 
 
-def _carrier(tree: Tree, occupied: set[int], body: int) -> int | None:
-    """The nearest body below that carries a component."""
+def nearest_carrier(tree: Tree, occupied: set[int], body: int) -> int | None:
+    """The nearest body below `body` that carries a component, or None: then `body` belongs to the base."""
     while body != 0:
         body = tree.bodies[body].parent
         if body in occupied:

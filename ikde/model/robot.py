@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
@@ -121,6 +122,11 @@ class Robot:
     def home(self) -> Floats:
         """Home configuration [N], m or rad."""
         return np.array([joint.home for joint in self.joints])
+
+    @property
+    def slides(self) -> NDArray[np.bool_]:
+        """Which joints are prismatic [N]."""
+        return np.array([joint.kind == "prismatic" for joint in self.joints])
 
     def detector(self, choice: "str | Detector | None") -> Detector | None:
         """Resolve a detector: a name, a `Detector`, or None for the robot's default; `"none"` looks at nothing."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from ikde.errors import FileError
 from ikde.kernels.arrays import Floats
-from ikde.model.pairs import component_bodies
+from ikde.model.pairs import component_bodies, nearest_carrier
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.target import Target
 from ikde.model.tree import build_tree
@@ -115,15 +115,8 @@ def base_components(robot: Robot, detector: Detector) -> set[str]:
     """Components that no other component carries: the platform and what is fixed to it."""
     tree = build_tree(robot)
     bodies = component_bodies(robot.approximations[detector.spheres], tree)
-
-    def carried(body: int) -> bool:
-        while body != 0:
-            body = tree.bodies[body].parent
-            if body in bodies.values():
-                return True
-        return False
-
-    return {name for name, body in bodies.items() if not carried(body)}
+    occupied = set(bodies.values())
+    return {name for name, body in bodies.items() if nearest_carrier(tree, occupied, body) is None}
 
 
 def _draw_sphere(axes: Any, centre: Floats, radius: float, color: str, label: str | None) -> None:

@@ -98,8 +98,7 @@ def _probe(problem: Problem, target: Target, seed: int) -> Found:
 
 def _widened(problem: Problem) -> tuple[Floats, Floats]:
     """Slides four times as wide, revolute joints free to turn once around."""
-    slides = np.array([joint.kind == "prismatic" for joint in problem.robot.joints])
-    lower, upper = problem.robot.lower, problem.robot.upper
+    slides, lower, upper = problem.robot.slides, problem.robot.lower, problem.robot.upper
     grow = 0.5 * (WIDER - 1.0) * (upper - lower)
     wide_lower = np.where(slides, lower - grow, np.minimum(lower, -np.pi))
     wide_upper = np.where(slides, upper + grow, np.maximum(upper, np.pi))
@@ -127,12 +126,10 @@ def _reach_hint(problem: Problem, target: Target) -> str:
     robot = problem.robot
     if problem.frozen and reach_excess_m(robot, target.p_world_tool, robot.lower, robot.upper) == 0.0:
         return f"free {', '.join(problem.frozen)}: then the bound no longer excludes the target"
-    slides = [joint.name for joint in robot.joints if joint.kind == "prismatic"]
-    wide = reach_excess_m(
-        robot, target.p_world_tool, *(np.where(np.isin(robot.joint_names, slides), b, 0.0) for b in (-1e3, 1e3))
-    )
-    if slides and wide == 0.0:
-        return f"a larger range for {', '.join(slides)} would bring it into reach"
+    names = [joint.name for joint in robot.joints if joint.kind == "prismatic"]
+    far = np.where(robot.slides, 1e3, 0.0)  # m; what turns may do does not enter the bound
+    if names and reach_excess_m(robot, target.p_world_tool, -far, far) == 0.0:
+        return f"a larger range for {', '.join(names)} would bring it into reach"
     return "a target closer to the robot; no joint range brings the tool there"
 
 

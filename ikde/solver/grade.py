@@ -10,7 +10,7 @@ from ikde.kernels.figures import CLEARANCE, ORIENTATION_ERROR, POSITION_ERROR, c
 from ikde.kernels.lanes import ATTEMPTS, COLLIDING, EVALUATIONS
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Target
-from ikde.solver.explain import Explanation, explain, explain_from_counts
+from ikde.solver.explain import Explanation, count_blocking_pairs, explain, explain_from_counts
 from ikde.solver.problem import Problem
 from ikde.solver.result import SolveResult, StopReason
 from ikde.solver.search import Found
@@ -84,7 +84,7 @@ def _tell(problem: Problem, target: Target, found: Found, run: Run, graded: Veri
         stop_reason=StopReason.REACHED,
         reason=f"within tolerance, inside the limits, {free}",
         hint=None,
-        blocking_pairs=explain_from_counts(problem, found).blocking_pairs,
+        blocking_pairs=count_blocking_pairs(problem, found.pair_counts[0]),
     )
 
 

@@ -61,6 +61,7 @@ def search(
 
     def run(index: int) -> None:
         last = _last_attempt(problem, targets[index], first_attempt) if attempts is None else first_attempt + attempts
+        # One call at least: with no attempts to make it is empty, and compiles or loads the kernel.
         for begin in range(first_attempt, max(last, first_attempt + 1), ATTEMPTS_PER_CALL):
             if stop.is_set() or counts[index, REACHED]:
                 return

@@ -142,11 +142,10 @@ def solve_many(
 
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
     """True if a revolute joint differs by more than 0.1 rad (around the circle) or the slides by more than 50 mm."""
-    slides = np.array([joint.kind == "prismatic" for joint in robot.joints])
     difference = np.abs(q - other)
-    turns = difference[~slides] % (2.0 * np.pi)
+    turns = difference[~robot.slides] % (2.0 * np.pi)
     turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
-    return bool(np.any(turned) or np.linalg.norm(difference[slides]) > SLIDE_APART_M)
+    return bool(np.any(turned) or np.linalg.norm(difference[robot.slides]) > SLIDE_APART_M)
 
 
 def check_seed(seed: int) -> int:
