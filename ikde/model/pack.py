@@ -40,7 +40,7 @@ def pack_robot(robot: Robot) -> RobotArrays:
 def pack_detector(robot: Robot, detector: Detector | None) -> DetectorArrays:
     """Pack a detector's spheres and pairs; None packs the detector that never sees anything."""
     tree = build_tree(robot)
-    pairs = robot.pair_lists[detector.pairs] if detector else ()
+    pairs = robot.pairs(detector)
     looked_at = {component for pair in pairs for component in pair}
     every = expand_rows(robot, tree, detector.spheres) if detector else ()
     spheres = [sphere for sphere in every if sphere.component in looked_at]
@@ -80,9 +80,11 @@ def frame_names(robot: Robot) -> list[str]:
 
 def pack_targets(targets: Sequence[Target]) -> TargetArrays:
     """Pack targets, one row each."""
+    rotations = np.reshape([target.R_world_tool for target in targets], (-1, 3, 3))
+    positions = np.reshape([target.p_world_tool for target in targets], (-1, 3))
     return TargetArrays(
         kind=_ints([KINDS[target.kind] for target in targets]),
-        T_world_tool=_floats([np.column_stack([target.R_world_tool, target.p_world_tool]) for target in targets]),
+        T_world_tool=_floats(np.concatenate([rotations, positions[:, :, None]], axis=2)),
     )
 
 

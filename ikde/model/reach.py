@@ -36,8 +36,8 @@ class _Run:
         return float(np.hypot(self.along, self.across)) + self.slack
 
 
-def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Floats) -> float:
-    """Distance in m by which a position [3] is out of reach, or 0 if this bound cannot tell.
+def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Floats) -> Floats:
+    """Distances in m by which positions [..., 3] are out of reach, or 0 where this bound cannot tell.
 
     `lower`, `upper` [N]: the joint ranges that hold, after `freeze`. Sound for any tree; sharp for the usual ones.
     """
@@ -51,19 +51,23 @@ def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Flo
         slides.append((R @ body.axis, lower[body.joint], upper[body.joint]))
     if not rest:
         gap, slack = _clamp_to_box(p_world_tool - centre - R @ p_body_tool, slides)
-        return max(0.0, float(np.linalg.norm(gap)) - slack)
+        return np.maximum(0.0, _length(gap) - slack)
     centre = centre + R @ rest[0].T_parent_body[:3, 3]
     axis = R @ rest[0].T_parent_body[:3, :3] @ rest[0].axis
     runs = _runs(robot, rest, p_body_tool, lower, upper)
     beyond = sum(run.length for run in runs[1:])
     if any(_is_oblique(direction, axis) for direction, _, _ in slides):
         gap, slack = _clamp_to_box(p_world_tool - centre, slides)
-        return max(0.0, float(np.linalg.norm(gap)) - slack - runs[0].length - beyond)
+        return np.maximum(0.0, _length(gap) - slack - runs[0].length - beyond)
     gap, slack = _clamp_to_box(p_world_tool - centre - runs[0].along * axis, slides)
-    height = float(gap @ axis)
-    flat = float(np.linalg.norm(gap - height * axis))
-    outside = float(np.hypot(max(0.0, flat - runs[0].across), height))
-    return max(0.0, outside - runs[0].slack - slack - beyond)
+    height = gap @ axis
+    flat = _length(gap - height[..., None] * axis)
+    outside = np.hypot(np.maximum(0.0, flat - runs[0].across), height)
+    return np.maximum(0.0, outside - runs[0].slack - slack - beyond)
+
+
+def _length(vectors: Floats) -> Floats:
+    return np.linalg.norm(vectors, axis=-1)
 
 
 def _is_oblique(direction: Floats, axis: Floats) -> bool:
@@ -104,12 +108,12 @@ def _runs(robot: Robot, chain: list[Body], p_body_tool: Floats, lower: Floats, u
 
 
 def _clamp_to_box(offset: Floats, slides: list[tuple[Floats, float, float]]) -> tuple[Floats, float]:
-    """What is left of an offset after the best use of orthogonal slides; others count as slack in any direction."""
+    """What is left of offsets [..., 3] after the best use of orthogonal slides; others are slack in any direction."""
     slack, used = 0.0, []
     for direction, low, high in slides:
         if any(abs(float(direction @ other)) > PARALLEL for other in used):
             slack += max(abs(low), abs(high))
             continue
         used.append(direction)
-        offset = offset - direction * np.clip(float(offset @ direction), low, high)
+        offset = offset - direction * np.clip(offset @ direction, low, high)[..., None]
     return offset, slack

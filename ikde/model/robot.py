@@ -142,6 +142,10 @@ class Robot:
             )
         return self.detectors[name]
 
+    def pairs(self, detector: Detector | None) -> Pairs:
+        """Pairs that a detector looks at; none without a detector."""
+        return self.pair_lists[detector.pairs] if detector else ()
+
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
         return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))

@@ -60,12 +60,13 @@ def check_rotation(R: Floats) -> None:
         raise InputError("not a rotation matrix: R R^T must be the identity and det R = +1")
 
 
-def rotation_angle(R: Floats) -> float:
-    """Norm of the rotation vector of `R` in [0, pi] rad, exact near 0 and near pi."""
-    vector = 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    return float(np.arctan2(np.linalg.norm(vector), 0.5 * (np.trace(R) - 1.0)))
+def rotation_angle(R: Floats) -> Floats:
+    """Norm of the rotation vector of `R` [..., 3, 3] in [0, pi] rad, exact near 0 and near pi."""
+    vector = np.stack([R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], axis=-1)
+    trace = np.trace(R, axis1=-2, axis2=-1)
+    return np.arctan2(np.linalg.norm(vector, axis=-1), trace - 1.0)
 
 
-def angle_between(a: Floats, b: Floats) -> float:
-    """Angle between two unit vectors in [0, pi] rad."""
-    return float(np.arctan2(np.linalg.norm(np.cross(a, b)), np.dot(a, b)))
+def angle_between(a: Floats, b: Floats) -> Floats:
+    """Angle between unit vectors [..., 3] in [0, pi] rad."""
+    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))

@@ -12,7 +12,7 @@ from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.target import Target
 from ikde.model.tree import build_tree
 from ikde.solver.check import compute_pairs
-from ikde.solver.plain import compute_components, compute_frames, compute_gap
+from ikde.solver.plain import compute_components, compute_frames, compute_sphere_gaps
 
 ARM, BASE, COLLIDING, CLOSEST, TARGET = "#d1352b", "#3568b8", "#1a1a1a", "#0b8a3c", "#e69f00"
 AXES = ("#c00000", "#008000", "#0000c0")
@@ -80,7 +80,7 @@ def _chain(robot: Robot) -> list[str]:
 
 def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str:
     """Spheres in the paper's colours and the closest pair; returns what the title says of them."""
-    components = compute_components(robot, detector, q)
+    components = compute_components(robot, detector.spheres, q)
     pairs = compute_pairs(robot, detector, q)
     colliding = {name for pair in pairs if pair.collides for name in (pair.a, pair.b)}
     base = base_components(robot, detector)
@@ -96,7 +96,8 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
         return f"  ·  detector {detector.name}: no pairs"
     closest = pairs[0]
     a, b = components[closest.a], components[closest.b]
-    _, i, j = compute_gap(a, b)
+    gaps = compute_sphere_gaps(a, b)
+    i, j = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
     text = f"{closest.a}-{closest.b}: {closest.clearance_m * 1e3:.1f} mm"
     axes.plot(
         *np.array([a[0][i], b[0][j]]).T,
@@ -159,7 +160,7 @@ def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, ta
         lows.append(target.p_world_tool)
         highs.append(target.p_world_tool)
     if detector is not None:
-        for centres, radii in compute_components(robot, detector, q).values():
+        for centres, radii in compute_components(robot, detector.spheres, q).values():
             lows.append((centres - radii[:, None]).min(axis=0))
             highs.append((centres + radii[:, None]).max(axis=0))
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)

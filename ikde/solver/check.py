@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
 from ikde.solver.joints import JointValues, joints_outside, read_configuration
-from ikde.solver.plain import compute_components, compute_gap
+from ikde.solver.plain import compute_gaps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,9 +64,10 @@ def check(
 
 def compute_pairs(robot: Robot, detector: Detector, q: Floats) -> tuple[PairClearance, ...]:
     """Every pair of a detector for one `q` [N], worst first, by plain numpy."""
-    components = compute_components(robot, detector, q)
-    found = []
-    for a, b in robot.pair_lists[detector.pairs]:
-        gap, _, _ = compute_gap(components[a], components[b])
-        found.append(PairClearance(a=a, b=b, clearance_m=gap, collides=gap <= detector.safe_distance_m))
+    pairs = robot.pairs(detector)
+    gaps = compute_gaps(robot, detector.spheres, pairs, q).tolist()
+    found = [
+        PairClearance(a=a, b=b, clearance_m=gap, collides=gap <= detector.safe_distance_m)
+        for (a, b), gap in zip(pairs, gaps, strict=True)
+    ]
     return tuple(sorted(found, key=lambda pair: pair.clearance_m))

@@ -31,9 +31,7 @@ class Explanation:
 
 def count_blocking_pairs(problem: Problem, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
     """Pairs that blocked, with how often, most often first."""
-    if problem.detector is None:
-        return {}
-    pairs = problem.robot.pair_lists[problem.detector.pairs]
+    pairs = problem.robot.pairs(problem.detector)
     blocking = [(pair, int(n)) for pair, n in zip(pairs, pair_counts, strict=True) if n > 0]
     return dict(sorted(blocking, key=lambda item: -item[1]))
 
@@ -41,7 +39,9 @@ def count_blocking_pairs(problem: Problem, pair_counts: np.ndarray) -> dict[tupl
 def explain_from_counts(problem: Problem, found: Found) -> Explanation:
     """What the counts of the search alone tell, at no cost."""
     colliding, blocking = int(found.counts[0, COLLIDING]), count_blocking_pairs(problem, found.pair_counts[0])
-    if colliding:
+    if found.excess_m[0] > 0.0:
+        reason, stop = _out_of_reach(float(found.excess_m[0])), StopReason.OUT_OF_REACH
+    elif colliding:
         reason, stop = f"only colliding solutions found, {colliding} of them", StopReason.SELF_COLLISION
     else:
         reason, stop = f"{problem.settings.restarts} attempts spent", StopReason.BUDGET
@@ -50,12 +50,9 @@ def explain_from_counts(problem: Problem, found: Found) -> Explanation:
 
 def explain(problem: Problem, target: Target, found: Found, graded: Verification, seed: int) -> Explanation:
     """Explain an unreached target from its counts, a proved bound, and short searches that change one thing."""
-    excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
-    if excess > problem.settings.position_tolerance_m:
-        reason = f"out of reach: at least {excess:.3f} m beyond the stretched arm at the nearest base position"
-        return Explanation(
-            stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=_reach_hint(problem, target), blocking_pairs={}
-        )
+    if found.excess_m[0] > 0.0:
+        reason, hint = _out_of_reach(float(found.excess_m[0])), _reach_hint(problem, target)
+        return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
     colliding = int(found.counts[0, COLLIDING])
     blocking = count_blocking_pairs(problem, found.pair_counts[0])
     if colliding == 0 and problem.detector is not None:
@@ -80,6 +77,10 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
             blocking_pairs={},
         )
     return _spent(problem, graded, _tolerance_hint(problem, graded))
+
+
+def _out_of_reach(excess_m: float) -> str:
+    return f"out of reach: at least {excess_m:.3f} m beyond the stretched arm at the nearest base position"
 
 
 def _spent(problem: Problem, graded: Verification, hint: str | None) -> Explanation:

@@ -1,13 +1,14 @@
 """The robot's geometry in plain numpy, straight from the `Robot`: no packing, no numba, nothing shared with kernels.
 
 It answers `forward` and `check`, and it is what `verify` grades with. It is written to be read: frames by products of
-4 x 4 matrices, sphere centres on the lines between key points, all distances of all pairs.
+4 x 4 matrices, sphere centres on the lines between key points, all distances of all pairs. Leading axes `...` are
+configurations: one, or as many as there are.
 """
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import WORLD, Detector, Robot, SphereRow
+from ikde.model.robot import WORLD, Pairs, Robot, SphereRow
 
 
 def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
@@ -40,31 +41,41 @@ def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
     return Ts_world
 
 
+Spheres = tuple[Floats, Floats]
+"""Centres [..., n, 3] in the world and radii [n], m."""
+
+
 def compute_row_centres(row: SphereRow, start: Floats, end: Floats) -> Floats:
-    """Centres [count, 3] of a row of spheres between two key points in the world [Qiao2021, eq. 12, 13, 16]."""
-    middle, line = 0.5 * (start + end), end - start
+    """Centres [..., count, 3] of a row of spheres between key points [..., 3] [Qiao2021, eq. 12, 13, 16]."""
+    middle, line = 0.5 * (start + end)[..., None, :], (end - start)[..., None, :]
     if row.count == 1:
-        return middle[None, :]
+        return middle
     steps = np.arange(row.count)[:, None] - 0.5 * (row.count - 1)
     if row.spacing == "even":
         return middle + steps * line / (row.count - 1)
-    return middle + steps * 2.0 * row.radius_m * line / np.linalg.norm(line)
+    return middle + steps * 2.0 * row.radius_m * line / np.linalg.norm(line, axis=-1, keepdims=True)
 
 
-def compute_components(robot: Robot, detector: Detector, q: Floats) -> dict[str, tuple[Floats, Floats]]:
-    """Sphere centres [n, 3] in the world and radii [n] of every component, for one `q` [N]."""
+def compute_components(robot: Robot, spheres: str, q: Floats) -> dict[str, Spheres]:
+    """Spheres of every component of an approximation, in the world, for `q` [..., N]."""
     Ts_world = compute_frames(robot, q)
     centres: dict[str, list[Floats]] = {}
     radii: dict[str, list[float]] = {}
-    for row in robot.approximations[detector.spheres]:
-        points = compute_row_centres(row, Ts_world[row.start][:3, 3], Ts_world[row.end][:3, 3])
+    for row in robot.approximations[spheres]:
+        points = compute_row_centres(row, Ts_world[row.start][..., :3, 3], Ts_world[row.end][..., :3, 3])
         centres.setdefault(row.component, []).append(points)
         radii.setdefault(row.component, []).extend([row.radius_m] * row.count)
-    return {name: (np.vstack(centres[name]), np.array(radii[name])) for name in centres}
+    return {name: (np.concatenate(centres[name], axis=-2), np.array(radii[name])) for name in centres}
 
 
-def compute_gap(a: tuple[Floats, Floats], b: tuple[Floats, Floats]) -> tuple[float, int, int]:
-    """Smallest distance - R_i - R_j between two components in m, and the indices of the two spheres."""
-    gaps = np.linalg.norm(a[0][:, None, :] - b[0][None, :, :], axis=2) - a[1][:, None] - b[1][None, :]
-    i, j = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
-    return float(gaps[i, j]), int(i), int(j)
+def compute_sphere_gaps(a: Spheres, b: Spheres) -> Floats:
+    """Distance - R_i - R_j between all spheres of two components [..., n, m] in m."""
+    distances = np.linalg.norm(a[0][..., :, None, :] - b[0][..., None, :, :], axis=-1)
+    return distances - a[1][:, None] - b[1]
+
+
+def compute_gaps(robot: Robot, spheres: str, pairs: Pairs, q: Floats) -> Floats:
+    """Smallest distance - R_i - R_j [..., P] in m of every pair of components, for `q` [..., N]."""
+    components = compute_components(robot, spheres, q)
+    gaps = [compute_sphere_gaps(components[a], components[b]).min(axis=(-2, -1)) for a, b in pairs]
+    return np.stack(gaps, axis=-1) if gaps else np.empty((*q.shape[:-1], 0))

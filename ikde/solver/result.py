@@ -59,7 +59,7 @@ class SolveResult:
     blocking_pairs: Mapping[tuple[str, str], int]
     """How often each pair blocked a pose that was met, most often first."""
     solve_seconds: float
-    """Wall time without compilation; in bulk the batch's wall time divided by its targets."""
+    """Wall time of this search, without compilation."""
     compile_seconds: float
 
     @property

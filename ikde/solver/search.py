@@ -2,9 +2,10 @@
 
 import os
 import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -26,11 +27,13 @@ class Found:
     q: Floats  # [T, N]
     counts: Ints  # [T, COUNTS]
     pair_counts: Ints  # [T, P]
+    excess_m: Floats  # [T] how far out of reach each target provably is, beyond the tolerance; 0 if nobody knows
+    seconds: Floats  # [T] wall time of each lane
 
     def row(self, index: int) -> "Found":
         """One target's share."""
         rows = slice(index, index + 1)
-        return Found(q=self.q[rows], counts=self.counts[rows], pair_counts=self.pair_counts[rows])
+        return Found(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
 
 def search(
@@ -57,10 +60,12 @@ def search(
     q, score = np.zeros((count, len(problem.robot.joints))), np.full((count, 2), np.inf)
     counts = np.zeros((count, COUNTS), dtype=np.int64)
     pair_counts = np.zeros((count, detector.pairs.shape[0]), dtype=np.int64)
+    excess, seconds = _excess_m(problem, targets), np.zeros(count)
     stop = threading.Event()
 
     def run(index: int) -> None:
-        last = _last_attempt(problem, targets[index], first_attempt) if attempts is None else first_attempt + attempts
+        last = first_attempt + (_budget(problem, excess[index]) if attempts is None else attempts)
+        started = time.perf_counter()
         # One call at least: with no attempts to make it is empty, and compiles or loads the kernel.
         for begin in range(first_attempt, max(last, first_attempt + 1), ATTEMPTS_PER_CALL):
             if stop.is_set() or counts[index, REACHED]:
@@ -70,17 +75,23 @@ def search(
             stream = np.int64(streams[index])
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
                 solve_lane(robot, detector, packed, index, settings, np.uint64(seed), stream, block, *outputs)
+            seconds[index] = time.perf_counter() - started
 
     _on_threads(run, count, threads or usable_cores(), stop)
-    return Found(q=q, counts=counts, pair_counts=pair_counts)
+    return Found(q=q, counts=counts, pair_counts=pair_counts, excess_m=excess, seconds=seconds)
 
 
-def _last_attempt(problem: Problem, target: Target, first_attempt: int) -> int:
-    """Where to stop: a target that is proved out of reach only needs showing how close the tool can come."""
-    excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
-    if excess > problem.settings.position_tolerance_m:
-        return first_attempt + min(OUT_OF_REACH_ATTEMPTS, problem.settings.restarts)
-    return first_attempt + problem.settings.restarts
+def _excess_m(problem: Problem, targets: Sequence[Target]) -> Floats:
+    """How far each target provably is out of reach, where that is more than the tolerance."""
+    positions = np.reshape([target.p_world_tool for target in targets], (-1, 3))
+    excess = reach_excess_m(problem.robot, positions, problem.lower, problem.upper)
+    return np.where(excess > problem.settings.position_tolerance_m, excess, 0.0)
+
+
+def _budget(problem: Problem, excess_m: float) -> int:
+    """Attempts to make: a target that is proved out of reach only needs showing how close the tool can come."""
+    restarts = problem.settings.restarts
+    return min(OUT_OF_REACH_ATTEMPTS, restarts) if excess_m > 0.0 else restarts
 
 
 def usable_cores() -> int:

@@ -1,21 +1,17 @@
 """`solve`, `solve_many`, `solve_distinct`: search, grade, explain."""
 
-import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.kernels.jit import compile_clock
-from ikde.kernels.lanes import ATTEMPTS
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
-from ikde.solver.grade import Run, grade
 from ikde.solver.joints import JointValues
-from ikde.solver.problem import Freeze, Problem, make_problem
+from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.result import SolveResult
-from ikde.solver.search import Found, search
+from ikde.solver.rows import solve_rows
 from ikde.solver.settings import SolveSettings
 
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
@@ -56,8 +52,8 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     problem = make_problem(robot, _choose(settings, method), detector=detector, near=near, freeze=freeze)
-    found, run = _search_one(problem, target, check_seed(seed), stream, announce_compile)
-    return grade(problem, target, found, run)
+    options = {"seed": check_seed(seed), "first_stream": stream, "announce_compile": announce_compile}
+    return solve_rows(problem, [target], strict=True, **options).row(0)
 
 
 def solve_distinct(
@@ -85,9 +81,9 @@ def solve_distinct(
     solutions: list[SolveResult] = []
     attempt = 0
     while len(solutions) < count and attempt < count * chosen.restarts:
-        found, run = _search_one(problem, target, check_seed(seed), 0, announce_compile, attempt)
-        attempt += int(found.counts[0, ATTEMPTS])
-        result = grade(problem, target, found, run, probe=not solutions)
+        options = {"seed": check_seed(seed), "first_attempt": attempt, "announce_compile": announce_compile}
+        result = solve_rows(problem, [target], strict=True, probe=not solutions, **options).row(0)
+        attempt += result.attempts
         if not result.reached:
             return solutions or [result]
         if all(are_distinct(robot, result.q, other.q) for other in solutions):
@@ -119,25 +115,17 @@ def solve_many(
         raise InputError(f"expected a whole number of at least 1, got {threads}", ("threads",))
     chosen = _choose(settings, method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
-    streams = list(range(len(targets)))
     if not targets:
         return []
-    with compile_clock(announce_compile) as clock:
-        search(problem, targets[:1], seed=0, streams=[0], attempts=0)
-        started = time.perf_counter()
-        found = search(problem, targets, seed=check_seed(seed), streams=streams, threads=threads)
-        seconds = (time.perf_counter() - started) / len(targets)
-    return [
-        grade(
-            problem,
-            target,
-            found.row(stream),
-            Run(seed=seed, stream=stream, solve_seconds=seconds, compile_seconds=clock.seconds),
-            strict=False,
-            probe=explain_failures,
-        )
-        for target, stream in zip(targets, streams, strict=True)
-    ]
+    rows = solve_rows(
+        problem,
+        targets,
+        seed=check_seed(seed),
+        threads=threads,
+        probe=explain_failures,
+        announce_compile=announce_compile,
+    )
+    return [rows.row(index) for index in range(len(rows))]
 
 
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
@@ -159,20 +147,3 @@ def _choose(settings: SolveSettings | None, method: str) -> SolveSettings:
     """The settings, or the method's own; a wrong name is an error either way."""
     own = SolveSettings.for_method(method)
     return own if settings is None else settings
-
-
-def _search_one(
-    problem: Problem,
-    target: Target,
-    seed: int,
-    stream: int,
-    announce: Callable[[], None] | None,
-    first_attempt: int = 0,
-) -> tuple[Found, Run]:
-    """Search one target from an attempt on, with the time it took."""
-    with compile_clock(announce) as clock:
-        search(problem, [target], seed=seed, streams=[0], attempts=0)
-        started = time.perf_counter()
-        found = search(problem, [target], seed=seed, streams=[stream], first_attempt=first_attempt)
-        seconds = time.perf_counter() - started
-    return found, Run(seed=seed, stream=stream, solve_seconds=seconds, compile_seconds=clock.seconds)

@@ -1,17 +1,20 @@
 """The judge: plain numpy, written apart from the kernels, grading the exact joint values that are returned."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
 from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import Target
-from ikde.solver.check import compute_pairs
-from ikde.solver.joints import JointValues, joints_outside, read_configuration
-from ikde.solver.plain import compute_frames
+from ikde.solver.joints import JointValues, read_configuration
+from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.settings import SolveSettings
+
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,10 +29,50 @@ class Verification:
     closest_pair: tuple[str, str] | None
     self_collision: bool
     colliding_pairs: tuple[tuple[str, str], ...]
+    """Worst first."""
     outside_limits: tuple[str, ...]
     within_tolerance: bool
     accepted: bool
     """Within both tolerances, inside all limits, free of self-collision."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Verdicts:
+    """The figures of T configurations against a target each, and the verdicts."""
+
+    robot: Robot
+    detector: Detector | None
+    position_error_m: Floats  # [T]
+    orientation_error_rad: Floats  # [T]
+    gaps_m: Floats  # [T, P] clearance of every pair; no columns without a detector
+    outside: Bools  # [T, N] joints outside their limits
+    within_tolerance: Bools  # [T]
+    accepted: Bools  # [T]
+
+    @property
+    def clearance_m(self) -> Floats:
+        """Smallest clearance [T] in m; inf without a pair."""
+        return self.gaps_m.min(axis=1, initial=np.inf)
+
+    def row(self, index: int) -> Verification:
+        """One configuration's."""
+        pairs = self.robot.pairs(self.detector)
+        gaps = self.gaps_m[index]
+        worst_first = np.argsort(gaps, kind="stable") if pairs else []
+        limit = self.detector.safe_distance_m if self.detector else 0.0
+        colliding = tuple(pairs[k] for k in worst_first if gaps[k] <= limit)
+        outside = zip(self.robot.joints, self.outside[index], strict=True)
+        return Verification(
+            position_error_m=float(self.position_error_m[index]),
+            orientation_error_rad=float(self.orientation_error_rad[index]),
+            clearance_m=float(gaps[worst_first[0]]) if pairs else None,
+            closest_pair=pairs[worst_first[0]] if pairs else None,
+            self_collision=bool(colliding),
+            colliding_pairs=colliding,
+            outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
+            within_tolerance=bool(self.within_tolerance[index]),
+            accepted=bool(self.accepted[index]),
+        )
 
 
 def verify(
@@ -54,33 +97,38 @@ def verify(
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
-    values = read_configuration(robot, q, convention)
-    tolerances = settings or SolveSettings()
-    chosen = robot.detector(detector)
-    T_world_tool = compute_frames(robot, values)[robot.tool]
-    position = float(np.linalg.norm(T_world_tool[:3, 3] - target.p_world_tool))
-    orientation = compute_orientation_error(target, T_world_tool[:3, :3])
-    pairs = compute_pairs(robot, chosen, values) if chosen else ()
-    colliding = tuple((pair.a, pair.b) for pair in pairs if pair.collides)
-    outside = joints_outside(robot, values)
-    within = position <= tolerances.position_tolerance_m and orientation <= tolerances.orientation_tolerance_rad
-    return Verification(
+    Q = read_configuration(robot, q, convention)[None]
+    return verify_many(robot, [target], Q, settings or SolveSettings(), robot.detector(detector)).row(0)
+
+
+def verify_many(
+    robot: Robot, targets: Sequence[Target], Q: Floats, settings: SolveSettings, detector: Detector | None
+) -> Verdicts:
+    """Grade configurations `Q` [T, N] in the robot's own convention, a target each; as `verify`, in bulk."""
+    T_world_tool = compute_frames(robot, Q)[robot.tool]
+    asked = np.array([target.p_world_tool for target in targets])
+    position = np.linalg.norm(T_world_tool[:, :3, 3] - asked, axis=1)
+    orientation = compute_orientation_errors(targets, T_world_tool[:, :3, :3])
+    gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q) if detector else np.empty((len(Q), 0))
+    free = ~np.any(gaps <= (detector.safe_distance_m if detector else 0.0), axis=1)
+    outside = ~((robot.lower <= Q) & (robot.upper >= Q))
+    within = (position <= settings.position_tolerance_m) & (orientation <= settings.orientation_tolerance_rad)
+    return Verdicts(
+        robot=robot,
+        detector=detector,
         position_error_m=position,
         orientation_error_rad=orientation,
-        clearance_m=pairs[0].clearance_m if pairs else None,
-        closest_pair=(pairs[0].a, pairs[0].b) if pairs else None,
-        self_collision=bool(colliding),
-        colliding_pairs=colliding,
-        outside_limits=outside,
+        gaps_m=gaps,
+        outside=outside,
         within_tolerance=within,
-        accepted=within and not colliding and not outside,
+        accepted=within & free & ~outside.any(axis=1),
     )
 
 
-def compute_orientation_error(target: Target, R_world_tool: Floats) -> float:
-    """Angle in rad between the tool and what the target asks of its orientation."""
-    if target.kind == "pose":
-        return rotation_angle(target.R_world_tool.T @ R_world_tool)
-    if target.kind == "axis":
-        return angle_between(target.axis_world_tool, R_world_tool[:, 2])
-    return 0.0
+def compute_orientation_errors(targets: Sequence[Target], R_world_tool: Floats) -> Floats:
+    """Angles [T] in rad between the tool's orientations [T, 3, 3] and what each target asks of them."""
+    kinds = np.array([target.kind for target in targets])
+    asked = np.array([target.R_world_tool for target in targets])
+    whole = rotation_angle(np.swapaxes(asked, 1, 2) @ R_world_tool)
+    axes = angle_between(asked[:, :, 2], R_world_tool[:, :, 2])
+    return np.select([kinds == "pose", kinds == "axis"], [whole, axes], 0.0)

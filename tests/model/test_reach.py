@@ -187,3 +187,11 @@ def test_a_robot_whose_tool_no_joint_moves_stays_where_it_is():
     )
     assert reach_excess_m(robot, np.array([0.0, 0.0, 1.0]), robot.lower, robot.upper) == 0.0
     assert reach_excess_m(robot, np.array([3.0, 4.0, 1.0]), robot.lower, robot.upper) == pytest.approx(5.0)
+
+
+def test_many_positions_are_one_after_the_other(any_robot, rng):
+    positions = rng.uniform(-8.0, 8.0, (40, 3))
+    one_by_one = [reach_excess_m(any_robot, p, any_robot.lower, any_robot.upper) for p in positions]
+    assert reach_excess_m(any_robot, positions, any_robot.lower, any_robot.upper) == pytest.approx(
+        one_by_one, abs=1e-12
+    )

@@ -143,7 +143,8 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monk
     def probe(problem, targets, **options):
         counts = np.zeros((1, COUNTS), dtype=np.int64)
         counts[0, [REACHED, ATTEMPTS, COLLIDING]] = 1, 2, 1
-        return Found(q=qiao.home[None], counts=counts, pair_counts=np.ones((1, 35), dtype=np.int64))
+        nothing, pair_counts = np.zeros(1), np.ones((1, 35), dtype=np.int64)
+        return Found(q=qiao.home[None], counts=counts, pair_counts=pair_counts, excess_m=nothing, seconds=nothing)
 
     monkeypatch.setattr("ikde.solver.explain.search", probe)
     result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, generations=3))

@@ -7,7 +7,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from ikde.model.robot import SphereRow
-from ikde.solver.plain import compute_components, compute_frames, compute_gap, compute_row_centres, joint_motion
+from ikde.solver.plain import (
+    compute_components,
+    compute_frames,
+    compute_gaps,
+    compute_row_centres,
+    compute_sphere_gaps,
+    joint_motion,
+)
 from tests.conftest import random_q
 from tests.random_robots import make_frame, make_robot, random_robot
 
@@ -95,8 +102,7 @@ def test_components_carry_their_spheres_along():
         SphereRow(component="bar", start="tip", end="tip", radius_m=0.07),
     )
     robot = replace(slider_and_elbow(), approximations={"rows": rows})
-    detector = type("D", (), {"spheres": "rows"})
-    components = compute_components(robot, detector, np.array([0.5, np.pi / 2]))
+    components = compute_components(robot, "rows", np.array([0.5, np.pi / 2]))
     assert list(components) == ["bar", "box"]
     centres, radii = components["bar"]
     assert centres == pytest.approx(np.array([[0.5, 0, 0.5], [0.75, 0, 0.5], [0.75, 0, 0.5]]))
@@ -107,9 +113,18 @@ def test_components_carry_their_spheres_along():
 def test_the_gap_is_between_the_two_closest_surfaces():
     a = (np.array([[0.0, 0, 0], [1.0, 0, 0]]), np.array([0.1, 0.2]))
     b = (np.array([[5.0, 0, 0], [3.0, 0, 0], [0.0, 2.5, 0]]), np.array([2.0, 0.1, 0.3]))
-    gap, i, j = compute_gap(a, b)
-    assert (gap, i, j) == (pytest.approx(1.7), 1, 1)
+    gaps = compute_sphere_gaps(a, b)
+    assert gaps.shape == (2, 3)
+    assert gaps.min() == gaps[1, 1] == pytest.approx(1.7)
 
 
 def test_the_gap_of_spheres_within_each_other_is_negative():
-    assert compute_gap((np.zeros((1, 3)), np.array([0.5])), (np.zeros((1, 3)), np.array([0.2])))[0] == -0.7
+    assert compute_sphere_gaps((np.zeros((1, 3)), np.array([0.5])), (np.zeros((1, 3)), np.array([0.2]))) == -0.7
+
+
+def test_many_configurations_are_one_after_the_other(any_robot, rng):
+    Q = random_q(any_robot, rng, 7)
+    for detector in any_robot.detectors.values():
+        pairs = any_robot.pairs(detector)
+        one_by_one = [compute_gaps(any_robot, detector.spheres, pairs, q) for q in Q]
+        assert compute_gaps(any_robot, detector.spheres, pairs, Q) == pytest.approx(np.array(one_by_one), abs=1e-14)

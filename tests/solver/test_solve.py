@@ -281,13 +281,13 @@ def test_fewer_than_one_thread_is_refused(qiao, threads):
         ikde.solve_many(qiao, [TARGET], CHEAP, threads=threads)
 
 
-def test_unreached_targets_are_told_from_their_counts_alone(qiao):
+def test_unreached_targets_are_told_from_bound_and_counts_alone(qiao):
     far = ikde.Target((0.0, 0.0, 9.0))
     plain, explained = (
         ikde.solve_many(qiao, [TARGET, far], CHEAP, explain_failures=explain)[1] for explain in (False, True)
     )
-    assert (plain.reached, plain.stop_reason, plain.hint) == (False, "budget", None)
-    assert explained.stop_reason == "out_of_reach"
+    assert (plain.reached, plain.stop_reason, plain.hint) == (False, "out_of_reach", None)
+    assert (plain.reason, explained.stop_reason) == (explained.reason, "out_of_reach")
     assert plain.q.tobytes() == explained.q.tobytes()
 
 

@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.errors import InputError
-from ikde.solver.verify import compute_orientation_error
+from ikde.solver.verify import compute_orientation_errors, verify_many
+from tests.conftest import random_q
 
 ANGLES = (0.0, 1e-12, 1e-7, 0.3, np.pi / 2, 3.0, np.pi - 1e-9, np.pi)
 
@@ -55,7 +56,7 @@ def test_an_axis_target_sees_tilt_and_not_the_turn_about_the_axis(qiao, angle):
 
 def test_a_position_target_has_no_orientation_error(rng):
     R = Rotation.random(rng=rng).as_matrix()
-    assert compute_orientation_error(ikde.Target((0, 0, 0)), R) == 0.0
+    assert compute_orientation_errors([ikde.Target((0, 0, 0))], (R)[None])[0] == 0.0
 
 
 @pytest.mark.parametrize("side", ["lower", "upper"])
@@ -135,3 +136,19 @@ def test_joint_values_may_be_named_and_counted_classically(qiao):
 def test_bad_values_are_refused(qiao, q):
     with pytest.raises(InputError):
         ikde.verify(qiao, ikde.Target((0, 0, 1)), q)
+
+
+def test_in_bulk_every_row_is_its_own_verification(any_robot, rng):
+    Q = random_q(any_robot, rng, 12)
+    T = ikde.forward(any_robot, any_robot.home)[any_robot.tool]
+    kinds = [{}, {"axis_world_tool": T[:3, 0]}, {"R_world_tool": T[:3, :3]}]
+    targets = [ikde.Target(T[:3, 3], **kinds[k % 3]) for k in range(12)]
+    verdicts = verify_many(any_robot, targets, Q, ikde.SolveSettings(), any_robot.detector(None))
+    for k, (target, q) in enumerate(zip(targets, Q, strict=True)):
+        row, single = verdicts.row(k), ikde.verify(any_robot, target, q)
+        assert row.position_error_m == pytest.approx(single.position_error_m, abs=1e-14)
+        assert row.orientation_error_rad == pytest.approx(single.orientation_error_rad, abs=1e-14)
+        assert row.clearance_m == pytest.approx(single.clearance_m, abs=1e-14)
+        assert (row.closest_pair, row.colliding_pairs, row.accepted) == (
+            *(single.closest_pair, single.colliding_pairs, single.accepted),
+        )

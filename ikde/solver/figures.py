@@ -1,0 +1,87 @@
+"""The kernels' figures of many configurations, confirmed by plain numpy.
+
+The kernels' bits are the same on every machine, which numpy's are not: so these are the figures that records hold.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikde.errors import VerificationError
+from ikde.kernels import figures as kernels
+from ikde.kernels.arrays import Floats, Ints
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.robot import Detector, Robot
+from ikde.model.target import Target
+from ikde.solver.plain import compute_gaps
+from ikde.solver.verify import Verdicts
+
+AGREEMENT = 1e-11  # m, rad: kernels and plain numpy must agree to this; for a target beyond 1 m relative to it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Figures:
+    """What the kernels see of T configurations."""
+
+    position_error_m: Floats  # [T]
+    orientation_error_rad: Floats  # [T]
+    clearance_m: Floats  # [T]; inf without pairs
+    closest_pair: Ints  # [T] index into the detector's pairs; -1 without
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Clearances:
+    """What a detector sees of K configurations."""
+
+    clearance_m: Floats  # [K]
+    closest_pair: Ints  # [K] index into the detector's pairs
+    collides: np.ndarray  # [K]
+
+
+def compute_figures(robot: Robot, detector: Detector | None, targets: Sequence[Target], Q: Floats) -> Figures:
+    """Figures of configurations `Q` [T, N] in the robot's own convention, a target each."""
+    figures, pairs = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64)
+    packed = (pack_robot(robot), pack_detector(robot, detector), pack_targets(targets))
+    kernels.compute_figures(*packed, np.ascontiguousarray(Q), figures, pairs)
+    return Figures(
+        position_error_m=figures[:, kernels.POSITION_ERROR],
+        orientation_error_rad=figures[:, kernels.ORIENTATION_ERROR],
+        clearance_m=figures[:, kernels.CLEARANCE],
+        closest_pair=pairs,
+    )
+
+
+def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearances:
+    """What a detector sees of configurations `Q` [K, N] in the robot's own convention.
+
+    Raises:
+        VerificationError: if kernels and plain numpy disagree by more than 1e-11 m or on a verdict: a bug.
+    """
+    figures = compute_figures(robot, detector, [Target((0.0, 0.0, 0.0))] * len(Q), Q)
+    plain = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q).min(axis=1, initial=np.inf)
+    gap = float(_difference(figures.clearance_m, plain).max(initial=0.0))
+    if not gap <= AGREEMENT:
+        raise VerificationError(f"kernels and plain numpy disagree by {gap:.3g} m on a clearance")
+    return Clearances(
+        clearance_m=figures.clearance_m,
+        closest_pair=figures.closest_pair,
+        collides=plain <= detector.safe_distance_m,
+    )
+
+
+def compute_disagreement(targets: Sequence[Target], figures: Figures, verdicts: Verdicts) -> Floats:
+    """Largest gap [T] between the kernels' figures and plain numpy's in m or rad; beyond 1 m relative to the target."""
+    gaps = [
+        _difference(figures.position_error_m, verdicts.position_error_m),
+        _difference(figures.orientation_error_rad, verdicts.orientation_error_rad),
+        _difference(figures.clearance_m, verdicts.clearance_m),
+    ]
+    farthest = np.array([np.abs(target.p_world_tool).max() for target in targets])
+    return np.max(gaps, axis=0) / np.maximum(1.0, farthest)
+
+
+def _difference(kernel: Floats, plain: Floats) -> Floats:
+    """|kernel - plain|, 0 where both are infinite, and NaN where one of them is NaN."""
+    with np.errstate(invalid="ignore"):
+        return np.where(kernel == plain, 0.0, np.abs(kernel - plain))

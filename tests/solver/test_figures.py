@@ -1,0 +1,65 @@
+"""The kernels' figures in bulk: plain numpy confirms them, on every robot."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import VerificationError
+from ikde.solver import figures as module
+from ikde.solver.figures import AGREEMENT, compute_clearances, compute_disagreement, compute_figures
+from ikde.solver.verify import verify_many
+from tests.conftest import random_q
+
+SETTINGS = ikde.SolveSettings()
+
+
+def targets_of_every_kind(robot, count):
+    T = ikde.forward(robot, robot.home)[robot.tool]
+    kinds = [{}, {"axis_world_tool": T[:3, 2]}, {"R_world_tool": T[:3, :3]}]
+    return [ikde.Target(T[:3, 3], **kinds[k % 3]) for k in range(count)]
+
+
+def test_kernels_and_plain_numpy_agree_on_every_robot(any_robot, rng):
+    Q, targets = random_q(any_robot, rng, 60), targets_of_every_kind(any_robot, 60)
+    for detector in [None, *any_robot.detectors.values()]:
+        figures = compute_figures(any_robot, detector, targets, Q)
+        verdicts = verify_many(any_robot, targets, Q, SETTINGS, detector)
+        assert np.all(compute_disagreement(targets, figures, verdicts) < 0.1 * AGREEMENT)
+        if detector is None:
+            assert set(figures.closest_pair) == {-1}
+        else:  # two pairs may be equally close, where one sphere belongs to both components
+            closest = np.take_along_axis(verdicts.gaps_m, figures.closest_pair[:, None], axis=1)[:, 0]
+            assert closest == pytest.approx(verdicts.clearance_m, abs=1e-12)
+
+
+def test_a_figure_that_is_not_a_number_never_agrees(qiao):
+    targets, Q = targets_of_every_kind(qiao, 2), np.array([qiao.home, qiao.home])
+    figures = compute_figures(qiao, qiao.detector(None), targets, Q)
+    figures.clearance_m[1] = np.nan
+    verdicts = verify_many(qiao, targets, Q, SETTINGS, qiao.detector(None))
+    agree = compute_disagreement(targets, figures, verdicts) <= AGREEMENT
+    assert agree.tolist() == [True, False]
+
+
+def test_far_from_the_origin_agreement_is_relative(qiao):
+    q = qiao.home
+    target = [ikde.Target((5e4, 0.0, 0.0))]
+    figures = compute_figures(qiao, None, target, q[None])
+    verdicts = verify_many(qiao, target, q[None], SETTINGS, None)
+    absolute = abs(figures.position_error_m[0] - verdicts.position_error_m[0])
+    assert compute_disagreement(target, figures, verdicts)[0] == pytest.approx(absolute / 5e4)
+
+
+def test_clearances_are_what_check_says(qiao, rng):
+    Q = random_q(qiao, rng, 50)
+    for name in ("typical", "improved"):
+        seen = compute_clearances(qiao, qiao.detector(name), Q)
+        checked = [ikde.check(qiao, q, name) for q in Q]
+        assert seen.clearance_m == pytest.approx([c.clearance_m for c in checked], abs=1e-12)
+        assert seen.collides.tolist() == [c.collision for c in checked]
+
+
+def test_a_clearance_that_only_the_kernels_see_raises(qiao, monkeypatch):
+    monkeypatch.setattr(module, "compute_gaps", lambda robot, spheres, pairs, Q: np.full((len(Q), 1), 0.5))
+    with pytest.raises(VerificationError, match="disagree"):
+        compute_clearances(qiao, qiao.detector(None), qiao.home[None])
