@@ -303,10 +303,11 @@ def evolve(problem, target, stream):
         next_x, next_scores = x.copy(), list(scores)
         for i in range(population):
             if generation == 0:
-                width = problem.upper - problem.lower
                 trial = problem.near
                 if i > 0 or problem.near is None:
-                    trial = problem.lower + np.array([stream.uniform() for _ in range(joints)]) * width
+                    middle = 0.5 * (problem.lower + problem.upper)
+                    width = problem.settings.start_share * (problem.upper - problem.lower)
+                    trial = middle + np.array([stream.uniform() - 0.5 for _ in range(joints)]) * width
             else:
                 trial = make_trial(problem, stream, x, i, best)
             score, meets = compute_score(problem, target, trial)

@@ -59,6 +59,7 @@ class SearchArrays(NamedTuple):
 
     ranges: Floats  # [3, N] lower, upper, and the centre of the growing boxes; m or rad
     first_box: float  # half-width of the first attempt's box as a share of each range; 1: the whole range at once
+    start_share: float  # share of each range, about its middle, that the first population is drawn from
     position_tolerance: float  # m
     orientation_tolerance: float  # rad
     population: int

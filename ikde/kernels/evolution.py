@@ -99,13 +99,15 @@ def find_best(score):
 
 @inline_kernel
 def fill_start(search, lower, upper, state, work, i):
-    """Member `i` of the first population, drawn uniformly from its ranges; the first is `near` where one is given."""
+    """Member `i` of the first population, drawn uniformly about the middle of the ranges; the first is any `near`."""
     if i == 0 and search.first_box < 1.0:
         for k in range(work.trial.size):
             work.trial[k] = search.ranges[2, k]
         return
     for k in range(work.trial.size):
-        work.trial[k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
+        width = search.start_share * (upper[k] - lower[k])
+        margin = 0.5 * (1.0 - search.start_share) * (upper[k] - lower[k])
+        work.trial[k] = lower[k] + margin + next_uniform(state) * width
 
 
 @inline_kernel

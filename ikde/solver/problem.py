@@ -92,6 +92,7 @@ def pack_search(problem: Problem) -> SearchArrays:
     return SearchArrays(
         ranges=np.array([problem.lower, problem.upper, near]),
         first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
+        start_share=float(settings.start_share),
         position_tolerance=position - min(ROUNDING, 0.5 * position),
         orientation_tolerance=orientation - min(ROUNDING, 0.5 * orientation),
         population=int(settings.population),

@@ -29,6 +29,8 @@ class SolveSettings:
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
     population: int = 50
     """NP [Qiao2022]."""
+    start_share: float = 1.0
+    """Share of each joint's range, about its middle, that the first population is drawn from, (0, 1]."""
     weight: float = 0.5
     """F, the differential weight [Qiao2022]."""
     crossover: float = 0.9
@@ -53,6 +55,8 @@ class SolveSettings:
         _require(
             _is_number(self.crossover) and bool(0.0 <= self.crossover <= 1.0), "crossover", "0 to 1", self.crossover
         )
+        start = self.start_share
+        _require(_is_number(start) and bool(0.0 < start <= 1.0), "start_share", "above 0, up to 1", start)
         for name, least in (("population", LARGEST_DRAW + 1), ("generations", 1), ("restarts", 1)):
             value = getattr(self, name)
             whole = isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least

@@ -93,6 +93,15 @@ def test_every_repair_evolves_like_the_twin(bounds, update, rng):
     assert_like_twin(problem, make_target(robot, "pose", rng))
 
 
+def test_a_narrow_start_evolves_like_the_twin_and_stays_in_the_middle(rng):
+    robot = random_robot(5)
+    problem = make_case(robot, start_share=0.125)
+    assert_like_twin(problem, make_target(robot, "pose", rng))
+    start, *_ = run_evolve(make_case(robot, start_share=0.125, generations=1), make_target(robot, "pose", rng), 3)
+    distance = np.abs(start - 0.5 * (robot.lower + robot.upper)) / (robot.upper - robot.lower)
+    assert np.mean(distance <= 0.0625) > 0.5
+
+
 @pytest.mark.parametrize("update", UPDATES)
 @pytest.mark.parametrize("rule", RULES)
 def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rule, update, rng):

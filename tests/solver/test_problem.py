@@ -125,6 +125,7 @@ def test_numbers_are_packed_as_they_are(qiao):
     )
     packed = pack_search(make(qiao, settings))
     assert (packed.population, packed.generations, packed.weight, packed.crossover) == (9, 8, 1.0, 0.0)
+    assert packed.start_share == 1.0
     assert (STRATEGIES[packed.strategy], REPAIRS[packed.repair], packed.in_place) == ("best/2", "clip", True)
     assert packed.ranges[:2].tolist() == [qiao.lower.tolist(), qiao.upper.tolist()]
 

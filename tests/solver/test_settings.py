@@ -18,6 +18,7 @@ GOOD = {
     "generations": (1,),
     "restarts": (1,),
     "crossover": (0.0, 0, 1.0, 1),
+    "start_share": (1e-9, 0.5, 1, 1.0),
     "weight": (1e-9, 1, 2.5),
     "position_tolerance_m": (1e-300, 1, 0.5),
     "orientation_tolerance_rad": (1e-300, 4.0),
@@ -26,6 +27,7 @@ NO_NUMBERS = (np.nan, np.inf, -np.inf, -1, "1", None, True)
 BAD = {
     **dict.fromkeys(("position_tolerance_m", "orientation_tolerance_rad", "weight"), (0, 0.0, *NO_NUMBERS)),
     "crossover": (1.01, *NO_NUMBERS),
+    "start_share": (0, 1.01, *NO_NUMBERS),
     "population": (5, 50.0, *NO_NUMBERS),
     **dict.fromkeys(("generations", "restarts"), (0, 1.0, *NO_NUMBERS)),
     **dict.fromkeys(("strategy", "bounds", "update", "collision"), ("", "Rand/1", None, 0)),
