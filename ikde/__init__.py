@@ -7,6 +7,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` holds it to `_HOME`
+    from ikde.batch.read import read_batch as read_batch
+    from ikde.batch.run import run_batch as run_batch
     from ikde.errors import (
         FileError as FileError,
     )
@@ -19,6 +21,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.errors import (
         VerificationError as VerificationError,
     )
+    from ikde.io.batch_file import load_batch as load_batch
     from ikde.io.robots import load_robot as load_robot
     from ikde.io.robots import robot_names as robot_names
     from ikde.model.convention import from_convention as from_convention
@@ -42,6 +45,9 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
 __version__ = "0.1.0"
 
 _HOME = {
+    "load_batch": "ikde.io.batch_file",
+    "run_batch": "ikde.batch.run",
+    "read_batch": "ikde.batch.read",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
     "Robot": "ikde.model.robot",

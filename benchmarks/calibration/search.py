@@ -17,15 +17,9 @@ from calibration.layout import (
     set_support,
     shift_links,
 )
-from calibration.observations import (
-    DETECTORS,
-    bisect,
-    first_failure,
-    load_sweeps,
-    observe_collisions,
-    observe_sweep,
-    shows_sweep,
-)
+from calibration.observations import first_failure, load_sweeps, observe_collisions, observe_sweep
+from ikde.bench.approximation import APPROXIMATIONS
+from ikde.bench.sweeps import bisect, shows_sweep
 from ikde.model.robot import Robot
 
 SPAN_MM = 60.0
@@ -79,8 +73,8 @@ def scan(
     found = []
     for values in grid:
         moved = place(robot, *values)
-        if all(shows_sweep(moved, sweep, d) for d in DETECTORS) and first_failure(moved) is None:
-            slack = min(observe_sweep(moved, sweep, d).slack for d in DETECTORS)
+        if all(shows_sweep(moved, sweep, d) for d in APPROXIMATIONS) and first_failure(moved) is None:
+            slack = min(observe_sweep(moved, sweep, d).slack for d in APPROXIMATIONS)
             found.append(Candidate(values=values, slack=slack))
     return sorted(found, key=lambda candidate: -candidate.slack)
 

@@ -8,12 +8,16 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ikde import __version__
+from ikde.cli.batch import batch
+from ikde.cli.bench import bench
 from ikde.cli.check import check
 from ikde.cli.doctor import doctor
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.fk import fk
 from ikde.cli.output import print_note, print_result
+from ikde.cli.report import report
 from ikde.cli.robots import robots
+from ikde.cli.schema import schema
 from ikde.cli.solve import solve
 from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread
 from ikde.errors import InputError
@@ -49,9 +53,10 @@ def root(
     """
 
 
-for command in (solve, fk, check, doctor):
+for command in (solve, fk, check, batch, report, schema, doctor):
     app.command()(command)
 app.add_typer(robots, name="robots")
+app.add_typer(bench, name="bench")
 
 
 def run_and_exit() -> NoReturn:
@@ -98,6 +103,6 @@ def explain_error(error: BaseException) -> tuple[ExitCode, str]:
     if isinstance(error, InputError):
         return ExitCode.BAD_INPUT, f"ikde: {error}"
     if isinstance(error, KeyboardInterrupt | typer.Abort):
-        return ExitCode.INTERRUPTED, INTERRUPTED
+        return ExitCode.INTERRUPTED, str(error) or INTERRUPTED
     traceback.print_exception(error)
     return ExitCode.BUG, f"ikde: this is a bug, please report it: {type(error).__name__}: {error}"

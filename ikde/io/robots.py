@@ -16,11 +16,15 @@ def robot_names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in FOLDER.glob("*.yaml")))
 
 
+def is_file_name(text: str) -> bool:
+    """True for what names a file rather than a robot that ships with ikde."""
+    return "/" in text or "\\" in text or text.endswith((".yaml", ".yml"))
+
+
 def robot_path(name_or_path: str | Path) -> Path:
     """The file behind a name or a path; raises `InputError` for an unknown name."""
     text = str(name_or_path)
-    looks_like_file = isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith((".yaml", ".yml"))
-    if looks_like_file:
+    if isinstance(name_or_path, Path) or is_file_name(text):
         return Path(name_or_path)
     if text not in robot_names():
         known = ", ".join(robot_names())

@@ -1,12 +1,12 @@
 """Pydantic's complaints as ikde says them: one line, with the file, the line, the key and what was expected."""
 
 from types import UnionType
-from typing import Any, Union, get_args, get_origin
+from typing import Annotated, Any, Protocol, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from ikde.errors import FileError, nearest
-from ikde.io.yaml_file import Document, Where
+from ikde.errors import InputError, nearest
+from ikde.io.yaml_file import Where
 
 EXPECTED = {
     "missing": "this key is missing",
@@ -23,7 +23,28 @@ EXPECTED = {
 }
 
 
-def as_file_error(document: Document, error: ValidationError, model: type[BaseModel]) -> FileError:
+class Source(Protocol):
+    """Plain data that can say where in it an error is: a `Document`, or a `Given`."""
+
+    data: Any
+
+    def error(self, message: str, where: Where = ()) -> InputError:
+        """An error at a path of the data."""
+        ...
+
+
+class Given:
+    """Data that came from no file: errors name the key alone."""
+
+    def __init__(self, data: Any) -> None:
+        self.data = data
+
+    def error(self, message: str, where: Where = ()) -> InputError:
+        """An error at a path of the data."""
+        return InputError(message, where)
+
+
+def as_file_error(document: Source, error: ValidationError, model: type[BaseModel]) -> InputError:
     """The first complaint of pydantic, placed in the file; a misspelt key before the key that it left missing."""
     first = min(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
     where = _real_path(document.data, first["loc"])
@@ -82,7 +103,10 @@ def _keys_at(model: type[BaseModel], where: Where) -> list[str]:
 
 
 def _strip(kind: Any) -> Any:
-    """`X | None` as X."""
+    """`X | None` as X, and of several kinds the one that has keys."""
+    if get_origin(kind) is Annotated:
+        return _strip(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
-        return next(arg for arg in get_args(kind) if arg is not type(None))
+        kinds = [_strip(arg) for arg in get_args(kind) if arg is not type(None)]
+        return next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), kinds[0])
     return kind

@@ -6,8 +6,12 @@ min over the detector's pairs of distance - R_i - R_j, and the pair it belongs t
 
 import math
 
+import numpy as np
+
 from ikde.kernels.arrays import FIRST, LAST
+from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.spheres import compute_bounds, compute_centres
 
 
 @inline_kernel
@@ -99,3 +103,16 @@ def count_colliding_pairs(detector, centres, out_counts):
     for pair in range(detector.pairs.shape[0]):
         if pair_collides(detector, centres, detector.pairs[pair, 0], detector.pairs[pair, 1]):
             out_counts[pair] += 1
+
+
+@kernel
+def judge_centres(robot, detector, qs, out_collides):
+    """Whether each row of `qs` [n, N] collides, into `out_collides` [n]."""
+    T_world_body = np.empty((robot.bodies.shape[0], 3, 4))
+    bounds = np.empty((detector.components.shape[0], 3))
+    centres = np.empty((3, detector.radius.size))
+    for row in range(qs.shape[0]):
+        compute_bodies(robot, qs[row], T_world_body)
+        compute_bounds(detector, T_world_body, bounds)
+        compute_centres(detector, T_world_body, centres)
+        out_collides[row] = collides(detector, bounds, centres)

@@ -60,6 +60,18 @@ def compute_frames(robot, T_world_body, out_T):
 
 
 @kernel
+def compute_origins(robot, T_world_body, out_T):
+    """Origin of every named frame in the world: column 3 of `out_T` [F, 3, 4]; the rest is left as it is."""
+    T_local = robot.T_body_frame
+    for frame in range(robot.frame_body.size):
+        body = robot.frame_body[frame]
+        x, y, z = T_local[frame, 0, 3], T_local[frame, 1, 3], T_local[frame, 2, 3]
+        for i in range(3):
+            a, b, c = T_world_body[body, i, 0], T_world_body[body, i, 1], T_world_body[body, i, 2]
+            out_T[frame, i, 3] = a * x + b * y + c * z + T_world_body[body, i, 3]
+
+
+@kernel
 def compute_jacobian(robot, T_world_body, T_world_tool, out_jacobian):
     """Geometric Jacobian of the tool in the world frame: rows v (m/s) then omega (rad/s), a column per joint.
 

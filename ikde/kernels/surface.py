@@ -1,9 +1,19 @@
-"""Self-collision by points on the sphere surfaces [Qiao2021, eq. 11, 14, 17, 18, 20]: the slow way, for comparison."""
+"""Self-collision by points on the sphere surfaces [Qiao2021, eq. 11, 14, 17, 18, 20]: the slow way, for comparison.
+
+The paper compares every point with every point; `compute_surface_gap` does so. `surfaces_collide` comes to the same
+verdict from the points that can matter, so that thousands of configurations can be judged.
+"""
 
 import math
 
+import numpy as np
+
 from ikde.kernels.arrays import BODY, FIRST, LAST
+from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import kernel
+from ikde.kernels.spheres import compute_centres
+
+HAIR = 1e-9  # m: what a bound must leave for rounding before it may decide
 
 
 @kernel
@@ -63,3 +73,55 @@ def smallest_squared_distance(points, others):
             dx, dy, dz = x - others[m, 0], y - others[m, 1], z - others[m, 2]
             smallest = min(smallest, dx * dx + dy * dy + dz * dz)
     return smallest
+
+
+@kernel
+def judge_surfaces(robot, detector, directions, covering_angle, limit, qs, out_collides):
+    """Whether each row of `qs` [n, N] collides, with the verdict of `compute_surface_gap` <= `limit` (m), but fast."""
+    T_world_body = np.empty((robot.bodies.shape[0], 3, 4))
+    centres = np.empty((3, detector.radius.size))
+    for row in range(qs.shape[0]):
+        compute_bodies(robot, qs[row], T_world_body)
+        compute_centres(detector, T_world_body, centres)
+        out_collides[row] = surfaces_collide(detector, centres, directions, covering_angle, limit)
+
+
+@kernel
+def surfaces_collide(detector, centres, directions, covering_angle, limit):
+    """True at the first two surface points of a pair within d_i + d_j + `limit` [Qiao2021, eq. 20; eq. 18]."""
+    for pair in range(detector.pairs.shape[0]):
+        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
+        for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
+            for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
+                spacing = covering_angle * (detector.radius[i] + detector.radius[j])
+                if clouds_touch(detector, centres, directions, i, j, spacing, limit):
+                    return True
+    return False
+
+
+@kernel
+def clouds_touch(detector, centres, directions, i, j, spacing, limit):
+    """Whether two spheres have surface points within `spacing` + `limit`: only points near both surfaces are compared.
+
+    A point p of sphere i is | |p - c_j| - R_j | from the surface of sphere j, so from its points at least that.
+    """
+    R, r = detector.radius[i], detector.radius[j]
+    x, y, z = centres[0, i] - centres[0, j], centres[1, i] - centres[1, j], centres[2, i] - centres[2, j]
+    distance = math.sqrt(x * x + y * y + z * z)
+    reach = spacing + limit + HAIR
+    if max(distance - R - r, abs(R - r) - distance) > reach:
+        return False
+    for k in range(directions.shape[0]):
+        u, v, w = x + R * directions[k, 0], y + R * directions[k, 1], z + R * directions[k, 2]
+        if abs(math.sqrt(u * u + v * v + w * w) - r) > reach:
+            continue
+        px = centres[0, i] + R * directions[k, 0]
+        py = centres[1, i] + R * directions[k, 1]
+        pz = centres[2, i] + R * directions[k, 2]
+        for m in range(directions.shape[0]):
+            dx = px - (centres[0, j] + r * directions[m, 0])
+            dy = py - (centres[1, j] + r * directions[m, 1])
+            dz = pz - (centres[2, j] + r * directions[m, 2])
+            if math.sqrt(dx * dx + dy * dy + dz * dz) - spacing <= limit:
+                return True
+    return False

@@ -37,6 +37,27 @@ def rotation_from_quat_wxyz(quat_wxyz: Floats) -> Floats:
     )
 
 
+def quat_wxyz_from_rotation(R: Floats) -> Floats:
+    """Unit quaternions [..., 4], w first and not negative, of rotations `R` [..., 3, 3]; exact to rounding everywhere.
+
+    4 q q^T stands in the entries of R; its row with the largest diagonal, normalised, is q up to sign.
+    """
+    x, y, z = np.diagonal(R, axis1=-2, axis2=-1).transpose(-1, *range(R.ndim - 2))
+    wx, wy, wz = R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]
+    xy, xz, yz = R[..., 0, 1] + R[..., 1, 0], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 2] + R[..., 2, 1]
+    rows = [
+        [1.0 + x + y + z, wx, wy, wz],
+        [wx, 1.0 + x - y - z, xy, xz],
+        [wy, xy, 1.0 - x + y - z, yz],
+        [wz, xz, yz, 1.0 - x - y + z],
+    ]
+    products = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
+    quat = np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :]
+    quat = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
+    return np.where(quat[..., :1] < 0.0, -quat, quat)
+
+
 def rotation_with_z(axis: Floats) -> Floats:
     """Some rotation whose z axis is the unit vector `axis`; exact for coordinate axes, the identity for z itself."""
     axis = np.asarray(axis, dtype=float)

@@ -17,10 +17,18 @@ from ikde.solver.plain import compute_components, compute_frames, compute_sphere
 ARM, BASE, COLLIDING, CLOSEST, TARGET = "#d1352b", "#3568b8", "#1a1a1a", "#0b8a3c", "#e69f00"
 AXES = ("#c00000", "#008000", "#0000c0")
 MESH = 24  # facets around a sphere
+MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
 AXIS_LENGTH_M = 0.15
 
 
-def plot_pose(robot: Robot, q: Floats, *, detector: Detector | None = None, target: Target | None = None) -> Any:
+def plot_pose(
+    robot: Robot,
+    q: Floats,
+    *,
+    detector: Detector | None = None,
+    target: Target | None = None,
+    size_in: tuple[float, float] = (9.0, 8.0),
+) -> Any:
     """Draw the robot at `q` [N] with the detector's spheres, the closest pair and the target.
 
     Returns:
@@ -28,8 +36,8 @@ def plot_pose(robot: Robot, q: Floats, *, detector: Detector | None = None, targ
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.0, 8.0), dpi=130, layout="constrained")
-    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    figure = Figure(figsize=size_in, dpi=130)
+    axes: Any = figure.add_axes(MARGINS, projection="3d", computed_zorder=False)
     _set_view(axes, robot, q)
     _draw_skeleton(axes, robot, q)
     title = f"{robot.name}"
@@ -167,4 +175,4 @@ def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, ta
     middle, half = 0.5 * (low + high), 0.5 * float((high - low).max()) * 1.02
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     axes.set_zlim(low[2], low[2] + 2 * half)
-    axes.set_box_aspect((1, 1, 1), zoom=1.08)
+    axes.set_box_aspect((1, 1, 1))

@@ -32,8 +32,8 @@ class Explanation:
 def count_blocking_pairs(problem: Problem, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
     """Pairs that blocked, with how often, most often first."""
     pairs = problem.robot.pairs(problem.detector)
-    blocking = [(pair, int(n)) for pair, n in zip(pairs, pair_counts, strict=True) if n > 0]
-    return dict(sorted(blocking, key=lambda item: -item[1]))
+    blocking = {pairs[k]: int(pair_counts[k]) for k in np.flatnonzero(pair_counts)}
+    return dict(sorted(blocking.items(), key=lambda item: -item[1]))
 
 
 def explain_from_counts(problem: Problem, found: Found) -> Explanation:

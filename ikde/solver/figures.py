@@ -53,10 +53,10 @@ def compute_figures(robot: Robot, detector: Detector | None, targets: Sequence[T
 
 
 def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearances:
-    """What a detector sees of configurations `Q` [K, N] in the robot's own convention.
+    """What a detector sees of configurations `Q` [K, N] in the robot's own convention: the kernels' figures, confirmed.
 
     Raises:
-        VerificationError: if kernels and plain numpy disagree by more than 1e-11 m or on a verdict: a bug.
+        VerificationError: if kernels and plain numpy disagree by more than 1e-11 m: a bug.
     """
     figures = compute_figures(robot, detector, [Target((0.0, 0.0, 0.0))] * len(Q), Q)
     plain = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q).min(axis=1, initial=np.inf)
@@ -66,7 +66,7 @@ def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearance
     return Clearances(
         clearance_m=figures.clearance_m,
         closest_pair=figures.closest_pair,
-        collides=plain <= detector.safe_distance_m,
+        collides=figures.clearance_m <= detector.safe_distance_m,
     )
 
 

@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.spheres import compute_centres
-from ikde.kernels.surface import compute_surface_from_centres, compute_surface_gap
+from ikde.kernels.surface import compute_surface_from_centres, compute_surface_gap, judge_surfaces
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.robot import Detector, Robot
 from ikde.model.surface import M_STEPS, N_STEPS, covering_angle_rad, surface_directions
@@ -25,6 +27,16 @@ class SurfaceCheck:
     gap_m: float
     """Smallest distance between surface points of a pair, less d_i + d_j under eq. 20."""
     pair: tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Question:
+    """What is asked of a configuration: the detector, the points, and how near is a collision."""
+
+    detector: Detector
+    directions: Floats  # [K, 3]
+    covering_angle: float  # rad
+    limit: float  # m
 
 
 def check_surface(
@@ -53,6 +65,40 @@ def check_surface(
     Raises:
         InputError: for a detector without pairs, and as `check` does.
     """
+    asked = _read_question(robot, detector, rule, m_steps, n_steps)
+    arrays, packed = pack_robot(robot), pack_detector(robot, asked.detector)
+    T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))
+    centres = np.empty((3, packed.radius.size))
+    points = np.empty((packed.radius.size, len(asked.directions), 3))
+    compute_bodies(arrays, read_configuration(robot, q), T_world_body)
+    compute_centres(packed, T_world_body, centres)
+    compute_surface_from_centres(packed, centres, asked.directions, points)
+    gap, pair = compute_surface_gap(packed, points, asked.covering_angle)
+    return SurfaceCheck(collision=gap <= asked.limit, gap_m=gap, pair=robot.pair_lists[asked.detector.pairs][pair])
+
+
+def check_surface_many(
+    robot: Robot,
+    Q: Floats,
+    detector: str | Detector | None = None,
+    *,
+    rule: Rule = "eq. 20",
+    m_steps: int = M_STEPS,
+    n_steps: int = N_STEPS,
+) -> NDArray[np.bool_]:
+    """Whether each row of `Q` [K, N] collides, in the robot's own convention: `check_surface`'s verdicts [K], fast.
+
+    Most points are passed over: they are farther from the other sphere's surface than a collision allows.
+    """
+    asked = _read_question(robot, detector, rule, m_steps, n_steps)
+    collides = np.empty(len(Q), dtype=bool)
+    arrays, packed = pack_robot(robot), pack_detector(robot, asked.detector)
+    Q = np.ascontiguousarray(Q, dtype=float)
+    judge_surfaces(arrays, packed, asked.directions, asked.covering_angle, asked.limit, Q, collides)
+    return collides
+
+
+def _read_question(robot: Robot, detector: str | Detector | None, rule: Rule, m_steps: int, n_steps: int) -> _Question:
     if rule not in get_args(Rule):
         raise InputError(f"expected one of {', '.join(get_args(Rule))}, got {rule!r}", ("rule",))
     if m_steps < 3 or n_steps < 2:
@@ -60,15 +106,10 @@ def check_surface(
     chosen = robot.detector(detector)
     if chosen is None or not robot.pair_lists[chosen.pairs]:
         raise InputError("expected a detector with pairs", ("detector",))
-    arrays, packed = pack_robot(robot), pack_detector(robot, chosen)
-    directions = surface_directions(m_steps, n_steps)
-    T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))
-    centres = np.empty((3, packed.radius.size))
-    points = np.empty((packed.radius.size, len(directions), 3))
-    compute_bodies(arrays, read_configuration(robot, q), T_world_body)
-    compute_centres(packed, T_world_body, centres)
-    compute_surface_from_centres(packed, centres, directions, points)
-    covering = covering_angle_rad(m_steps, n_steps) if rule == "eq. 20" else 0.0
-    gap, pair = compute_surface_gap(packed, points, covering)
-    limit = packed.safe_distance if rule == "eq. 20" else 0.0
-    return SurfaceCheck(collision=gap <= limit, gap_m=gap, pair=robot.pair_lists[chosen.pairs][pair])
+    covers = rule == "eq. 20"
+    return _Question(
+        detector=chosen,
+        directions=surface_directions(m_steps, n_steps),
+        covering_angle=covering_angle_rad(m_steps, n_steps) if covers else 0.0,
+        limit=chosen.safe_distance_m if covers else 0.0,
+    )

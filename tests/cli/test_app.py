@@ -13,7 +13,7 @@ from ikde.cli.exit_codes import ExitCode
 from ikde.errors import FileError, InputError, VerificationError
 from tests.cli.conftest import Outcome
 
-COMMANDS = ("solve", "fk", "check", "doctor", "robots")
+COMMANDS = ("solve", "fk", "check", "batch", "doctor", "robots")
 HELP_IS_LIGHT = """
 import sys
 from ikde.cli.app import run

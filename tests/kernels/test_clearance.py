@@ -10,9 +10,10 @@ from ikde.kernels.clearance import (
     compute_clearance,
     compute_pair_clearance,
     count_colliding_pairs,
+    judge_centres,
 )
 from ikde.kernels.evolution import DEPTH_STEP, compute_depth
-from ikde.model.pack import pack_detector
+from ikde.model.pack import pack_detector, pack_robot
 from tests import reference
 from tests.conftest import random_q
 from tests.kernels.arrays import run_bodies, run_spheres, two_spheres
@@ -126,3 +127,13 @@ def test_without_pairs_the_clearance_is_infinite(qiao):
     bounds, centres = np.zeros((0, 3)), np.zeros((3, 0))
     assert compute_clearance(detector, bounds, centres) == (math.inf, -1)
     assert not collides(detector, bounds, centres)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_rows_are_judged_one_by_one(seed, rng):
+    robot = random_robot(seed)
+    qs, verdicts = random_q(robot, rng, 20), np.zeros(20, dtype=bool)
+    packed = pack_detector(robot, robot.detector(None))
+    judge_centres(pack_robot(robot), packed, qs, verdicts)
+    seen = [run_spheres(robot, robot.detector(None), q) for q in qs]
+    assert verdicts.tolist() == [bool(collides(packed, bounds, centres)) for packed, centres, bounds in seen]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ikde.kernels.frames import compute_frames, compute_jacobian
+from ikde.kernels.frames import compute_frames, compute_jacobian, compute_origins
 from ikde.model.pack import frame_names, pack_robot
 from tests import reference
 from tests.conftest import random_q
@@ -31,6 +31,17 @@ def test_frames_equal_products_of_matrices_over_the_robot(seed, rng):
     expected = reference.compute_frames(robot, q)
     for name, T in zip(frame_names(robot), out_T, strict=True):
         np.testing.assert_allclose(T, expected[name][:3], rtol=0, atol=1e-14, err_msg=name)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_origins_are_those_of_the_frames(seed, rng):
+    robot = random_robot(seed)
+    packed, T_world_body = pack_robot(robot), run_bodies(robot, random_q(robot, rng))
+    frames, origins = np.zeros((2, len(frame_names(robot)), 3, 4))
+    compute_frames(packed, T_world_body, frames)
+    compute_origins(packed, T_world_body, origins)
+    np.testing.assert_allclose(origins[:, :, 3], frames[:, :, 3], rtol=0, atol=1e-14)
+    assert not origins[:, :, :3].any()
 
 
 def test_frames_of_shipped_robots_equal_the_twin(any_robot, rng):

@@ -7,7 +7,9 @@ from ikde.kernels.surface import (
     compute_surface_by_transformation,
     compute_surface_from_centres,
     compute_surface_gap,
+    judge_surfaces,
     smallest_squared_distance,
+    surfaces_collide,
 )
 from ikde.model.pack import pack_robot
 from tests import reference
@@ -124,3 +126,31 @@ def test_neither_sees_a_sphere_deep_inside_another():
 
 def test_eq_20_sees_distant_spheres_apart():
     assert gap_of_two(3.0, (1.0, 0.7), FINE_DIRECTIONS, FINE_ANGLE) > 0.0
+
+
+@pytest.mark.parametrize("limit", [0.0, 0.05])
+@pytest.mark.parametrize("covering_angle", [0.0, COVERING_ANGLE])
+@pytest.mark.parametrize("seed", range(12))
+def test_the_quick_verdict_is_that_of_the_gap(seed, covering_angle, limit, rng):
+    robot = random_robot(seed)
+    detector, centres, _ = run_spheres(robot, robot.detector(None), random_q(robot, rng))
+    gap, _ = compute_surface_gap(detector, from_centres(detector, centres, DIRECTIONS), covering_angle)
+    assert surfaces_collide(detector, centres, DIRECTIONS, covering_angle, limit) == (gap <= limit)
+
+
+@pytest.mark.parametrize("distance", [0.0, 0.1, 0.3, 0.31, 0.8, 1.5, 1.69, 1.7, 1.71, 1.9, 3.0])
+def test_the_quick_verdict_holds_from_deep_inside_to_far_apart(distance):
+    detector, centres, _ = two_spheres(distance, (1.0, 0.7))
+    for covering_angle in (0.0, COVERING_ANGLE):
+        seen = gap_of_two(distance, (1.0, 0.7), DIRECTIONS, covering_angle) <= 0.0
+        assert surfaces_collide(detector, centres, DIRECTIONS, covering_angle, 0.0) == seen
+
+
+def test_rows_are_judged_one_by_one(qiao, rng):
+    qs, verdicts = random_q(qiao, rng, 50), np.zeros(50, dtype=bool)
+    packed = run_spheres(qiao, qiao.detector(None), qs[0])[0]
+    judge_surfaces(pack_robot(qiao), packed, DIRECTIONS, 0.0, 0.01, qs, verdicts)
+    expected = [
+        surfaces_collide(packed, run_spheres(qiao, qiao.detector(None), q)[1], DIRECTIONS, 0.0, 0.01) for q in qs
+    ]
+    assert verdicts.tolist() == expected

@@ -10,6 +10,7 @@ from ikde.errors import InputError
 from ikde.model.rotation import (
     angle_between,
     check_rotation,
+    quat_wxyz_from_rotation,
     rotation_about,
     rotation_angle,
     rotation_from_quat_wxyz,
@@ -165,3 +166,15 @@ def test_the_angle_between_vectors_is_their_arc(a, b):
     assert angle_between(a, b) == pytest.approx(expected, abs=1e-14)
     assert angle_between(a, a) == 0.0
     assert angle_between(a, -a) == pytest.approx(np.pi)
+
+
+@few
+@given(axis=vectors, angle=st.sampled_from([0.0, 1e-9, 1.0, np.pi / 2, np.pi - 1e-9, np.pi, 4.0, 6.0]))
+def test_a_quaternion_comes_back_from_its_rotation(axis, angle):
+    rotation = Rotation.from_rotvec(angle * make_unit(axis))
+    x, y, z, w = rotation.as_quat()
+    found = quat_wxyz_from_rotation(np.array([rotation.as_matrix(), np.eye(3)]))
+    assert found[0, 0] >= 0.0
+    assert abs(found[0] @ [w, x, y, z]) == pytest.approx(1.0, abs=1e-14)
+    np.testing.assert_allclose(rotation_from_quat_wxyz(found[0]), rotation.as_matrix(), rtol=0, atol=1e-14)
+    assert found[1].tolist() == [1.0, 0.0, 0.0, 0.0]

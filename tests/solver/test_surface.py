@@ -6,7 +6,7 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.model.surface import covering_angle_rad, surface_directions
-from ikde.solver.surface import check_surface
+from ikde.solver.surface import check_surface, check_surface_many
 from tests.conftest import random_q
 
 COARSE = {"m_steps": 12, "n_steps": 6}
@@ -41,3 +41,24 @@ def test_equation_18_misses_a_contact_that_equation_20_finds(qiao):
 def test_a_detector_without_pairs_is_refused(qiao):
     with pytest.raises(InputError, match="expected a detector with pairs"):
         check_surface(qiao, qiao.home, "none")
+
+
+@pytest.mark.parametrize("rule", ["eq. 18", "eq. 20"])
+@pytest.mark.parametrize("detector", ["typical", "improved", "single"])
+def test_many_give_the_verdicts_of_one(qiao, rng, rule, detector):
+    Q = random_q(qiao, rng, 40)
+    one = [check_surface(qiao, q, detector, rule=rule, **COARSE).collision for q in Q]
+    assert check_surface_many(qiao, Q, detector, rule=rule, **COARSE).tolist() == one
+
+
+def test_many_are_told_apart_on_a_fine_grid(qiao, rng):
+    Q = random_q(qiao, rng, 300)
+    touching = check_surface_many(qiao, Q, "improved", m_steps=360, n_steps=180)
+    assert 0 < touching.sum() < len(Q)
+
+
+def test_many_refuse_what_one_refuses(qiao):
+    with pytest.raises(InputError, match="expected a detector with pairs"):
+        check_surface_many(qiao, qiao.home[None], "none")
+    with pytest.raises(InputError, match="expected one of eq"):
+        check_surface_many(qiao, qiao.home[None], rule="eq. 21")

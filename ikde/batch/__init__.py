@@ -1,0 +1,1 @@
+"""Floor 4: many solves: what a run file says, and how it runs, stops and goes on."""

@@ -1,0 +1,134 @@
+"""From `solve` and `arms` of a run file to problems: names resolved, numbers in m and rad."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from ikde.batch.placed import placed
+from ikde.batch.plan import Arm
+from ikde.batch.recipe import as_plain
+from ikde.batch.spec import BatchSpec, DetectorEntry, SolveEntry, UnitsEntry
+from ikde.errors import InputError, nearest
+from ikde.model.robot import NO_DETECTOR, Detector, Joint, Robot, check_detector
+from ikde.solver.joints import FARTHEST
+from ikde.solver.problem import make_problem
+from ikde.solver.settings import SolveSettings
+
+PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]+")  # arms and graders name files and columns
+MERGED = ("settings", "ranges", "near", "freeze")  # an arm adds to these instead of replacing them
+TOLERANCES = {"position_tolerance": "position_tolerance_m", "orientation_tolerance": "orientation_tolerance_rad"}
+
+
+def make_arms(spec: BatchSpec, robot: Robot) -> tuple[Arm, ...]:
+    """The arms of a run, or the one that is called like its method."""
+    if not spec.arms:
+        with placed("solve"):
+            return (make_arm(spec.solve.method, robot, spec.solve, spec.units),)
+    return tuple(_make_named(name, spec, robot) for name in spec.arms)
+
+
+def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry) -> Arm:
+    """One arm; raises `InputError` with a path inside a `SolveEntry`."""
+    with placed("detector"):
+        detector = read_detector(robot, entry.detector, units)
+    problem = make_problem(
+        _with_ranges(robot, entry.ranges, units),
+        _make_settings(entry, units),
+        detector=detector or NO_DETECTOR,
+        near=None if entry.near is None else _to_si(robot, "near", entry.near, units),
+        freeze=_to_si(robot, "freeze", entry.freeze, units) or None,
+    )
+    return Arm(name=name, method=entry.method, problem=problem)
+
+
+def read_detector(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> Detector | None:
+    """A detector by name, one of the user's own, or the robot's; None for `none`."""
+    if not isinstance(choice, DetectorEntry):
+        return robot.detector(choice)
+    if choice.name == NO_DETECTOR:
+        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", ("name",))
+    safe_distance_m = choice.safe_distance * units.length_m
+    own = Detector(name=choice.name, spheres=choice.spheres, pairs=choice.pairs, safe_distance_m=safe_distance_m)
+    check_detector(robot, own, ())
+    return own
+
+
+def describe_arm(arm: Arm) -> dict[str, Any]:
+    """All of an arm that its answers hang on, as plain data in m and rad."""
+    problem, names = arm.problem, arm.problem.robot.joint_names
+    start = dict(zip(names, problem.lower, strict=True))
+    return as_plain(
+        {
+            "method": arm.method,
+            "detector": problem.detector,
+            "settings": problem.settings,
+            "ranges": {joint.name: (joint.lower, joint.upper) for joint in problem.robot.joints},
+            "near": None if problem.near is None else dict(zip(names, problem.near, strict=True)),
+            "freeze": {name: start[name] for name in problem.frozen},
+        }
+    )
+
+
+def _make_named(name: str, spec: BatchSpec, robot: Robot) -> Arm:
+    """An arm laid over `solve`; what is wrong with it is placed where it was written."""
+    own = spec.arms[name].model_dump(exclude_unset=True)
+    if not PLAIN_NAME.fullmatch(name):
+        raise InputError("expected a name of letters, digits and . _ -, since it names files", ("arms", name))
+    shared = spec.solve.model_dump(exclude_unset=True)
+    added = {key: {**shared[key], **own[key]} for key in MERGED if shared.get(key) and own.get(key)}
+    try:
+        return make_arm(name, robot, SolveEntry.model_validate({**shared, **own, **added}), spec.units)
+    except InputError as error:
+        inherited = _holds(shared, error.where) and not _holds(own, error.where)
+        where = ("solve",) if inherited else ("arms", name)
+        raise InputError(error.message, (*where, *error.where)) from None
+
+
+def _holds(data: Any, where: tuple[str | int, ...]) -> bool:
+    for key in where:
+        if not isinstance(data, dict) or key not in data:
+            return False
+        data = data[key]
+    return True
+
+
+def _make_settings(entry: SolveEntry, units: UnitsEntry) -> SolveSettings:
+    given = entry.settings.model_dump(exclude_none=True)
+    factors = {"position_tolerance": units.length_m, "orientation_tolerance": units.angle_rad}
+    changes = {TOLERANCES.get(key, key): value * factors.get(key, 1) for key, value in given.items()}
+    try:
+        return SolveSettings.for_method(entry.method).with_changes(**changes)
+    except InputError as error:
+        written = {suffixed: key for key, suffixed in TOLERANCES.items()}
+        raise InputError(error.message, tuple(written.get(str(key), key) for key in error.where)) from None
+
+
+def _with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEntry) -> Robot:
+    """The robot with other joint limits: narrower or wider."""
+    lower = _to_si(robot, "ranges", {name: interval[0] for name, interval in ranges.items()}, units)
+    upper = _to_si(robot, "ranges", {name: interval[1] for name, interval in ranges.items()}, units)
+    for name in ranges:
+        if not lower[name] <= upper[name]:
+            raise InputError("this range is upside down: upper is below lower", ("ranges", name))
+    if not ranges:
+        return robot
+
+    def narrow(joint: Joint) -> Joint:
+        return replace(joint, lower=lower.get(joint.name, joint.lower), upper=upper.get(joint.name, joint.upper))
+
+    return replace(robot, joints=tuple(map(narrow, robot.joints)))
+
+
+def _to_si(robot: Robot, key: str, values: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:
+    """Joint values in m and rad; None stays None."""
+    scale = {j.name: units.length_m if j.kind == "prismatic" else units.angle_rad for j in robot.joints}
+    converted = {}
+    for name, value in values.items():
+        if name not in scale:
+            known = nearest(name, scale) or f"; it has {', '.join(scale)}"
+            raise InputError(f"{robot.name} has no joint {name!r}{known}", (key, name))
+        converted[name] = None if value is None else value * scale[name]
+        if value is not None and abs(converted[name]) > FARTHEST:
+            raise InputError(f"expected at most {FARTHEST:g} m or rad, got {converted[name]:g}", (key, name))
+    return converted

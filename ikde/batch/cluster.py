@@ -1,0 +1,162 @@
+"""Parts solved by a Dask cluster: sent out a few at a time, taken back as they come, sent again if a worker dies."""
+
+import logging
+import re
+import signal
+import threading
+import warnings
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import ExitStack, contextmanager
+from itertools import islice
+from typing import Any
+
+from ikde.batch.parts import GO_ON
+from ikde.batch.task import Answer, Task, solve_task
+from ikde.errors import InputError
+from ikde.kernels.jit import CACHE_FOLDER
+from ikde.solver.search import usable_cores
+
+LOCAL = "local"
+ADDRESS = re.compile(r"((tcp|tls|ws|wss|ucx)://)?[^/\s]+:\d+")
+SILENT = logging.CRITICAL + 1
+DEAF_TO_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"  # for workers that start later
+TASKS_A_THREAD = 3  # in flight: enough that no worker waits, few enough that memory stays flat
+TASKS_AT_LEAST = 8  # so that a cluster that grows with its work sees some
+TRIES = 5  # times the failures that the scheduler allows by itself
+PATIENCE = "10s"  # for a scheduler to answer
+SETTINGS = {
+    "distributed.scheduler.allowed-failures": 10,  # workers that may die of one part; holds for a local cluster
+    "distributed.admin.large-graph-warning-threshold": "1 GiB",  # targets travel with their task, on purpose
+}
+
+
+def solve_on_cluster(tasks: Iterable[Task], address: str, workers: int | None = None) -> Generator[Answer]:
+    """Solve tasks on the cluster at `address`, or on a `"local"` one of so many processes; answers come in any order.
+
+    Raises:
+        InputError: if `distributed` is not installed, the cluster cannot be reached or goes away, or its workers have
+            another ikde.
+    """
+    distributed = _import_distributed()
+    with _quiet(), _connect(distributed, address, workers) as client:
+        yield from _exchange(distributed, client, iter(tasks))
+
+
+def solve_remotely(task: Task, kernels: str) -> Answer:
+    """What a worker does; `kernels` is the digest of the kernels that must have a hand in the answer."""
+    if CACHE_FOLDER.name != kernels:
+        raise InputError("the workers have another version of ikde: its answers would differ")
+    return solve_task(task, threads=1)
+
+
+def _import_distributed() -> Any:
+    try:
+        import distributed
+    except ImportError:
+        raise InputError("Dask is not installed: pip install 'ikde[cluster]'", ("dask",)) from None
+    return distributed
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Dask's log of lost workers off the terminal: what matters of it becomes an error."""
+    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] == "distributed"]
+    levels = {logger: logger.level for logger in map(logging.getLogger, names)}
+    for logger in levels:
+        logger.setLevel(SILENT)
+    try:
+        yield
+    finally:
+        for logger, level in levels.items():
+            logger.setLevel(level)
+
+
+@contextmanager
+def _connect(distributed: Any, address: str, workers: int | None) -> Iterator[Any]:
+    """A client of the cluster; a local cluster lives and dies with it."""
+    import dask.config
+
+    if address != LOCAL and not ADDRESS.fullmatch(address):
+        raise InputError(f"expected {LOCAL!r} or an address such as tcp://10.0.0.5:8786, got {address!r}", ("dask",))
+    with dask.config.set(SETTINGS), warnings.catch_warnings(), ExitStack() as stack:
+        warnings.simplefilter("ignore", distributed.versions.VersionMismatchWarning)
+        if address == LOCAL:
+            with _deaf_to_ctrl_c():
+                address = stack.enter_context(_start_cluster(distributed, workers or usable_cores()))
+        try:
+            client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+        except OSError as error:
+            raise InputError(f"no cluster answers at {address} ({_first_line(error)})", ("dask",)) from None
+        yield stack.enter_context(client)
+
+
+def _start_cluster(distributed: Any, workers: int) -> Any:
+    """Processes on this machine, one thread each, that nobody else needs to see."""
+    return distributed.LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        memory_limit=None,
+        dashboard_address="127.0.0.1:0",  # any free port: the usual one may be taken
+        silence_logs=SILENT,
+        preload=DEAF_TO_CTRL_C,
+    )
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Processes that start inside never hear of Ctrl-C, which is meant for this one; nor does it, for these seconds."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
+    """Keep the cluster busy with a bounded number of tasks and give back answers as they come."""
+    flying: dict[Any, tuple[Task, int]] = {}
+    landed = distributed.as_completed(loop=client.loop)
+
+    def send(task: Task, tries: int) -> None:
+        future = client.submit(solve_remotely, task, CACHE_FOLDER.name, pure=False)
+        flying[future] = (task, tries)
+        landed.add(future)
+
+    def fill() -> None:
+        for task in islice(tasks, max(0, _capacity(client) - len(flying))):
+            send(task, 1)
+
+    fill()
+    for future in landed:
+        task, tries = flying.pop(future)
+        if future.status == "error" and isinstance(future.exception(), distributed.KilledWorker) and tries < TRIES:
+            send(task, tries + 1)
+            continue
+        yield _take(distributed, future, task)
+        fill()
+
+
+def _capacity(client: Any) -> int:
+    """Tasks that may be in flight now: workers come and go."""
+    return max(TASKS_AT_LEAST, TASKS_A_THREAD * sum(client.nthreads().values()))
+
+
+def _take(distributed: Any, future: Any, task: Task) -> Answer:
+    """The answer of a future that is done; raises `InputError` for what is the cluster's fault."""
+    try:
+        return future.result()
+    except distributed.KilledWorker:
+        message = f"workers keep dying of part {task.part.number} of arm {task.part.arm}; have they enough memory?"
+        raise InputError(f"{message} ({GO_ON})", ("dask",)) from None
+    except (CancelledError, distributed.comm.CommClosedError):
+        raise InputError(f"the cluster has gone away; {GO_ON}", ("dask",)) from None
+    except ModuleNotFoundError as error:
+        raise InputError(f"the workers need the same packages as this machine ({error})", ("dask",)) from None
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).split("\n")[0]

@@ -1,0 +1,83 @@
+"""The folder of a run: whose it is, who writes to it, and what of it is finished."""
+
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from ikde.batch.atomic import remove_temporaries, sync_folder, temporary_path
+from ikde.batch.manifest import MANIFEST, describe_difference, make_manifest, read_manifest, write_manifest
+from ikde.batch.parts import SOLUTIONS, TIMING
+from ikde.batch.plan import Batch
+from ikde.errors import FileError
+
+LOCK = ".lock"
+
+
+@contextmanager
+def claim_folder(folder: Path, batch: Batch, *, overwrite: bool) -> Iterator[None]:
+    """Hold the folder of a run while the block runs: made, ours, of this recipe, and of no other process.
+
+    Raises:
+        FileError: for a folder that cannot be written, holds something else, holds a run of another recipe (unless
+            `overwrite`), or is being written by another process.
+    """
+    with ExitStack() as held:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            _check_ours(folder)
+            held.enter_context(_lock(folder))
+            _prepare(folder, batch, overwrite)
+        except (FileExistsError, NotADirectoryError):
+            raise FileError(folder, "is a file or lies below one; expected a folder") from None
+        except OSError as error:
+            raise FileError(folder, f"cannot be used: {error.strerror}") from None
+        yield
+
+
+def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
+    """Leave the manifest of this batch and finished parts, nothing else of ours; it is ours at every moment."""
+    there = read_manifest(folder) if (folder / MANIFEST).exists() else None
+    if there and there.hash != batch.hash and not overwrite:
+        difference = describe_difference(there.recipe, batch.recipe)
+        raise FileError(folder, f"holds another run: {difference} (--overwrite replaces it)")
+    if there is None:
+        write_manifest(folder, make_manifest(batch))
+    for kind in (SOLUTIONS, TIMING):
+        (folder / kind).mkdir(exist_ok=True)
+        remove_temporaries(folder / kind)
+        if overwrite:
+            _remove_parts(folder / kind)
+    if there and overwrite:
+        write_manifest(folder, make_manifest(batch))
+    sync_folder(folder)
+
+
+def _check_ours(folder: Path) -> None:
+    """Refuse a folder with anything in it but a run of ours, or what is left of one that was killed at birth."""
+    leftovers = {LOCK, temporary_path(folder / MANIFEST).name}
+    if (folder / MANIFEST).exists():
+        read_manifest(folder)
+    elif {path.name for path in folder.iterdir()} - leftovers:
+        raise FileError(folder, "is not empty and holds no run of ikde; name another folder")
+
+
+@contextmanager
+def _lock(folder: Path) -> Iterator[None]:
+    """A lock that the system lets go of when its holder ends, however it ends."""
+    with (folder / LOCK).open("a+") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            raise FileError(folder, f"process {file.read() or 'another'} is writing this run") from None
+        file.truncate(0)
+        file.write(str(os.getpid()))
+        file.flush()
+        yield
+
+
+def _remove_parts(folder: Path) -> None:
+    for path in folder.glob("*.parquet"):
+        path.unlink()

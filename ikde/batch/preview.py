@@ -1,0 +1,129 @@
+"""What a batch would do, and how long it would take: measured by solving a sample of each arm, writing nothing."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import pyarrow as pa
+
+from ikde.batch.parts import Part, serialize
+from ikde.batch.plan import Arm, Batch
+from ikde.batch.task import Answer, Task, solve_task
+from ikde.solver.search import usable_cores
+
+SAMPLE_SECONDS = 2.0  # of all arms together, about
+GROWTH = 4  # from one sample to the next
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmPreview:
+    """One arm and how fast it went."""
+
+    name: str
+    method: str
+    detector: str
+    sample: int
+    """Solves that were timed."""
+    sample_reached: int
+    seconds: float
+    """What all its solves would take, on all threads together."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Preview:
+    """What would run."""
+
+    name: str
+    robot: str
+    targets: int
+    repeats: int
+    seed: int
+    arms: tuple[ArmPreview, ...]
+    solves: int
+    """Of all arms."""
+    parts: int
+    threads: int
+    columns: tuple[str, ...]
+    bytes: int
+    """On the disk, about."""
+
+    @property
+    def seconds(self) -> float:
+        """Of all arms, about."""
+        return sum(arm.seconds for arm in self.arms)
+
+
+def preview_batch(
+    batch: Batch, *, threads: int | None = None, announce_compile: Callable[[], None] | None = None
+) -> Preview:
+    """Say what would run; solves a sample of each arm, some seconds long, and writes nothing."""
+    cores, parts = threads or usable_cores(), -(-batch.solves // batch.chunk)
+    budget = SAMPLE_SECONDS / len(batch.arms)
+    samples = [_time_arm(batch, arm, cores, budget, announce_compile) for arm in batch.arms]
+    return Preview(
+        name=batch.name,
+        robot=batch.robot.name,
+        targets=batch.source.count,
+        repeats=batch.repeats,
+        seed=batch.seed,
+        arms=tuple(arm for arm, _ in samples),
+        solves=batch.solves * len(batch.arms),
+        parts=parts * len(batch.arms),
+        threads=cores,
+        columns=tuple(samples[0][1].solutions.column_names),
+        bytes=sum(_estimate_bytes(answer, batch.solves, parts) for _, answer in samples),
+    )
+
+
+def _time_arm(
+    batch: Batch, arm: Arm, threads: int, budget: float, announce: Callable[[], None] | None
+) -> tuple[ArmPreview, Answer]:
+    """Solve larger and larger samples until one fills about the budget."""
+    solve_task(_take_sample(batch, arm, 1), threads, announce)  # compiles or loads the kernels
+    size = min(threads, batch.solves)
+    while True:
+        started = time.perf_counter()
+        answer = solve_task(_take_sample(batch, arm, size), threads)
+        seconds = time.perf_counter() - started
+        if seconds > budget / GROWTH or size == batch.solves:
+            break
+        size = min(size * GROWTH, batch.solves)
+    detector = arm.problem.detector
+    facts = ArmPreview(
+        name=arm.name,
+        method=arm.method,
+        detector=detector.name if detector else "none",
+        sample=size,
+        sample_reached=sum(answer.solutions["reached"].to_pylist()),
+        seconds=seconds / size * batch.solves,
+    )
+    return facts, answer
+
+
+def _take_sample(batch: Batch, arm: Arm, size: int) -> Task:
+    """A task of solves that are spread evenly over all targets."""
+    chosen = [index * batch.source.count // size for index in range(size)]
+    names = batch.source.names
+    return Task(
+        part=Part(arm.name, 0, 0, size),
+        arm=arm,
+        targets=[batch.source.read(target, target + 1)[0] for target in chosen],
+        names=tuple(names[target] for target in chosen) if names else None,
+        repeats=1,
+        seed=batch.seed,
+        graders=batch.graders,
+        groups=batch.columns,
+        explain=batch.explain,
+    )
+
+
+def _estimate_bytes(answer: Answer, solves: int, parts: int) -> int:
+    """Bytes of an arm: so many a row, and the frame of each file."""
+    tables = (answer.solutions, answer.timing)
+    frames = sum(_size(table.slice(0, 0)) for table in tables)
+    rows = sum(_size(table) for table in tables) - frames
+    return round(rows / len(answer.solutions) * solves) + frames * parts
+
+
+def _size(table: pa.Table) -> int:
+    return serialize(table).size

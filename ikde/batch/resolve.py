@@ -1,0 +1,72 @@
+"""From a run file to a batch: every name resolved, every number in m and rad, everything wrong found before it runs."""
+
+from pathlib import Path
+from typing import Any
+
+from ikde.batch.arms import PLAIN_NAME, describe_arm, make_arm, make_arms, read_detector
+from ikde.batch.placed import placed
+from ikde.batch.plan import Batch
+from ikde.batch.recipe import as_plain, ikde_version, robot_digest
+from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
+from ikde.batch.targets import make_source
+from ikde.errors import InputError
+from ikde.kernels.jit import CACHE_FOLDER
+from ikde.model.robot import Detector, Robot
+
+MOST_SOLVES = 10**9  # of an arm
+
+
+def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None) -> Batch:
+    """Resolve a run file.
+
+    Args:
+        spec: the run file.
+        robot: the robot that it names.
+        folder: paths in the run file start here.
+        file: the run file's name, for the record.
+
+    Raises:
+        InputError: with the path of the key inside the run file.
+        FileError: for what is wrong inside a table.
+    """
+    arms, graders = make_arms(spec, robot), _make_graders(spec, robot)
+    with placed("solve"):
+        shared = make_arm("solve", robot, spec.solve, spec.units)
+    source, targets = make_source(spec, shared.problem, folder)
+    if source.count * spec.repeats > MOST_SOLVES:
+        raise InputError(f"{source.count:,} targets make more than {MOST_SOLVES:,} solves an arm", ("repeats",))
+    asked: dict[str, Any] = {
+        "repeats": spec.repeats,
+        "seed": spec.seed,
+        "chunk": spec.chunk,
+        "explain": spec.explain,
+        "columns": tuple(group for group in COLUMN_GROUPS if group in spec.output.columns),
+    }
+    recipe = {
+        "ikde": ikde_version(),
+        "kernels": CACHE_FOLDER.name,
+        "robot": {"name": robot.name, "digest": robot_digest(robot)},
+        "targets": targets,
+        "arms": {arm.name: describe_arm(arm) for arm in arms},
+        "grade": graders,
+        **asked,
+    }
+    name = spec.name or (Path(file).stem if file else "batch")
+    return Batch(
+        name=name, robot=robot, arms=arms, source=source, graders=graders, recipe=as_plain(recipe), file=file, **asked
+    )
+
+
+def _make_graders(spec: BatchSpec, robot: Robot) -> tuple[Detector, ...]:
+    graders: dict[str, Detector] = {}
+    for index, choice in enumerate(spec.grade):
+        with placed("grade", index):
+            detector = read_detector(robot, choice, spec.units)
+            if detector is None:
+                raise InputError("expected a detector; 'none' grades nothing")
+            if not PLAIN_NAME.fullmatch(detector.name):
+                raise InputError("expected a name of letters, digits and . _ -, since it names columns")
+            if detector.name in graders:
+                raise InputError(f"two detectors are called {detector.name!r}")
+            graders[detector.name] = detector
+    return tuple(graders.values())

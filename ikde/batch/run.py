@@ -1,0 +1,114 @@
+"""Run a batch: part after part into a folder, stopped at any moment, gone on with by the same call."""
+
+from collections.abc import Callable, Generator, Iterable
+from contextlib import closing
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+
+from ikde.batch.cluster import LOCAL, solve_on_cluster
+from ikde.batch.folder import claim_folder
+from ikde.batch.parts import Part, is_finished, list_parts, write_part
+from ikde.batch.plan import Batch
+from ikde.batch.summary import RunSummary, summarise
+from ikde.batch.task import Answer, Task, make_task, solve_task
+from ikde.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far a run is."""
+
+    parts_done: int
+    parts: int
+    solves_done: int
+    solves: int
+    parts_found: int
+    """Parts that were finished before this call."""
+
+    def after(self, part: Part) -> "Progress":
+        """One part further."""
+        return replace(self, parts_done=self.parts_done + 1, solves_done=self.solves_done + part.rows)
+
+
+def run_batch(
+    batch: Batch,
+    out: str | PathLike[str],
+    *,
+    threads: int | None = None,
+    overwrite: bool = False,
+    dask: str | None = None,
+    workers: int | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    announce_compile: Callable[[], None] | None = None,
+) -> RunSummary:
+    """Solve everything that a batch asks for and write it to a folder.
+
+    The folder of a run that was stopped is gone on with: finished parts stay, and the answers are the same bits as
+    those of a run that was never stopped.
+
+    Args:
+        batch: what to solve (`load_batch`).
+        out: the folder of the run: new, empty, or that of the same batch.
+        threads: how many; None for all cores. The answers do not hang on it.
+        overwrite: delete the run that is there, if it is one of ours, and start again.
+        dask: address of a Dask cluster that does the work, or `"local"` for processes on this machine.
+        workers: processes of `dask="local"`; None for one a core.
+        progress: called at the start and after every part.
+        announce_compile: called once if kernels must be compiled first.
+
+    Returns:
+        What came of it, over all parts of the folder.
+
+    Raises:
+        InputError: for options that contradict each other, or a cluster that cannot be reached.
+        FileError: for a folder that cannot be used, a full disk, or an input that has gone.
+    """
+    _check_options(threads, dask, workers)
+    folder = Path(out)
+    with claim_folder(folder, batch, overwrite=overwrite):
+        parts = list(list_parts([arm.name for arm in batch.arms], batch.solves, batch.chunk))
+        missing = [part for part in parts if not is_finished(folder, part)]
+        tasks = (make_task(batch, part) for part in missing)
+        now, tell = _start(parts, missing), progress or (lambda now: None)
+        tell(now)
+        with closing(_solve(tasks, threads, dask, workers, announce_compile)) as answers:
+            for answer in answers if missing else ():
+                write_part(folder, answer.part, answer.solutions, answer.timing)
+                now = now.after(answer.part)
+                tell(now)
+    return summarise(folder)
+
+
+def _check_options(threads: int | None, dask: str | None, workers: int | None) -> None:
+    for name, value in (("threads", threads), ("workers", workers)):
+        if value is not None and value < 1:
+            raise InputError(f"expected a whole number of at least 1, got {value}", (name,))
+    if workers is not None and dask != LOCAL:
+        raise InputError("only a local cluster is told how many workers it has (dask local)", ("workers",))
+    if threads is not None and dask is not None:
+        raise InputError("workers of a cluster use one thread each; say workers instead", ("threads",))
+
+
+def _start(parts: list[Part], missing: list[Part]) -> Progress:
+    found, solves = len(parts) - len(missing), sum(part.rows for part in parts)
+    return Progress(
+        parts_done=found,
+        parts=len(parts),
+        solves_done=solves - sum(part.rows for part in missing),
+        solves=solves,
+        parts_found=found,
+    )
+
+
+def _solve(
+    tasks: Iterable[Task],
+    threads: int | None,
+    dask: str | None,
+    workers: int | None,
+    announce_compile: Callable[[], None] | None,
+) -> Generator[Answer]:
+    """Answers as they come, here or on a cluster."""
+    if dask is None:
+        return (solve_task(task, threads, announce_compile) for task in tasks)
+    return solve_on_cluster(tasks, dask, workers)

@@ -1,0 +1,281 @@
+"""The run file as it is written: every key with its type, its default and what it means."""
+
+import math
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
+
+from ikde.batch.sources import OrientationKind
+from ikde.errors import InputError
+from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.solver.settings import Collision, Method, Update
+
+ColumnGroup = Literal["q", "errors", "clearance", "cost", "reason", "target"]
+COLUMN_GROUPS: tuple[ColumnGroup, ...] = get_args(ColumnGroup)
+ORIENTATIONS: tuple[OrientationKind, ...] = get_args(OrientationKind)
+
+Name = Annotated[str, StringConstraints(min_length=1)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
+Count = Annotated[int, Field(strict=True, ge=1, le=10**9)]
+Interval = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
+GridCounts = Annotated[list[Annotated[int, Field(strict=True, ge=1, le=10**6)]], Field(min_length=3, max_length=3)]
+ThreeNames = Annotated[list[Name], Field(min_length=3, max_length=3)]
+FourNames = Annotated[list[Name], Field(min_length=4, max_length=4)]
+
+
+def _text_or_entry(value: Any) -> str:
+    return "text" if isinstance(value, str) else "entry"
+
+
+AsText, AsEntry, TextOrEntry = Tag("text"), Tag("entry"), Discriminator(_text_or_entry)  # errors of one branch only
+ThreeColumns = Annotated[Annotated[Name, AsText] | Annotated[ThreeNames, AsEntry], TextOrEntry]
+FourColumns = Annotated[Annotated[Name, AsText] | Annotated[FourNames, AsEntry], TextOrEntry]
+
+
+class Entry(BaseModel):
+    """Part of a run file: unknown keys are errors, and the text under a key is what an editor shows."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, populate_by_name=True)
+
+
+class UnitsEntry(Entry):
+    """Units of the lengths and angles that are written here."""
+
+    length: Literal["m", "mm"] = "m"
+    """Unit of lengths."""
+    angle: Literal["rad", "deg"] = "rad"
+    """Unit of angles."""
+
+    @property
+    def length_m(self) -> float:
+        """One unit of length in m."""
+        return 1e-3 if self.length == "mm" else 1.0
+
+    @property
+    def angle_rad(self) -> float:
+        """One unit of angle in rad."""
+        return math.pi / 180.0 if self.angle == "deg" else 1.0
+
+
+class OrientationEntry(Entry):
+    """How the tool is turned; at most one key."""
+
+    axis: Vector | None = None
+    """Direction of the tool's z axis, any length; the turn about it stays free."""
+    rpy: Vector | None = None
+    """Roll, pitch, yaw about the fixed axes x, y, z of the world, as in URDF."""
+    quat_wxyz: Quaternion | None = None
+    """Quaternion, w first, any length."""
+
+
+class InlineTarget(OrientationEntry):
+    """One target in the world frame."""
+
+    position: Vector
+    """Where the tool should be."""
+    name: Name | None = None
+    """What to call it in the results."""
+
+
+class ColumnsEntry(Entry):
+    """Which columns of the file hold what. An array of an NPZ file may hold all numbers of a key: `position: p`."""
+
+    position: ThreeColumns
+    """Columns of x, y, z."""
+    axis: ThreeColumns | None = None
+    """Columns of the direction of the tool's z axis."""
+    rpy: ThreeColumns | None = None
+    """Columns of roll, pitch, yaw."""
+    quat_wxyz: FourColumns | None = None
+    """Columns of the quaternion, w first."""
+    name: Name | None = None
+    """Column of the targets' names."""
+
+
+def chosen_orientation(entry: OrientationEntry | ColumnsEntry) -> OrientationKind | None:
+    """The one key that gives an orientation, or None; raises `InputError` for two."""
+    given: list[OrientationKind] = [kind for kind in ORIENTATIONS if getattr(entry, kind) is not None]
+    if len(given) > 1:
+        raise InputError(f"{' and '.join(given)} both ask for an orientation; give one", (given[1],))
+    return given[0] if given else None
+
+
+class FileEntry(Entry):
+    """Targets from a table, a row each."""
+
+    path: Name
+    """A .csv, .parquet or .npz file, relative to the run file."""
+    columns: ColumnsEntry
+    """Which columns hold what."""
+    units: UnitsEntry | None = None
+    """Units of the table (default: those of the run file)."""
+
+
+class ReachableEntry(Entry):
+    """Where the tool is in random configurations that are inside the ranges of `solve` and free of collision."""
+
+    count: Count
+    """How many targets."""
+    goal: Literal["position", "axis", "pose"] = "position"
+    """What is asked of the tool there."""
+    detector: Name | None = None
+    """What the configurations are free for: a detector's name or `none` (default: the robot's own)."""
+
+
+class GridEntry(Entry):
+    """Points of a regular grid; z runs fastest."""
+
+    start: Vector = Field(alias="from")
+    """First corner."""
+    to: Vector
+    """Last corner."""
+    counts: GridCounts
+    """Points along x, y, z; a single one stands at `from`."""
+    orientation: OrientationEntry | None = None
+    """How the tool is turned at every point."""
+
+
+class BoxEntry(Entry):
+    """Random points, uniform in a box."""
+
+    start: Vector = Field(alias="from")
+    """One corner."""
+    to: Vector
+    """The opposite corner."""
+    count: Count
+    """How many targets."""
+    orientation: OrientationEntry | None = None
+    """How the tool is turned at every point."""
+
+
+class SphereEntry(Entry):
+    """Random points, uniform in a ball or on its surface."""
+
+    center: Vector
+    """Middle."""
+    radius: Annotated[Number, Field(gt=0.0)]
+    """Radius."""
+    count: Count
+    """How many targets."""
+    filled: bool = True
+    """Whether points lie inside (true) or on the surface (false)."""
+    orientation: OrientationEntry | None = None
+    """How the tool is turned at every point."""
+
+
+class TargetsEntry(Entry):
+    """Where targets come from: exactly one key."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+    inline: Annotated[list[InlineTarget], Field(min_length=1)] | None = None
+    """A list, written here."""
+    file: FileEntry | None = None
+    """A table: CSV, Parquet or NPZ."""
+    reachable: ReachableEntry | None = None
+    """Targets that the robot can reach."""
+    grid: GridEntry | None = None
+    """A regular grid."""
+    box: BoxEntry | None = None
+    """Random points in a box."""
+    sphere: SphereEntry | None = None
+    """Random points in a ball or on its surface."""
+
+
+class DetectorEntry(Entry):
+    """A detector of your own, from the robot's approximations and pair lists."""
+
+    name: Name
+    """What to call it in the results."""
+    spheres: Name
+    """The robot's sphere approximation."""
+    pairs: Name = "non_adjacent"
+    """The robot's list of component pairs to look at."""
+    safe_distance: Number = 0.0
+    """Clearance at which collision begins."""
+
+
+DetectorChoice = Annotated[Annotated[Name, AsText] | Annotated[DetectorEntry, AsEntry], TextOrEntry]
+
+
+class SettingsEntry(Entry):
+    """How to search; what is left out is the method's own choice."""
+
+    position_tolerance: Number | None = None
+    """Accepted distance from the target."""
+    orientation_tolerance: Number | None = None
+    """Accepted angle from the target."""
+    strategy: str | None = Field(default=None, json_schema_extra={"enum": [*STRATEGIES, None]})
+    """Mutation of the differential evolution."""
+    population: int | None = None
+    """Members of the population, NP."""
+    start_share: Number | None = None
+    """Share of each range, about its middle, that the first population is drawn from."""
+    weight: Number | None = None
+    """Differential weight, F."""
+    crossover: Number | None = None
+    """Crossover rate, CR, 0 to 1."""
+    generations: int | None = None
+    """Generations of one attempt."""
+    restarts: int | None = None
+    """Attempts before the budget is spent."""
+    bounds: str | None = Field(default=None, json_schema_extra={"enum": [*REPAIRS, None]})
+    """What happens to a coordinate out of its range."""
+    update: Update | None = None
+    """When a better trial replaces its parent."""
+    collision: Collision | None = None
+    """`reject`: test the best, start again until it is free; `feasibility`: inside the selection."""
+
+
+class SolveEntry(Entry):
+    """How to solve."""
+
+    method: Method = "auto"
+    """`auto`, ikde's choice, or `de`, the search of the paper."""
+    detector: DetectorChoice | None = None
+    """What counts as self-collision: a name, `none`, or a detector of your own (default: the robot's)."""
+    settings: SettingsEntry = SettingsEntry()
+    """How to search."""
+    ranges: dict[Name, Interval] = {}
+    """Joint ranges instead of the robot's: joint: [lower, upper]."""
+    near: dict[Name, Number] | None = None
+    """Joint values to stay close to; joints left out stay near home."""
+    freeze: dict[Name, Number | None] = {}
+    """Joints that must not move, with their value (null: from `near`, else home)."""
+
+
+class OutputEntry(Entry):
+    """What the results hold."""
+
+    columns: list[ColumnGroup] = list(COLUMN_GROUPS)
+    """Groups of columns besides arm, target, repeat, reached, verified and stop_reason."""
+
+
+class BatchSpec(Entry):
+    """A run: many targets, solved in one or several ways."""
+
+    name: Name | None = None
+    """What to call the run (default: the file's name)."""
+    robot: Name
+    """A robot that ships with ikde, or its file, relative to the run file."""
+    units: UnitsEntry = UnitsEntry()
+    """Units of everything written here."""
+    targets: TargetsEntry
+    """What to reach."""
+    solve: SolveEntry = SolveEntry()
+    """How to solve."""
+    arms: dict[Name, SolveEntry] = {}
+    """Several ways to solve, compared over the same targets and random streams; each is laid over `solve`."""
+    grade: list[DetectorChoice] = []
+    """Further detectors that grade every solution."""
+    repeats: Count = 1
+    """How often each target is solved, each time with its own random stream."""
+    seed: Annotated[int, Field(strict=True, ge=0, le=2**64 - 1)] = 0
+    """Same seed, same answers."""
+    chunk: Annotated[int, Field(strict=True, ge=1, le=10**6)] = 1000
+    """Solves in one file of the results: what a kill can cost at most."""
+    explain: bool = True
+    """Whether to find out why a target was not reached."""
+    output: OutputEntry = OutputEntry()
+    """What the results hold."""

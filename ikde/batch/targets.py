@@ -1,0 +1,148 @@
+"""From the `targets` of a run file to a source, and to what of it belongs into the recipe."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
+from ikde.batch.placed import placed
+from ikde.batch.recipe import array_digest, as_plain, digest
+from ikde.batch.sources import ListSource, Orientation, TableSource, TargetSource, make_orientation
+from ikde.batch.spec import (
+    BatchSpec,
+    BoxEntry,
+    FileEntry,
+    GridEntry,
+    InlineTarget,
+    OrientationEntry,
+    ReachableEntry,
+    SphereEntry,
+    TargetsEntry,
+    UnitsEntry,
+    chosen_orientation,
+)
+from ikde.batch.table_targets import read_targets
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+from ikde.model.target import Target
+from ikde.solver.problem import Problem
+
+Recipe = dict[str, Any]
+
+
+def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[TargetSource, Recipe]:
+    """The source of a run's targets, and what its answers hang on.
+
+    Args:
+        spec: the run file.
+        problem: what `solve` says, arms aside: `reachable` draws from its ranges.
+        folder: paths in the run file start here.
+
+    Raises:
+        InputError: with the path of the key inside the run file.
+        FileError: for what is wrong inside a table.
+    """
+    with placed("targets"):
+        key = _only_key(spec.targets)
+        entry, units = getattr(spec.targets, key), spec.units
+        with placed(key):
+            if isinstance(entry, FileEntry):
+                table = read_targets(folder / entry.path, entry.columns, entry.units or units)
+                return table, {key: _describe_table(table)}
+            if isinstance(entry, ReachableEntry):
+                source = _make_reachable(entry, problem, spec.seed)
+                return source, {key: _describe_reachable(source)}
+            written = spec.targets.model_dump(by_alias=True, exclude_unset=True)
+            return _make_listed(entry, units, spec.seed), {**written, "units": units.model_dump()}
+
+
+def _only_key(targets: TargetsEntry) -> str:
+    given = [key for key in type(targets).model_fields if getattr(targets, key) is not None]
+    if len(given) != 1:
+        known = ", ".join(type(targets).model_fields)
+        raise InputError(f"expected one of {known}, got {' and '.join(given) or 'none'}", tuple(given[1:2]))
+    return given[0]
+
+
+def _make_listed(
+    entry: list[InlineTarget] | GridEntry | BoxEntry | SphereEntry, units: UnitsEntry, seed: int
+) -> TargetSource:
+    if isinstance(entry, list):
+        return _make_inline(entry, units)
+    with placed("orientation"):
+        orientation = _read_orientation(entry.orientation or OrientationEntry(), units)
+    if isinstance(entry, SphereEntry):
+        center = _read_position("center", entry.center, units)
+        _read_position("radius", np.abs(entry.center) + entry.radius, units)
+        return make_ball(center, entry.radius * units.length_m, entry.filled, entry.count, seed, orientation)
+    start, to = _read_position("from", entry.start, units), _read_position("to", entry.to, units)
+    if isinstance(entry, GridEntry):
+        nx, ny, nz = entry.counts
+        return make_grid(start, to, (nx, ny, nz), orientation)
+    return make_box(start, to, entry.count, seed, orientation)
+
+
+def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
+    targets = []
+    for index, entry in enumerate(entries):
+        with placed(index):
+            position = _read_position("position", entry.position, units)
+            targets.append(Target(position, **_read_orientation(entry, units)))
+    named = any(entry.name for entry in entries)
+    names = tuple(entry.name or f"target {index}" for index, entry in enumerate(entries)) if named else None
+    return ListSource(targets=targets, names=names)
+
+
+def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> ReachableSource:
+    with placed("detector"):
+        detector = problem.robot.detector(entry.detector)
+    source = ReachableSource(
+        robot=problem.robot,
+        detector=detector,
+        lower=problem.lower,
+        upper=problem.upper,
+        goal=entry.goal,
+        count=entry.count,
+        seed=seed,
+    )
+    source.read(0, 1)  # a robot that is never free is found before anything runs
+    return source
+
+
+def _read_position(key: str, values: ArrayLike, units: UnitsEntry) -> Floats:
+    """A point in m that a target can stand at."""
+    try:
+        return Target(np.array(values) * units.length_m).p_world_tool
+    except InputError as error:
+        raise InputError(f"{error.message} (in m)", (key,)) from None
+
+
+def _read_orientation(entry: OrientationEntry, units: UnitsEntry) -> Orientation:
+    """What `Target` takes, checked once for all targets that share it."""
+    kind = chosen_orientation(entry)
+    if kind is None:
+        return {}
+    values = np.array(getattr(entry, kind)) * (units.angle_rad if kind == "rpy" else 1.0)
+    try:
+        orientation = make_orientation(kind, values)
+        Target((0.0, 0.0, 0.0), **orientation)
+    except InputError as error:
+        raise InputError(error.message, (kind,)) from None
+    return orientation
+
+
+def _describe_table(table: TableSource) -> Recipe:
+    numbers = [table.positions, *([] if table.orientations is None else [table.orientations])]
+    return {
+        "count": table.count,
+        "orientation": table.kind,
+        "numbers": array_digest(*numbers),
+        "names": digest(table.names),
+    }
+
+
+def _describe_reachable(source: ReachableSource) -> Recipe:
+    ranges = dict(zip(source.robot.joint_names, zip(source.lower, source.upper, strict=True), strict=True))
+    return as_plain({"count": source.count, "goal": source.goal, "detector": source.detector, "ranges": ranges})

@@ -1,0 +1,82 @@
+"""The work of one part: it holds all it needs, so that it can be sent to another process or machine."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from ikde.batch.columns import make_solutions, make_timing
+from ikde.batch.parts import Part
+from ikde.batch.plan import Arm, Batch
+from ikde.model.robot import Detector
+from ikde.model.target import Target
+from ikde.solver.rows import solve_rows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Task:
+    """One part to be solved."""
+
+    part: Part
+    arm: Arm
+    targets: list[Target]
+    """Each once, the first being that of the first solve."""
+    names: tuple[str, ...] | None
+    """A name a target, if they have names."""
+    repeats: int
+    seed: int
+    graders: tuple[Detector, ...]
+    groups: tuple[str, ...]
+    explain: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answer:
+    """A part solved."""
+
+    part: Part
+    solutions: pa.Table
+    timing: pa.Table
+
+
+def make_task(batch: Batch, part: Part) -> Task:
+    """Read the targets of a part and pack its bag."""
+    first, last = part.first // batch.repeats, (part.last - 1) // batch.repeats + 1
+    return Task(
+        part=part,
+        arm=next(arm for arm in batch.arms if arm.name == part.arm),
+        targets=batch.source.read(first, last),
+        names=batch.source.names[first:last] if batch.source.names else None,
+        repeats=batch.repeats,
+        seed=batch.seed,
+        graders=batch.graders,
+        groups=batch.columns,
+        explain=batch.explain,
+    )
+
+
+def solve_task(task: Task, threads: int | None = None, announce_compile: Callable[[], None] | None = None) -> Answer:
+    """Solve, grade and tabulate one part; the solutions are the same bits wherever this runs."""
+    numbers = np.arange(task.part.first, task.part.last)
+    local = (numbers // task.repeats - numbers[0] // task.repeats).tolist()
+    rows = solve_rows(
+        task.arm.problem,
+        [task.targets[index] for index in local],
+        seed=task.seed,
+        first_stream=task.part.first,
+        threads=threads,
+        probe=task.explain,
+        announce_compile=announce_compile,
+    )
+    solutions = make_solutions(
+        task.arm.name,
+        rows,
+        numbers=numbers,
+        repeats=task.repeats,
+        names=[task.names[index] for index in local] if task.names else None,
+        groups=task.groups,
+        graders=task.graders,
+    )
+    timing = make_timing(task.arm.name, rows, numbers=numbers, repeats=task.repeats)
+    return Answer(part=task.part, solutions=solutions, timing=timing)

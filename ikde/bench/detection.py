@@ -1,0 +1,183 @@
+"""What self-collision detection costs, and where its variants disagree: lists of pairs, centres and surface points."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikde.bench.approximation import APPROXIMATIONS
+from ikde.bench.budget import FULL, Budget
+from ikde.bench.misprints import Data
+from ikde.kernels.arrays import Floats
+from ikde.kernels.clearance import judge_centres
+from ikde.kernels.surface import judge_surfaces
+from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.robot import Detector, Robot
+from ikde.model.surface import M_STEPS, N_STEPS, covering_angle_rad, surface_directions
+from ikde.solver.surface import Rule, check_surface, check_surface_many
+
+SEED = 20211
+PAIR_LISTS = ("formula_22", "formula_22_printed", "non_adjacent")
+GRIDS = ((M_STEPS, N_STEPS), (2 * M_STEPS, 2 * N_STEPS), (10 * M_STEPS, 10 * N_STEPS))
+SURFACE: tuple[tuple[Rule, tuple[int, int]], ...] = (("eq. 18", GRIDS[0]), *(("eq. 20", grid) for grid in GRIDS))
+COPIES = 32  # verdicts on one configuration in a timed call, so that the call weighs little
+Bools = NDArray[np.bool_]
+
+
+def compute_detection(robot: Robot, budget: Budget = FULL) -> Data:
+    """Pairs, time a verdict and verdicts that differ, for lists of pairs and for centres against surface points.
+
+    Args:
+        robot: qiao2021.
+        budget: how many random configurations.
+    """
+    Q = draw_configurations(robot, budget.verdicts)
+    detectors = {(name, pairs): _detector(robot, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS}
+    verdicts = {key: check_centres_many(robot, Q, detector) for key, detector in detectors.items()}
+    few = Q[: budget.surface_verdicts]
+    return {
+        "exact": {
+            "lists": [
+                {**_name(key), **count_pairs(robot, detectors[key]), "colliding": int(verdicts[key].sum())}
+                for key in detectors
+            ],
+            "lists_differ": [
+                _compare_lists(robot, verdicts, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS[1:]
+            ],
+            "surface_differs": list(_compare_surface(robot, few)),
+        },
+        "measured": {
+            "lists": [{**_name(key), **_time_centres(robot, detectors[key], Q, budget)} for key in detectors],
+            "surface": [_time_surface(robot, robot.detectors[name], Q, budget) for name in APPROXIMATIONS],
+        },
+        "settings": {
+            "source": "[Qiao2021, eq. 18 to 22]",
+            "configurations": "uniform within the joint limits",
+            "seed": SEED,
+            "verdicts": len(Q),
+            "surface_verdicts": len(few),
+            "plain_verdicts": budget.plain_verdicts,
+            "timed_verdicts": min(budget.timed_verdicts, len(Q)),
+            "surface_grid": [M_STEPS, N_STEPS],
+            "time_includes": "poses of all bodies, centres of all spheres, comparisons until the first hit",
+            "threads": 1,
+        },
+    }
+
+
+def draw_configurations(robot: Robot, count: int) -> Floats:
+    """Uniform random configurations [count, N] within the limits; a shorter list is the beginning of a longer one."""
+    return np.random.default_rng(SEED).uniform(robot.lower, robot.upper, (count, len(robot.joints)))
+
+
+def check_centres_many(robot: Robot, Q: Floats, detector: Detector) -> Bools:
+    """Whether each row of `Q` [K, N] collides by [Qiao2021, eq. 21]; [K]."""
+    collides = np.empty(len(Q), dtype=bool)
+    judge_centres(pack_robot(robot), pack_detector(robot, detector), Q, collides)
+    return collides
+
+
+def count_pairs(robot: Robot, detector: Detector) -> Data:
+    """How many pairs of components a detector looks at, and of spheres if it looks at all of them."""
+    sizes = dict.fromkeys(robot.components(detector.spheres), 0)
+    for row in robot.approximations[detector.spheres]:
+        sizes[row.component] += row.count
+    pairs = robot.pair_lists[detector.pairs]
+    return {"component_pairs": len(pairs), "sphere_pairs": sum(sizes[a] * sizes[b] for a, b in pairs)}
+
+
+def _detector(robot: Robot, name: str, pairs: str) -> Detector:
+    return replace(robot.detectors[name], pairs=pairs)
+
+
+def _name(key: tuple[str, str]) -> Data:
+    return {"approximation": key[0], "pairs": key[1]}
+
+
+# ---- verdicts that differ
+
+
+def _compare_lists(robot: Robot, verdicts: Mapping[tuple[str, str], Bools], name: str, pairs: str) -> Data:
+    """Another list against Formula 22 as meant, with the same spheres."""
+    ours, theirs = verdicts[name, PAIR_LISTS[0]], verdicts[name, pairs]
+    here, there = ({frozenset(pair) for pair in robot.pair_lists[key]} for key in (pairs, PAIR_LISTS[0]))
+    return {
+        "approximation": name,
+        "pairs": pairs,
+        "against": PAIR_LISTS[0],
+        "pairs_added": [list(pair) for pair in robot.pair_lists[pairs] if frozenset(pair) not in there],
+        "pairs_missing": [list(pair) for pair in robot.pair_lists[PAIR_LISTS[0]] if frozenset(pair) not in here],
+        "only_this_collides": int((theirs & ~ours).sum()),
+        "only_the_other_collides": int((ours & ~theirs).sum()),
+        "configurations": len(ours),
+    }
+
+
+def _compare_surface(robot: Robot, Q: Floats) -> Iterator[Data]:
+    """Surface points against centres, Formula 22 as meant; and what either says of home."""
+    for name in APPROXIMATIONS:
+        detector = robot.detectors[name]
+        centres = check_centres_many(robot, Q, detector)
+        for rule, (m_steps, n_steps) in SURFACE:
+            rows = np.vstack([robot.home, Q])
+            home, *seen = check_surface_many(robot, rows, detector, rule=rule, m_steps=m_steps, n_steps=n_steps)
+            surface = np.array(seen)
+            yield {
+                "approximation": name,
+                "rule": rule,
+                "grid": [m_steps, n_steps],
+                "covering_angle_deg": float(np.degrees(covering_angle_rad(m_steps, n_steps))),
+                "home_collides": bool(home),
+                "surface_collides": int(surface.sum()),
+                "centres_collide": int(centres.sum()),
+                "only_surface_collides": int((surface & ~centres).sum()),
+                "only_centres_collide": int((centres & ~surface).sum()),
+                "configurations": len(Q),
+            }
+
+
+# ---- times
+
+
+def _time_centres(robot: Robot, detector: Detector, Q: Floats, budget: Budget) -> Data:
+    arrays, packed = pack_robot(robot), pack_detector(robot, detector)
+    rows = Q[: budget.timed_verdicts]
+    return _time_kernel(lambda qs, out: judge_centres(arrays, packed, qs, out), rows, budget.timing_rounds)
+
+
+def _time_surface(robot: Robot, detector: Detector, Q: Floats, budget: Budget) -> Data:
+    """Eq. 20 both ways: every point against every other, as the paper does, and only those that can matter."""
+    arrays, packed, angle = pack_robot(robot), pack_detector(robot, detector), covering_angle_rad()
+    directions = surface_directions()
+
+    def judge(qs: Floats, out: Bools) -> None:
+        judge_surfaces(arrays, packed, directions, angle, detector.safe_distance_m, qs, out)
+
+    check_surface(robot, Q[0], detector, m_steps=3, n_steps=2)  # compiles or loads
+    plain = [_clock(lambda q=q: check_surface(robot, q, detector)) for q in Q[: budget.plain_verdicts]]
+    quick = _time_kernel(judge, Q[: budget.timed_verdicts], budget.timing_rounds)
+    return {"approximation": detector.name, "every_point": _summarise(np.array(plain)), "quick": quick}
+
+
+def _time_kernel(judge: Callable[[Floats, Bools], None], Q: Floats, rounds: int) -> Data:
+    """Seconds a verdict: median and p95 over configurations, each of them the median of its rounds.
+
+    `mean_s` is over all configurations one after the other, where a processor cannot learn one's branches by heart.
+    """
+    copies, out = [np.tile(q, (COPIES, 1)) for q in Q], np.empty(max(COPIES, len(Q)), dtype=bool)
+    judge(Q, out)
+    each = np.array([[_clock(lambda qs=qs: judge(qs, out)) / COPIES for qs in copies] for _ in range(rounds)])
+    whole = [_clock(lambda: judge(Q, out)) / len(Q) for _ in range(rounds)]
+    return {**_summarise(np.median(each, axis=0)), "mean_s": float(np.median(whole))}
+
+
+def _summarise(seconds: Floats) -> Data:
+    return {"median_s": float(np.median(seconds)), "p95_s": float(np.percentile(seconds, 95)), "timed": len(seconds)}
+
+
+def _clock(run: Callable[[], object]) -> float:
+    begin = time.perf_counter_ns()
+    run()
+    return 1e-9 * (time.perf_counter_ns() - begin)

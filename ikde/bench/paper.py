@@ -1,0 +1,181 @@
+"""The paper's tables and figures, computed: everything that the report shows, as plain data.
+
+Each section has three parts: `exact`, the same bits in every run; `measured`, times; `settings`, how it was made.
+"""
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from typing import Any, Protocol
+
+from ikde.batch.machine import describe_machine, describe_versions
+from ikde.bench.approximation import compute_approximation
+from ikde.bench.budget import FULL, Budget
+from ikde.bench.detection import compute_detection
+from ikde.bench.kinematics import compute_kinematics
+from ikde.bench.misprints import Data, compute_misprints
+from ikde.bench.rejection import READINGS, SPHERES, compute_rejection, compute_waiting
+from ikde.bench.sensitivity import compute_sensitivity, list_variations
+from ikde.bench.situations import compute_situations
+from ikde.bench.solutions import compute_solutions
+from ikde.bench.timing import compute_timing
+from ikde.kernels.jit import compile_clock
+from ikde.model.robot import Robot
+
+SAME = 1e-9  # relative: numpy's last bits may differ between processors, ours do not
+
+
+class Progress(Protocol):
+    """Who is told how far the report is; about every second."""
+
+    def begin(self, section: str) -> None:
+        """A section begins."""
+
+    def advance(self, solves: int) -> None:
+        """So many more solves are done."""
+
+
+class _Silence:
+    def begin(self, section: str) -> None:
+        """Say nothing."""
+
+    def advance(self, solves: int) -> None:
+        """Say nothing."""
+
+
+SILENCE: Progress = _Silence()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sources:
+    """What the report is computed from."""
+
+    key_point: Robot
+    """qiao2021"""
+    classical: Robot
+    """qiao2021_dh"""
+    published: Mapping[str, Any]
+    misprints: Sequence[Mapping[str, str]]
+
+
+def count_solves(sources: Sources, budget: Budget) -> int:
+    """Solves that a report makes, which is what takes its time."""
+    targets = len(sources.published["targets_mm"])
+    cells = len(READINGS) * len(SPHERES)
+    return targets * (budget.solves + cells * budget.waits + len(list_variations()) * budget.variation_solves)
+
+
+def list_sections(sources: Sources, budget: Budget, progress: Progress) -> dict[str, Callable[[], Data]]:
+    """Every section by name, in the order of the report."""
+    robot, published = sources.key_point, sources.published
+    robots = {"key_point": robot, "classical": sources.classical}
+    solves = {"budget": budget, "advance": progress.advance}
+    return {
+        "kinematics": lambda: compute_kinematics(robots, published),
+        "approximation": lambda: compute_approximation(robot, published),
+        "timing": lambda: compute_timing(robot, published, budget),
+        "rejection": lambda: compute_rejection(robot, published, **solves),
+        "waiting": lambda: compute_waiting(robot, published, **solves),
+        "sensitivity": lambda: compute_sensitivity(robot, published, **solves),
+        "detection": lambda: compute_detection(robot, budget),
+        "solutions": lambda: compute_solutions(robot, published),
+        "situations": lambda: compute_situations(robot, published, budget),
+        "misprints": lambda: compute_misprints(robot, sources.misprints),
+    }
+
+
+def compute_paper(
+    sources: Sources,
+    budget: Budget = FULL,
+    *,
+    progress: Progress = SILENCE,
+    announce_compile: Callable[[], None] | None = None,
+) -> Data:
+    """Compute every section.
+
+    Args:
+        sources: robots and published figures.
+        budget: sample sizes; `QUICK` takes seconds instead of minutes.
+        progress: told how far it is.
+        announce_compile: called once if kernels must be compiled first.
+
+    Returns:
+        Plain data that JSON holds: `made` (when, how, on what) and `sections`.
+    """
+    started, clock = datetime.now(UTC), time.perf_counter()
+    sections, seconds = {}, {}
+    with compile_clock(announce_compile) as compiling:
+        for name, compute in list_sections(sources, budget, progress).items():
+            progress.begin(name)
+            began = time.perf_counter()
+            sections[name] = as_json(compute())
+            seconds[name] = time.perf_counter() - began
+    return {
+        "made": {
+            "whole": budget == FULL,
+            "budget": asdict(budget),
+            "started": started.isoformat(timespec="seconds"),
+            "seconds": time.perf_counter() - clock,
+            "compile_seconds": compiling.seconds,
+            "section_seconds": seconds,
+            "machine": describe_machine(),
+            "versions": describe_versions(),
+        },
+        "sections": sections,
+    }
+
+
+def check_paper(
+    results: Mapping[str, Any],
+    sources: Sources,
+    *,
+    progress: Progress = SILENCE,
+    announce_compile: Callable[[], None] | None = None,
+) -> list[str]:
+    """Compute the exact parts of a report again; returns a line for each difference.
+
+    Args:
+        results: what `compute_paper` gave.
+        sources: robots and published figures.
+        progress: told how far it is.
+        announce_compile: called once if kernels must be compiled first.
+    """
+    budget = Budget(**results["made"]["budget"])
+    again = compute_paper(sources, budget, progress=progress, announce_compile=announce_compile)
+    found: list[str] = []
+    for name, section in again["sections"].items():
+        recorded = results["sections"].get(name, {})
+        for part in ("exact", "settings"):
+            found += list_differences(recorded.get(part), section[part], f"{name}.{part}")
+    return found
+
+
+def list_differences(recorded: Any, again: Any, path: str) -> list[str]:
+    """Where two pieces of plain data differ, a line each; numbers may differ by 1e-9 of their size."""
+    if isinstance(recorded, Mapping) and isinstance(again, Mapping) and recorded.keys() == again.keys():
+        return [line for key in again for line in list_differences(recorded[key], again[key], f"{path}.{key}")]
+    if isinstance(recorded, list) and isinstance(again, list) and len(recorded) == len(again):
+        pairs = enumerate(zip(recorded, again, strict=True))
+        return [line for k, (a, b) in pairs for line in list_differences(a, b, f"{path}[{k}]")]
+    if _is_same(recorded, again):
+        return []
+    return [f"{path}: {_shorten(recorded)} on record, {_shorten(again)} now"]
+
+
+def _is_same(recorded: Any, again: Any) -> bool:
+    if isinstance(recorded, float) and isinstance(again, float):
+        return math.isclose(recorded, again, rel_tol=SAME, abs_tol=SAME)
+    return type(recorded) is type(again) and recorded == again
+
+
+def _shorten(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def as_json(data: Data) -> Data:
+    """Plain data as it comes back from a JSON file: tuples as lists, numpy's numbers as Python's."""
+    return json.loads(json.dumps(data, allow_nan=False))

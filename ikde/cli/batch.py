@@ -1,0 +1,102 @@
+"""`ikde batch`: solve everything that a run file asks for, into a folder; stop and go on at will."""
+
+import gc
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ikde.cli.exit_codes import ExitCode
+from ikde.cli.options import JsonOption
+from ikde.cli.output import announce_compile, print_json, print_result, use_color
+from ikde.cli.progress import show_progress
+
+if TYPE_CHECKING:
+    from ikde.batch.plan import Batch
+    from ikde.batch.summary import RunSummary
+
+CLUSTER = "Cluster"
+
+
+def batch(
+    spec: Annotated[
+        Path, typer.Argument(metavar="FILE", help="What to run: see configs/runs/ and `ikde schema batch`.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FOLDER", help="Where the answers go; a run that is there is gone on with.")
+    ] = None,
+    threads: Annotated[int | None, typer.Option(help="Threads (default: all cores). Same answers.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the run that is in the folder.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what would run and how long, by solving a sample; write nothing.")
+    ] = False,
+    dask: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS|local", help="Let a Dask cluster do the work.", rich_help_panel=CLUSTER),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes of --dask local (default: one a core).", rich_help_panel=CLUSTER)
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Solve a batch. Kill it at any moment: the same command goes on, and the answers are the same bits.
+
+    Exits with 1 if some solve did not reach its target.
+
+    Example: ikde batch configs/runs/first_run.yaml --out runs/first
+    """
+    from ikde.io.batch_file import load_batch
+
+    gc.enable()
+    if out is None and not dry_run:
+        raise typer.BadParameter("a run needs a folder; only --dry-run needs none", param_hint="--out")
+    plan = load_batch(spec)
+    if out is None or dry_run:
+        _preview(plan, threads, as_json)
+        return
+    summary = _run(plan, out, threads, overwrite, dask, workers)
+    _print(summary, as_json)
+    raise typer.Exit(ExitCode.NOT_REACHED if summary.unreached else ExitCode.OK)
+
+
+def _preview(plan: "Batch", threads: int | None, as_json: bool) -> None:
+    from ikde.batch.preview import preview_batch
+    from ikde.report.batch import format_preview, preview_json
+
+    preview = preview_batch(plan, threads=threads, announce_compile=announce_compile)
+    if as_json:
+        print_json(preview_json(preview))
+    else:
+        print_result(format_preview(preview, color=use_color()))
+
+
+def _run(
+    plan: "Batch", out: Path, threads: int | None, overwrite: bool, dask: str | None, workers: int | None
+) -> "RunSummary":
+    """Run with a progress bar; Ctrl-C says how to go on."""
+    from ikde.batch.parts import GO_ON
+    from ikde.batch.run import run_batch
+
+    try:
+        with show_progress(f"{plan.name} → {out}") as tell:
+            return run_batch(
+                plan,
+                out,
+                threads=threads,
+                overwrite=overwrite,
+                dask=dask,
+                workers=workers,
+                progress=tell,
+                announce_compile=announce_compile,
+            )
+    except KeyboardInterrupt:
+        raise typer.Abort(f"ikde: interrupted; {GO_ON}") from None
+
+
+def _print(summary: "RunSummary", as_json: bool) -> None:
+    from ikde.report.batch import format_run, run_json
+
+    if as_json:
+        print_json(run_json(summary))
+    else:
+        print_result(format_run(summary, color=use_color()))

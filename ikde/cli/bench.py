@@ -1,0 +1,149 @@
+"""`ikde bench paper`: the paper's tables and figures, published beside ours, as one page."""
+
+import gc
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ikde.cli.exit_codes import ExitCode
+from ikde.cli.options import JsonOption
+from ikde.cli.output import announce_compile, print_json, print_note, print_result
+
+if TYPE_CHECKING:
+    from ikde.bench.budget import Budget
+    from ikde.bench.paper import Progress, Sources
+
+bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
+
+
+@bench.callback()
+def default() -> None:
+    """Benchmarks that compare with published results."""
+
+
+@bench.command("paper")
+def paper(
+    out: Annotated[
+        Path, typer.Option(metavar="FOLDER", help="Where report.html, report.md and results.json go.")
+    ] = Path("report"),
+    quick: Annotated[bool, typer.Option("--quick", help="Small samples: seconds instead of minutes.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Compute what is exact again, compare it with results.json; write nothing.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Compute the tables and figures of Qiao et al. 2021 and show them beside the print.
+
+    Exits with 1 if --check finds a difference.
+
+    Example: ikde bench paper --out report/
+    """
+    from ikde.io.report_folder import prepare_folder, read_results
+
+    gc.enable()
+    if check and quick:
+        raise typer.BadParameter("results.json says how large its samples are; leave --quick out", param_hint="--check")
+    if check:
+        raise typer.Exit(_check(read_results(out), out, as_json))
+    prepare_folder(out)
+    _make(out, quick, as_json)
+
+
+def _make(out: Path, quick: bool, as_json: bool) -> None:
+    from ikde.bench.budget import FULL, QUICK
+    from ikde.bench.paper import compute_paper
+    from ikde.io.report_folder import RESULTS, format_results, write_report
+
+    sources, budget = _load_sources(), QUICK if quick else FULL
+    with _show_progress(sources, budget) as progress:
+        results = compute_paper(sources, budget, progress=progress, announce_compile=announce_compile)
+        progress.begin("page")
+        write_report(out, {RESULTS: format_results(results), **_render(results, sources)})
+    if as_json:
+        print_json(results)
+    else:
+        print_result(f"{out / 'report.html'}  (report.md and {RESULTS} beside it)")
+
+
+def _render(results: Mapping[str, Any], sources: "Sources") -> dict[str, str]:
+    from ikde.report.html import render_html
+    from ikde.report.markdown import render_markdown
+    from ikde.report.paper.page import make_paper_page
+
+    page = make_paper_page(results, {"key_point": sources.key_point, "classical": sources.classical})
+    return {"report.html": render_html(page), "report.md": render_markdown(page)}
+
+
+def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
+    from ikde.bench.budget import Budget
+    from ikde.bench.paper import check_paper
+    from ikde.io.report_folder import RESULTS
+
+    sources = _load_sources()
+    with _show_progress(sources, Budget(**recorded["made"]["budget"])) as progress:
+        differences = check_paper(recorded, sources, progress=progress, announce_compile=announce_compile)
+    if as_json:
+        print_json({"agrees": not differences, "differences": differences})
+    elif differences:
+        print_result("\n".join([f"{len(differences)} figures differ from {out / RESULTS}:", *differences]))
+    else:
+        print_result(f"{out / RESULTS}: every exact figure comes out the same")
+    return ExitCode.NOT_REACHED if differences else ExitCode.OK
+
+
+def _load_sources() -> "Sources":
+    from ikde.bench.paper import Sources
+    from ikde.io.published import load_misprints, load_published
+    from ikde.io.robots import load_robot
+
+    return Sources(
+        key_point=load_robot("qiao2021"),
+        classical=load_robot("qiao2021_dh"),
+        published=load_published(),
+        misprints=load_misprints(),
+    )
+
+
+@contextmanager
+def _show_progress(sources: "Sources", budget: "Budget") -> Iterator["Progress"]:
+    """A bar of solves on stderr with the section's name; for a log the names alone."""
+    if not sys.stderr.isatty():
+        yield Lines()
+        return
+    from rich.console import Console
+    from rich.progress import Progress as Bars
+
+    from ikde.bench.paper import count_solves
+
+    with Bars(console=Console(stderr=True)) as bars:
+        yield Bar(bars, count_solves(sources, budget))
+
+
+class Bar:
+    """Progress as a bar."""
+
+    def __init__(self, bars: Any, solves: int) -> None:
+        self._bars, self._task = bars, bars.add_task("", total=solves)
+
+    def begin(self, section: str) -> None:
+        """Name what is being computed."""
+        self._bars.update(self._task, description=section)
+
+    def advance(self, solves: int) -> None:
+        """Move the bar."""
+        self._bars.advance(self._task, solves)
+
+
+class Lines:
+    """Progress as lines."""
+
+    def begin(self, section: str) -> None:
+        """Name what is being computed."""
+        print_note(f"computing: {section}")
+
+    def advance(self, solves: int) -> None:
+        """A log needs no more."""

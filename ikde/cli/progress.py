@@ -1,0 +1,80 @@
+"""How far a batch is, on stderr: a bar for who is looking, a line now and then for a log."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from typing import TYPE_CHECKING
+
+from ikde.cli.output import print_note
+
+if TYPE_CHECKING:
+    from ikde.batch.run import Progress
+
+    Tell = Callable[[Progress], None]
+
+LINE_SECONDS = 60.0
+
+
+def show_progress(title: str) -> AbstractContextManager["Tell"]:
+    """What `run_batch` tells its progress to."""
+    return _show_bar(title) if sys.stderr.isatty() else _show_lines(title)
+
+
+@contextmanager
+def _show_bar(title: str) -> Iterator["Tell"]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bars
+
+    pace = Pace()
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        MofNCompleteColumn(),
+        TextColumn("solves, {task.fields[parts]} parts, {task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Bars(*columns, console=Console(stderr=True), speed_estimate_period=600.0) as bars:
+        bar = bars.add_task(title, parts="", rate="")
+
+        def tell(now: "Progress") -> None:
+            parts = f"{now.parts_done} of {now.parts}"
+            bars.update(bar, completed=now.solves_done, total=now.solves, parts=parts, rate=pace.format(now))
+
+        yield tell
+
+
+@contextmanager
+def _show_lines(title: str) -> Iterator["Tell"]:
+    pace, said = Pace(), None
+
+    def tell(now: "Progress") -> None:
+        nonlocal said
+        rate, clock = pace.format(now), time.monotonic()
+        if said is None:
+            print_note(f"{title}: {now.solves} solves, {now.parts_found} of {now.parts} parts done before")
+        elif clock - said >= LINE_SECONDS:
+            print_note(f"{title}: {now.solves_done} of {now.solves} solves, {rate}")
+        else:
+            return
+        said = clock
+
+    yield tell
+
+
+class Pace:
+    """Solves a second since it was first asked."""
+
+    def __init__(self) -> None:
+        self._start: tuple[float, int] | None = None
+
+    def format(self, now: "Progress") -> str:
+        """`120 solves/s`; nothing before there is anything to tell."""
+        self._start = self._start or (time.monotonic(), now.solves_done)
+        started, before = self._start
+        if now.solves_done == before:
+            return ""
+        pace = (now.solves_done - before) / (time.monotonic() - started)
+        return f"{pace:,.0f} solves/s" if pace >= 10.0 else f"{pace:.2g} solves/s"

@@ -1,0 +1,41 @@
+"""`ikde report`: a run of `ikde batch` as a page."""
+
+import gc
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ikde.cli.options import JsonOption
+from ikde.cli.output import print_json, print_result
+
+
+def report(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of `ikde batch`, finished or not.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Where report.html and report.md go (default: RUN/report)."),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Show a batch as a page for the browser, and as Markdown.
+
+    Example: ikde report runs/first
+    """
+    from ikde.io.report_folder import prepare_folder, write_report
+    from ikde.report.batch_page.answers import gather_answers
+    from ikde.report.batch_page.page import make_batch_page
+    from ikde.report.html import render_html
+    from ikde.report.markdown import render_markdown
+
+    gc.enable()
+    answers = gather_answers(run)
+    folder = run / "report" if out is None else out
+    prepare_folder(folder)
+    page = make_batch_page(answers)
+    html, markdown = folder / "report.html", folder / "report.md"
+    write_report(folder, {html.name: render_html(page), markdown.name: render_markdown(page)})
+    if as_json:
+        print_json({"html": str(html), "markdown": str(markdown), "finished": answers.finished})
+    else:
+        print_result(f"{html}  ({markdown.name} beside it)")

@@ -1,0 +1,55 @@
+"""Where a report goes: a page as HTML and as Markdown, and the data that it shows; whole files or none."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ikde.batch.atomic import write_atomically
+from ikde.bench.budget import Budget
+from ikde.errors import FileError
+from ikde.io.yaml_file import read_text
+
+RESULTS = "results.json"
+
+
+def prepare_folder(folder: Path) -> None:
+    """Make the folder if need be; raises `FileError` now rather than after minutes of work."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".ikde"
+        probe.touch()
+        probe.unlink()
+    except FileExistsError:
+        raise FileError(folder, "this is a file; expected a folder") from None
+    except OSError as error:
+        raise FileError(folder, f"cannot be written: {error.strerror or error}") from None
+
+
+def write_report(folder: Path, files: Mapping[str, str]) -> None:
+    """Write files by name, replacing those of an earlier report; nothing else in the folder is touched."""
+    for name, text in files.items():
+        try:
+            write_atomically(folder / name, text.encode())
+        except OSError as error:
+            raise FileError(folder / name, f"cannot be written: {error.strerror or error}") from None
+
+
+def format_results(results: Mapping[str, Any]) -> str:
+    """`results.json`'s text."""
+    return json.dumps(results, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def read_results(folder: Path) -> dict[str, Any]:
+    """What an earlier `ikde bench paper` recorded; raises `FileError` if the folder holds no such record."""
+    path = folder / RESULTS
+    try:
+        results = json.loads(read_text(path))
+    except json.JSONDecodeError as error:
+        raise FileError(path, f"not JSON: {error.msg}", line=error.lineno) from None
+    try:
+        Budget(**results["made"]["budget"])
+        results["sections"].items()
+    except (AttributeError, KeyError, TypeError):
+        raise FileError(path, "not a record of this version's `ikde bench paper`") from None
+    return results

@@ -1,0 +1,174 @@
+"""Charts in the house style: plain numbers in, a matplotlib `Figure` out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikde.plot.images import INK
+from ikde.plot.style import COLORS, DASHES, HATCHES, MARKERS, Axis, drawing, pick
+
+MOST_POINTS = 500  # of a curve: more cannot be seen
+SHARE = "%"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Line:
+    """A curve through (x, y)."""
+
+    label: str
+    x: ArrayLike
+    y: ArrayLike
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event:
+    """Something that happens at `x`: a vertical line in the colour of the curve that it belongs to."""
+
+    label: str
+    x: float
+    line: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Bars:
+    """One bar in every group; intervals and published values are optional, nan where there is none."""
+
+    label: str
+    values: Sequence[float]
+    lower: Sequence[float] = ()
+    upper: Sequence[float] = ()
+    published: Sequence[float] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """A value with its interval."""
+
+    label: str
+    value: float
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sample:
+    """Measured values; of `total` cases, where some have none (default: every case has one)."""
+
+    label: str
+    values: ArrayLike
+    total: int | None = None
+
+
+def plot_lines(
+    lines: Sequence[Line], *, x: Axis, y: Axis, events: Sequence[Event] = (), level: tuple[float, str] | None = None
+) -> Any:
+    """Curves over `x`, with events as marked vertical lines and one horizontal `level` (value, label)."""
+    with drawing(x, y) as (figure, axes):
+        colors = {line.label: pick(COLORS, k) for k, line in enumerate(lines)}
+        for k, line in enumerate(lines):
+            axes.plot(line.x, line.y, label=line.label, color=pick(COLORS, k), linestyle=pick(DASHES, k))
+        if level is not None:
+            axes.axhline(level[0], color=INK, linewidth=1.0, label=level[1])
+        for k, event in enumerate(events):
+            _draw_event(axes, event, colors.get(event.line, INK), pick(MARKERS, k))
+    return figure
+
+
+def _draw_event(axes: Any, event: Event, color: str, marker: str) -> None:
+    """A thin line with a mark on its top, by which the legend tells it from the others."""
+    axes.axvline(event.x, color=color, linewidth=1.1)
+    head = {"marker": marker, "markersize": 6.5, "clip_on": False, "zorder": 5}
+    axes.plot([event.x], [1.0], transform=axes.get_xaxis_transform(), color=color, label=event.label, ls="none", **head)
+
+
+def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, y: Axis) -> Any:
+    """Groups of bars with intervals as whiskers and published values as diamonds."""
+    width = 0.8 / len(bars)
+    with drawing(Axis(label=""), y) as (figure, axes):
+        for k, series in enumerate(bars):
+            places = np.arange(len(groups)) + (k - (len(bars) - 1) / 2) * width
+            look = {"color": pick(COLORS, k), "hatch": pick(HATCHES, k), "edgecolor": "#ffffff"}
+            axes.bar(places, series.values, 0.92 * width, label=series.label, linewidth=0, **look)
+            if len(series.lower):
+                _draw_whiskers(axes, places, series)
+            if len(series.published):
+                label = None if any(len(earlier.published) for earlier in bars[:k]) else "published"
+                diamond = {"marker": "D", "s": 44, "color": INK, "edgecolor": "#ffffff", "zorder": 4}
+                axes.scatter(places, series.published, label=label, **diamond)
+        axes.set_xticks(range(len(groups)), groups)
+        axes.tick_params(axis="x", length=0)
+    return figure
+
+
+def _draw_whiskers(axes: Any, places: Any, series: Bars) -> None:
+    values = np.asarray(series.values)
+    spans = [values - series.lower, np.asarray(series.upper) - values]
+    axes.errorbar(places, values, spans, fmt="none", ecolor=INK, elinewidth=1.2, capsize=3.5, zorder=3)
+
+
+def plot_forest(estimates: Sequence[Estimate], *, x: Axis, published: float | None = None) -> Any:
+    """One line an estimate, first on top, with its interval; filled where the interval holds the published value."""
+    count = len(estimates)
+    with drawing(x, Axis(label=""), height_in=1.2 + 0.26 * count, grid="x") as (figure, axes):
+        if published is not None:
+            axes.axvline(published, color=pick(COLORS, 1), linestyle=pick(DASHES, 1), linewidth=1.4, label="published")
+        rows = np.arange(count)
+        holds = np.array([published is None or e.lower <= published <= e.upper for e in estimates], dtype=bool)
+        _draw_estimates(axes, rows, estimates, holds, None if published is None else "interval holds it", "full")
+        _draw_estimates(axes, rows, estimates, ~holds, "interval misses it", "none")
+        axes.set_yticks(rows, [estimate.label for estimate in estimates])
+        axes.set_ylim(count - 0.4, -0.6)
+        axes.tick_params(axis="y", length=0)
+        axes.spines["left"].set_visible(False)
+    return figure
+
+
+def _draw_estimates(
+    axes: Any, rows: Any, estimates: Sequence[Estimate], shown: Any, label: str | None, fill: str
+) -> None:
+    if not shown.any():
+        return
+    low, value, high = np.array([[e.lower, e.value, e.upper] for e in estimates])[shown].T
+    look = {"fmt": "o", "markersize": 6.5, "fillstyle": fill, "color": pick(COLORS, 0), "elinewidth": 1.6}
+    axes.errorbar(value, rows[shown], xerr=[value - low, high - value], capsize=3, label=label, **look)
+
+
+def plot_cdf(samples: Sequence[Sample], *, x: Axis, y: str = "cases") -> Any:
+    """The share of all cases whose value is at most x; a curve that ends below 100 % has cases without a value."""
+    with drawing(x, Axis(label=f"{y} done", unit=SHARE, limits=(0, 101))) as (figure, axes):
+        for k, sample in enumerate(samples):
+            values = _finite(sample)
+            total = len(values) if sample.total is None else sample.total
+            shown = np.unique(np.linspace(0, len(values) - 1, MOST_POINTS).astype(int)) if len(values) else []
+            shares = 100.0 * (np.asarray(shown) + 1) / max(total, 1)
+            look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "drawstyle": "steps-post"}
+            axes.plot(np.sort(values)[shown], shares, label=sample.label, **look)
+    return figure
+
+
+def plot_histogram(samples: Sequence[Sample], *, x: Axis, bins: int = 60) -> Any:
+    """Outlines of the samples' histograms over common bins, in percent of each sample."""
+    values = [_finite(sample) for sample in samples]
+    edges = _edges(values, bins, log=x.log)
+    with drawing(x, Axis(label="share", unit=SHARE, limits=(0, None))) as (figure, axes):
+        for k, (sample, numbers) in enumerate(zip(samples, values, strict=True)):
+            counts = np.histogram(np.clip(numbers, edges[0], edges[-1]), edges)[0]
+            look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "linewidth": 1.6}
+            axes.stairs(100.0 * counts / max(len(numbers), 1), edges, label=sample.label, **look)
+    return figure
+
+
+def _finite(sample: Sample) -> Any:
+    values = np.asarray(sample.values, dtype=float)
+    return values[np.isfinite(values)]
+
+
+def _edges(values: Sequence[Any], bins: int, *, log: bool) -> Any:
+    """Common bin edges; on a logarithmic axis zeros fall into the first bin."""
+    joined = np.concatenate([numbers[numbers > 0] if log else numbers for numbers in values])
+    if not len(joined):
+        return np.array([1.0, 10.0]) if log else np.array([0.0, 1.0])
+    return 10 ** np.histogram_bin_edges(np.log10(joined), bins) if log else np.histogram_bin_edges(joined, bins)

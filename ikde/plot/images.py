@@ -1,0 +1,46 @@
+"""Figures as pictures: SVG that takes the colours and the type of the page around it, or PNG."""
+
+import re
+from io import BytesIO
+from typing import Any
+
+INK = "#010203"  # drawn with this, shown in the page's own text colour
+_SETTINGS: dict[Any, Any] = {"svg.fonttype": "none", "svg.hashsalt": "ikde"}
+_HEAD = re.compile(r"<svg .*?>.*?<style type=\"text/css\">\*\{(?P<style>.*?)\}</style>\s*</defs>", re.DOTALL)
+_SIZE = re.compile(r'width="(.*?)pt" height="(.*?)pt"')
+_FONT = re.compile(r"(font-family: |font: [^;\"']*)'[^;\"]*")
+_ID = re.compile(r' id="([^"]*)"')
+_REFERENCE = re.compile(r'(?:href="#|url\(#)([^")]+)')
+
+
+def to_svg(figure: Any) -> str:
+    """A figure as SVG: text is text, no background, `INK` becomes `currentColor`; the same figure, the same text."""
+    import matplotlib
+
+    buffer = BytesIO()
+    with matplotlib.rc_context(_SETTINGS):
+        figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+    svg = buffer.getvalue().decode("utf-8")
+    svg = _HEAD.sub(_short_head, svg[svg.index("<svg ") :], count=1)
+    svg = svg.replace("xlink:href", "href").replace(INK, "currentColor")
+    return _drop_unused_ids(_FONT.sub(r"\1inherit", svg))
+
+
+def to_png(figure: Any, *, dpi: float = 160) -> bytes:
+    """A figure as PNG on white."""
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def _short_head(match: re.Match[str]) -> str:
+    """The opening tag without metadata; matplotlib's style for every element would reach the whole page."""
+    size = _SIZE.search(match[0])
+    box = f"0 0 {size[1]} {size[2]}" if size else ""
+    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" style="{match["style"]}">'
+
+
+def _drop_unused_ids(svg: str) -> str:
+    """Matplotlib names every group, the same in all figures; only what is referred to needs its name."""
+    used = set(_REFERENCE.findall(svg))
+    return _ID.sub(lambda match: match[0] if match[1] in used else "", svg)

@@ -1,0 +1,173 @@
+"""A batch for the terminal: what would run, and what came of it."""
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from itertools import pairwise
+from typing import Any
+
+from ikde.batch.preview import Preview
+from ikde.batch.statistics import Rate, Spread
+from ikde.batch.summary import ArmSummary, RunSummary, Unreached
+from ikde.report.render import make_table, plain, render
+
+WIDTH = 160
+TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
+BYTES = ("B", "kB", "MB", "GB", "TB")
+
+
+def preview_json(preview: Preview) -> dict[str, Any]:
+    """What would run, as plain data."""
+    return asdict(preview) | {"columns": list(preview.columns), "seconds": preview.seconds}
+
+
+def format_preview(preview: Preview, *, color: bool = False) -> str:
+    """What would run, for the terminal."""
+    head = (
+        f"[bold]{plain(preview.name)}[/]: robot {plain(preview.robot)}, {_count(preview.targets, 'target')}, "
+        f"{_count(preview.repeats, 'repeat')}, seed {preview.seed}"
+    )
+    table = make_table("arm", "method", "detector", ">solves", ">ms a solve", ">about", ">of the sample reached")
+    for arm in preview.arms:
+        solves = preview.solves // len(preview.arms)
+        table.add_row(
+            *map(plain, (arm.name, arm.method, arm.detector)),
+            f"{solves:,}",
+            f"{arm.seconds / solves * 1e3:.3g}",
+            format_seconds(arm.seconds),
+            f"{arm.sample_reached} / {arm.sample}",
+        )
+    lines = [
+        f"in all     {preview.solves:,} solves in {_count(preview.parts, 'part')}, about "
+        f"{format_seconds(preview.seconds)} on {_count(preview.threads, 'thread')}",
+        f"on disk    about {format_bytes(preview.bytes)}",
+        f"columns    {', '.join(preview.columns)}",
+        "nothing was written",
+    ]
+    return render(head, table, *map(plain, lines), color=color, width=WIDTH)
+
+
+def run_json(summary: RunSummary) -> dict[str, Any]:
+    """What came of a run, as plain data."""
+    return {
+        "name": summary.name,
+        "folder": str(summary.folder),
+        "robot": summary.robot,
+        "seed": summary.seed,
+        "hash": summary.hash,
+        "parts": summary.parts,
+        "parts_done": summary.parts_done,
+        "solves": sum(arm.reached.total for arm in summary.arms),
+        "unreached": summary.unreached,
+        "arms": [_arm_json(arm) for arm in summary.arms],
+        "listed": [asdict(row) for row in summary.listed],
+    }
+
+
+def _arm_json(arm: ArmSummary) -> dict[str, Any]:
+    return {
+        "name": arm.name,
+        "method": arm.method,
+        "detector": arm.detector,
+        "reached": _rate_json(arm.reached),
+        "stop_reasons": dict(arm.stop_reasons),
+        "attempts": asdict(arm.attempts) if arm.attempts else None,
+        "milliseconds": asdict(arm.milliseconds) if arm.milliseconds else None,
+        "collisions": {grader: _rate_json(rate) for grader, rate in arm.collisions.items()},
+    }
+
+
+def _rate_json(rate: Rate) -> dict[str, Any]:
+    share = rate.share if rate.total else None
+    return {"count": rate.count, "total": rate.total, "share": share, "interval_95": list(rate.interval)}
+
+
+def format_run(summary: RunSummary, *, color: bool = False) -> str:
+    """What came of a run, for the terminal: the verdict, a line an arm, who was not reached and why, what is next."""
+    solves = sum(arm.reached.total for arm in summary.arms)
+    if summary.unreached:
+        verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/]"
+    else:
+        verdict = f"[bold green]all reached[/]: {_count(solves, 'solve')}"
+    tables = [_arm_table(summary.arms)]
+    if any(arm.collisions for arm in summary.arms):
+        tables.append(_collision_table(summary.arms))
+    path = plain(str(summary.folder))
+    tail = [f"answers    {path}", f"next       ikde report {path}"]
+    return render(verdict, *tables, *_list_unreached(summary), *tail, color=color, width=WIDTH)
+
+
+def _arm_table(arms: Iterable[ArmSummary]) -> Any:
+    spreads = (">attempts median / p95 / max", ">ms median / p95 / max")
+    table = make_table("arm", "method", "detector", ">reached", ">rate (95 %)", *spreads)
+    for arm in arms:
+        table.add_row(
+            *map(plain, (arm.name, arm.method, arm.detector)),
+            f"{arm.reached.count:,} / {arm.reached.total:,}",
+            format_rate(arm.reached),
+            _format_spread(arm.attempts, "{:.0f}"),
+            _format_spread(arm.milliseconds, "{:.3g}"),
+        )
+    return table
+
+
+def _collision_table(arms: Iterable[ArmSummary]) -> Any:
+    table = make_table("arm", "graded by", ">in collision", ">rate (95 %)", title="reached solutions, graded again")
+    for arm in arms:
+        for grader, rate in arm.collisions.items():
+            table.add_row(plain(arm.name), plain(grader), f"{rate.count:,} / {rate.total:,}", format_rate(rate))
+    return table
+
+
+def _list_unreached(summary: RunSummary) -> list[str]:
+    if not summary.unreached:
+        return []
+    reasons = [
+        f"{count:,} {reason.replace('_', ' ')} (arm {plain(arm.name)})"
+        for arm in summary.arms
+        for reason, count in arm.stop_reasons.items()
+        if reason != "reached"
+    ]
+    more = summary.unreached - len(summary.listed)
+    tail = [f"  and {more:,} more"] if more else []
+    head = f"[bold]not reached[/]: {', '.join(reasons)}"
+    return [head, *(f"  {plain(_format_unreached(row))}" for row in summary.listed), *tail, ""]
+
+
+def _format_unreached(row: Unreached) -> str:
+    number = f"target {row.target}"
+    name = f" {row.name}" if row.name not in (None, number) else ""
+    return f"{row.arm}, {number}{name}, repeat {row.repeat}: {row.reason or row.stop_reason}"
+
+
+def format_rate(rate: Rate) -> str:
+    """`99.0 % (98.2 to 99.5)`, or nothing of nothing."""
+    if not rate.total:
+        return ""
+    low, high = rate.interval
+    return f"{100 * rate.share:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
+
+
+def _format_spread(spread: Spread | None, number: str) -> str:
+    return " / ".join(number.format(value) for value in (spread.median, spread.p95, spread.max)) if spread else ""
+
+
+def format_seconds(seconds: float) -> str:
+    """`2.5 s`, `3 min 20 s`, `5 h 12 min`, `4 d 7 h`."""
+    for (large, unit), (small, rest) in pairwise(TIMES):
+        if seconds >= large:
+            whole, left = divmod(round(seconds / small), large // small)
+            return f"{whole} {unit} {left} {rest}"
+    return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
+
+
+def format_bytes(count: float) -> str:
+    """`1.2 GB`."""
+    for unit in BYTES[:-1]:
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count /= 1000
+    return f"{count:.3g} {BYTES[-1]}"
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number:,} {thing}{'s' if number != 1 else ''}"

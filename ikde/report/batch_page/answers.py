@@ -1,0 +1,183 @@
+"""What a page shows of a run, gathered part by part: numbers as arrays, words as counts."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from ikde.batch.manifest import ArmFacts, Manifest, read_manifest
+from ikde.batch.parts import SOLUTIONS, TIMING, Part
+from ikde.batch.read import list_finished, read_part
+from ikde.batch.statistics import Rate
+
+MOST_MISSED = 50  # targets that are listed with a reason
+MOST_NAMED = 10_000  # targets whose names are kept
+ALWAYS = ("target", "reached")
+NUMBERS = (*ALWAYS, "attempts", "position_error_m", "orientation_error_rad", "clearance_m")
+WORDS = ("stop_reason", "closest_pair")
+MISSED = ("target_x_m", "target_y_m", "target_z_m", "reason", "hint")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ArmAnswers:
+    """One arm's answers over the finished parts."""
+
+    facts: ArmFacts
+    numbers: Mapping[str, np.ndarray]
+    """By column, [solves] each, NaN where there is none; with `solve_seconds`. Columns that the run does not keep are
+    missing."""
+    stop_reasons: Mapping[str, int]
+    closest_pairs: Mapping[str, int]
+    """Of the reached solutions."""
+    missed: Mapping[int, Mapping[str, Any]]
+    """The first row that was not reached, by target, of the first `MOST_MISSED` of them."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self.facts.name
+
+    @property
+    def reached(self) -> np.ndarray:
+        """[solves] True where the target was reached."""
+        return self.numbers["reached"]
+
+    @property
+    def solves(self) -> int:
+        """How many there are so far."""
+        return len(self.reached)
+
+    @property
+    def rate(self) -> Rate:
+        """How many were reached."""
+        return Rate(int(self.reached.sum()), self.solves)
+
+    def of_reached(self, column: str) -> np.ndarray:
+        """A column where the target was reached, without its NaN; empty if the run does not keep it."""
+        if column not in self.numbers:
+            return np.empty(0)
+        values = self.numbers[column][self.reached]
+        return values[np.isfinite(values)]
+
+    def collides(self, grader: str) -> np.ndarray:
+        """[reached solutions] True where a grader sees a collision."""
+        return self.numbers[f"{grader}_collides"][self.reached]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunAnswers:
+    """A run's answers so far."""
+
+    folder: Path
+    manifest: Manifest
+    parts_done: int
+    arms: tuple[ArmAnswers, ...]
+    names: Mapping[int, str]
+    """By target; empty if targets have no names, or there are very many."""
+
+    @property
+    def finished(self) -> bool:
+        """True if no part is missing."""
+        return self.parts_done == self.manifest.parts
+
+    @property
+    def rate(self) -> Rate:
+        """How many solves of all arms reached their target."""
+        return Rate(sum(arm.rate.count for arm in self.arms), sum(arm.solves for arm in self.arms))
+
+
+def gather_answers(folder: str | PathLike[str]) -> RunAnswers:
+    """Read a run, finished or not: of each part only the columns that a page shows.
+
+    Raises:
+        FileError: for a folder that is no run, or holds a part that is damaged.
+    """
+    folder = Path(folder)
+    manifest = read_manifest(folder)
+    piles = {arm.name: _Pile() for arm in manifest.arms}
+    done = list(list_finished(folder, manifest))
+    names: dict[int, str] = {}
+    for part in done:
+        solutions = piles[part.arm].add(folder, part, manifest.graders)
+        if manifest.targets <= MOST_NAMED and "target_name" in solutions.column_names:
+            names.update(_find_names(solutions))
+    arms = tuple(piles[arm.name].answers(arm, manifest.graders) for arm in manifest.arms)
+    return RunAnswers(folder=folder, manifest=manifest, parts_done=len(done), arms=arms, names=names)
+
+
+@dataclass(slots=True)
+class _Pile:
+    """One arm's answers, so far."""
+
+    numbers: dict[str, list[np.ndarray]] = field(default_factory=dict)
+    words: dict[str, Counter[str]] = field(default_factory=lambda: {name: Counter() for name in WORDS})
+    missed: dict[int, dict[str, Any]] = field(default_factory=dict)
+
+    def add(self, folder: Path, part: Part, graders: tuple[str, ...]) -> pa.Table:
+        """Put one part on the pile; returns what was read of its solutions."""
+        listing = MISSED if len(self.missed) < MOST_MISSED else ()
+        wanted = [*_numbers(graders), *WORDS, "target_name", *listing]
+        solutions = read_part(folder, part, SOLUTIONS, wanted)
+        timing = read_part(folder, part, TIMING, ["solve_seconds"])
+        for table, names in ((solutions, _numbers(graders)), (timing, ["solve_seconds"])):
+            for name in names:
+                if name in table.column_names:
+                    self.numbers.setdefault(name, []).append(table[name].to_numpy())
+        self._count_words(solutions)
+        if listing:
+            self._list_missed(solutions)
+        return solutions
+
+    def _count_words(self, solutions: pa.Table) -> None:
+        _count(self.words["stop_reason"], solutions["stop_reason"])
+        if "closest_pair" in solutions.column_names:
+            _count(self.words["closest_pair"], solutions["closest_pair"].filter(solutions["reached"]))
+
+    def _list_missed(self, solutions: pa.Table) -> None:
+        """Keep the first row of each target that was not reached."""
+        numbers = np.flatnonzero(~solutions["reached"].to_numpy())
+        targets, first = np.unique(solutions["target"].to_numpy()[numbers], return_index=True)
+        for target, index in zip(targets.tolist(), first, strict=True):
+            if target not in self.missed and len(self.missed) < MOST_MISSED:
+                self.missed[target] = solutions.slice(numbers[index], 1).to_pylist()[0]
+
+    def answers(self, facts: ArmFacts, graders: tuple[str, ...]) -> ArmAnswers:
+        """The pile as arrays."""
+        numbers = {name: np.concatenate(pieces) for name, pieces in self.numbers.items()}
+        if not numbers:
+            numbers = dict(_nothing(graders))
+        return ArmAnswers(
+            facts=facts,
+            numbers=numbers,
+            stop_reasons=dict(self.words["stop_reason"].most_common()),
+            closest_pairs=dict(self.words["closest_pair"].most_common()),
+            missed=self.missed,
+        )
+
+
+def _numbers(graders: tuple[str, ...]) -> list[str]:
+    return [*NUMBERS, *(f"{grader}_collides" for grader in graders)]
+
+
+def _nothing(graders: tuple[str, ...]) -> Iterator[tuple[str, np.ndarray]]:
+    """The columns of an arm of which no part is finished."""
+    yield "target", np.empty(0, dtype=np.int64)
+    yield "solve_seconds", np.empty(0)
+    for name in ("reached", *(f"{grader}_collides" for grader in graders)):
+        yield name, np.empty(0, dtype=bool)
+
+
+def _find_names(solutions: pa.Table) -> dict[int, str]:
+    targets, first = np.unique(solutions["target"].to_numpy(), return_index=True)
+    return dict(zip(targets.tolist(), solutions["target_name"].take(pa.array(first)).to_pylist(), strict=True))
+
+
+def _count(counts: Counter[str], words: pa.ChunkedArray) -> None:
+    for entry in words.value_counts().to_pylist():
+        if entry["values"] is not None:
+            counts[entry["values"]] += entry["counts"]

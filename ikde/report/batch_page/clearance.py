@@ -1,0 +1,113 @@
+"""How good the answers are: clearance, errors, and what comes closest to what."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikde.plot.charts import Sample, plot_histogram
+from ikde.plot.images import to_svg
+from ikde.plot.style import Axis
+from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
+from ikde.report.batch_page.cost import choose_curves, is_wide
+from ikde.report.numbers import fixed, significant
+from ikde.report.page import Column, Figure, Gallery, Section, Table
+
+MOST_PAIRS = 12
+FEWEST, MOST_BINS = 12, 60
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A column and how it is shown."""
+
+    column: str
+    title: str
+    unit: str
+    factor: float
+
+
+CLEARANCE = Measure("clearance_m", "clearance", "mm", 1e3)
+ERRORS = (
+    Measure("position_error_m", "position error", "mm", 1e3),
+    Measure("orientation_error_rad", "orientation error", "deg", float(np.degrees(1.0))),
+)
+
+
+def make_clearance(run: RunAnswers) -> Section | None:
+    """Clearance and errors of the reached solutions; None if the run keeps neither."""
+    measures = [measure for measure in (CLEARANCE, *ERRORS) if _is_there(run.arms, measure)]
+    if not measures:
+        return None
+    pairs = [_make_pairs(run)] if any(arm.closest_pairs for arm in run.arms) else []
+    figures = tuple(_draw(run.arms, measure) for measure in measures)
+    return Section("Clearance and errors", (_make_table(run, measures), Gallery(figures), *pairs), anchor="clearance")
+
+
+def _is_there(arms: Sequence[ArmAnswers], measure: Measure) -> bool:
+    """True if some solution has more than nothing of it: a free orientation has no error."""
+    return any(arm.of_reached(measure.column).any() for arm in arms)
+
+
+def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
+    heads = {measure: ("least", "median") if measure is CLEARANCE else ("median", "at most") for measure in measures}
+    return Table(
+        columns=(
+            Column("arm", align="left"),
+            Column("detector", align="left"),
+            *(Column(head, measure.unit, group=measure.title) for measure in measures for head in heads[measure]),
+        ),
+        rows=tuple(
+            (arm.name, arm.facts.detector, *(text for measure in measures for text in _format(arm, measure)))
+            for arm in run.arms
+        ),
+        caption="The solutions that reached their target",
+        note="Clearance: the smallest distance between two spheres that the arm's detector compares.",
+    )
+
+
+def _format(arm: ArmAnswers, measure: Measure) -> tuple[str, str]:
+    values = measure.factor * arm.of_reached(measure.column)
+    if not values.size:
+        return "–", "–"
+    middle = significant(float(np.median(values)))
+    if measure is CLEARANCE:
+        return significant(float(values.min())), middle
+    return middle, significant(float(values.max()))
+
+
+def _draw(arms: Sequence[ArmAnswers], measure: Measure) -> Figure:
+    shown, few = choose_curves([arm for arm in arms if arm.of_reached(measure.column).size])
+    samples = [Sample(label=arm.name, values=measure.factor * arm.of_reached(measure.column)) for arm in shown]
+    most = max(np.size(sample.values) for sample in samples)
+    log = measure is not CLEARANCE and is_wide(samples)
+    axis = Axis(label=measure.title, unit=measure.unit, log=log)
+    bins = int(np.clip(2.0 * most ** (1 / 3), FEWEST, MOST_BINS))
+    return Figure(
+        image=to_svg(plot_histogram(samples, x=axis, bins=bins)),
+        alt=f"Histogram of the {measure.title} of the reached solutions, a line an arm",
+        caption=f"{measure.title.capitalize()} of the reached solutions.{few}",
+    )
+
+
+def _make_pairs(run: RunAnswers) -> Table:
+    """Which pairs are closest, how often."""
+    totals = {arm.name: max(1, sum(arm.closest_pairs.values())) for arm in run.arms}
+    sums: dict[str, float] = {}
+    for arm in run.arms:
+        for pair, count in arm.closest_pairs.items():
+            sums[pair] = sums.get(pair, 0.0) + count / totals[arm.name]
+    shown = sorted(sums, key=lambda pair: (-sums[pair], pair))[:MOST_PAIRS]
+    left = len(sums) - len(shown)
+    return Table(
+        columns=(Column("pair", align="left"), *(Column(arm.name, "%", group="closest in") for arm in run.arms)),
+        rows=tuple(
+            (
+                pair.replace("-", " – "),
+                *(fixed(100 * arm.closest_pairs.get(pair, 0) / totals[arm.name], 1) for arm in run.arms),
+            )
+            for pair in shown
+        ),
+        caption="Which two components come closest, in percent of the reached solutions",
+        note=f"{left} more pairs are rarer." if left else "",
+    )

@@ -1,0 +1,84 @@
+"""What the solves cost: attempts and wall time."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ikde.batch.statistics import compute_spread
+from ikde.plot.charts import Sample, plot_cdf
+from ikde.plot.images import to_svg
+from ikde.plot.style import Axis
+from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
+from ikde.report.numbers import fixed, significant
+from ikde.report.page import Column, Figure, Gallery, Section, Table
+
+MOST_CURVES = 6  # in one chart: there are six looks
+WIDE = 30  # from here on, maximum over minimum, an axis is logarithmic
+
+
+def make_cost(run: RunAnswers) -> Section:
+    """Median, 95th percentile and maximum over all solves, and the whole distribution."""
+    return Section("Attempts and time", (_make_table(run), Gallery(tuple(_draw(run)))), anchor="cost")
+
+
+def choose_curves(arms: Sequence[ArmAnswers]) -> tuple[Sequence[ArmAnswers], str]:
+    """The arms that fit into one chart, and a remark if these are not all."""
+    few = f" The first {MOST_CURVES} of {len(arms)} arms." if len(arms) > MOST_CURVES else ""
+    return arms[:MOST_CURVES], few
+
+
+def is_wide(samples: Sequence[Sample]) -> bool:
+    """True for samples that want a logarithmic axis."""
+    joined = np.concatenate([np.asarray(sample.values) for sample in samples])
+    positive = joined[joined > 0]
+    return bool(positive.size) and float(positive.max()) > WIDE * float(positive.min())
+
+
+def _make_table(run: RunAnswers) -> Table:
+    kept = any("attempts" in arm.numbers for arm in run.arms)
+    spreads = ("median", "95 % within", "at most")
+    return Table(
+        columns=(
+            Column("arm", align="left"),
+            *(Column(title, group="attempts") for title in spreads if kept),
+            *(Column(title, "ms", group="time") for title in spreads),
+        ),
+        rows=tuple(
+            (arm.name, *(_spread(arm, "attempts", 1.0, 0) if kept else ()), *_spread(arm, "solve_seconds", 1e3, None))
+            for arm in run.arms
+        ),
+        caption="What a solve costs",
+        note="Over all solves, also those that did not reach their target. The time is a solve's own wall time, while "
+        "all threads are busy.",
+    )
+
+
+def _spread(arm: ArmAnswers, column: str, factor: float, digits: int | None) -> tuple[str, ...]:
+    spread = compute_spread(arm.numbers.get(column, ()))
+    if spread is None:
+        return ("–",) * 3
+    values = [factor * value for value in (spread.median, spread.p95, spread.max)]
+    return tuple(significant(value) if digits is None else fixed(value, digits) for value in values)
+
+
+def _draw(run: RunAnswers) -> list[Figure]:
+    figures = []
+    arms, few = choose_curves(run.arms)
+    for column, factor, label, unit in (("attempts", 1.0, "attempts", ""), ("solve_seconds", 1e3, "time", "ms")):
+        samples = [
+            Sample(label=arm.name, values=factor * arm.of_reached(column), total=arm.solves)
+            for arm in arms
+            if column in arm.numbers
+        ]
+        if len(np.unique(np.concatenate([np.empty(0), *(sample.values for sample in samples)]))) < 2:
+            continue  # a curve of one value says nothing that the table does not
+        figure = plot_cdf(samples, x=Axis(label=label, unit=unit, log=is_wide(samples)), y="solves")
+        figures.append(
+            Figure(
+                image=to_svg(figure),
+                alt=f"Share of the solves that reached their target within so much: {label}, a curve an arm",
+                caption=f"Solves that reached their target within so {'many attempts' if not unit else 'much time'}."
+                f"{few}",
+            )
+        )
+    return figures

@@ -1,0 +1,77 @@
+"""Who was not reached, and why."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ikde.report.batch_page.answers import MOST_MISSED, ArmAnswers, RunAnswers
+from ikde.report.numbers import vector
+from ikde.report.page import Column, Section, Table
+
+PLACE = ("target_x_m", "target_y_m", "target_z_m")
+
+
+def make_missed(run: RunAnswers) -> Section | None:
+    """The first targets that were not reached, each once an arm; None if all were."""
+    misses = [(target, arm) for arm in run.arms for target in arm.missed]
+    if not misses:
+        return None
+    shown = sorted(misses, key=lambda miss: miss[0])[:MOST_MISSED]
+    rows = [_make_row(run, arm, target) for target, arm in shown]
+    total = sum(np.unique(arm.numbers["target"][~arm.reached]).size for arm in run.arms)
+    columns = [
+        Column("target"),
+        Column("name", align="left"),
+        Column("x, y, z", "m", align="left"),
+        Column("arm", align="left"),
+        Column("missed"),
+        Column("why", align="left"),
+        Column("what would help", align="left"),
+    ]
+    kept = [k for k in range(len(columns)) if any(row[k] for row in rows)]
+    return Section(
+        "Not reached",
+        (
+            Table(
+                columns=tuple(columns[k] for k in kept),
+                rows=tuple(tuple(row[k] for k in kept) for row in rows),
+                caption="Targets that were not reached"
+                if total <= len(rows)
+                else f"The first {len(rows)} of {total:,} targets that were not reached",
+                note=_explain(run, rows),
+            ),
+        ),
+        anchor="not-reached",
+    )
+
+
+def _make_row(run: RunAnswers, arm: ArmAnswers, target: int) -> tuple[str, ...]:
+    row = arm.missed[target]
+    mine = arm.numbers["target"] == target
+    missed, solves = int((mine & ~arm.reached).sum()), int(mine.sum())
+    return (
+        str(target),
+        run.names.get(target, ""),
+        _place(row),
+        arm.name if len(run.arms) > 1 else "",
+        f"{missed:,} of {solves:,}" if run.manifest.repeats > 1 else "",
+        row.get("reason") or row["stop_reason"].replace("_", " "),
+        row.get("hint") or "",
+    )
+
+
+def _place(row: Mapping[str, Any]) -> str:
+    return vector([row[name] for name in PLACE], 3) if all(name in row for name in PLACE) else ""
+
+
+def _explain(run: RunAnswers, rows: list[tuple[str, ...]]) -> str:
+    """What the table cannot say for itself."""
+    notes = ["Reasons are those of the first repeat that missed."] if run.manifest.repeats > 1 else []
+    if not run.manifest.recipe.get("explain", True):
+        notes.append("The run was told not to find out why (`explain: false`).")
+    elif not any("reason" in row for arm in run.arms for row in arm.missed.values()):
+        notes.append("The run was told not to keep reasons (`output: {columns}`).")
+    elif not any(row[-1] for row in rows):
+        notes.append("Nothing was found that would help.")
+    return " ".join(notes)

@@ -1,0 +1,101 @@
+"""The whole page of a run."""
+
+import shlex
+
+from ikde.batch.manifest import Manifest
+from ikde.batch.statistics import Rate, compute_spread
+from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
+from ikde.report.batch_page.clearance import make_clearance
+from ikde.report.batch_page.cost import make_cost
+from ikde.report.batch_page.graders import make_graders
+from ikde.report.batch_page.missed import make_missed
+from ikde.report.batch_page.recipe import make_again, make_recipe
+from ikde.report.batch_page.success import make_success
+from ikde.report.markup import code, verbatim
+from ikde.report.numbers import fixed, significant
+from ikde.report.page import Block, Notice, Number, Numbers, Page
+
+MOST_NUMBERS = 4  # arms that get large type
+
+
+def make_batch_page(run: RunAnswers) -> Page:
+    """What came of a run, finished or not, as a page."""
+    manifest = run.manifest
+    sections = [make_success(run), make_cost(run), make_clearance(run), make_graders(run), make_missed(run)]
+    shown = [section for section in sections if section] if run.parts_done else []
+    return Page(
+        title=manifest.name,
+        subtitle=_describe(manifest),
+        lead=(*_warn(run), *_headline(run)),
+        sections=(*shown, make_recipe(manifest), make_again(run)),
+        footer=f"Made by ikde {verbatim(manifest.versions.get('ikde', ''))} from the answers in "
+        f"{code(str(run.folder))}.",
+    )
+
+
+def _describe(manifest: Manifest) -> str:
+    arms = f"{len(manifest.arms)} arms, " if len(manifest.arms) > 1 else ""
+    repeats = f", {manifest.repeats:,} solves each" if manifest.repeats > 1 else ""
+    targets = f"{manifest.targets:,} target{'s' if manifest.targets > 1 else ''}"
+    return f"A batch of inverse kinematics: robot {manifest.robot}, {arms}{targets}{repeats}, seed {manifest.seed}."
+
+
+def _warn(run: RunAnswers) -> list[Block]:
+    """Say so if parts are missing."""
+    if run.finished:
+        return []
+    solves = sum(arm.solves for arm in run.arms)
+    asked = run.manifest.solves * len(run.manifest.arms)
+    return [
+        Notice(
+            f"**This run is not finished**: {run.parts_done:,} of {run.manifest.parts:,} parts are there, {solves:,} "
+            f"of {asked:,} solves. Everything below is about these. {say_how_to_go_on(run)}"
+        )
+    ]
+
+
+def say_how_to_go_on(run: RunAnswers) -> str:
+    """The command that finishes a run, if its file is known."""
+    if not run.manifest.file:
+        return "The same call of `run_batch` goes on."
+    command = f"ikde batch {shlex.quote(run.manifest.file)} --out {shlex.quote(str(run.folder))}"
+    return f"{code(command)} goes on."
+
+
+def _headline(run: RunAnswers) -> list[Block]:
+    if not run.parts_done:
+        return []
+    if len(run.arms) == 1:
+        return [Numbers((_reached("reached", run.rate), *_cost(run.arms[0])))]
+    if len(run.arms) > MOST_NUMBERS:
+        return [Numbers((_reached("reached, over all arms", run.rate),))]
+    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate) for arm in run.arms))]
+
+
+def _reached(label: str, rate: Rate) -> Number:
+    return Number(format_share(rate), label, f"{rate.count:,} of {rate.total:,} solves")
+
+
+def _cost(arm: ArmAnswers) -> list[Number]:
+    """Time, attempts and clearance of the only arm."""
+    numbers = []
+    time, attempts = (compute_spread(arm.numbers.get(name, ())) for name in ("solve_seconds", "attempts"))
+    if time:
+        most = f"95 % within {significant(1e3 * time.p95)} ms"
+        numbers.append(Number(f"{significant(1e3 * time.median)} ms", "a solve, median", most))
+    if attempts:
+        numbers.append(Number(fixed(attempts.median, 0), "attempts, median", f"95 % within {fixed(attempts.p95, 0)}"))
+    clearance_m = arm.of_reached("clearance_m")
+    if clearance_m.size:
+        least = f"{significant(1e3 * float(clearance_m.min()))} mm"
+        numbers.append(Number(least, "least clearance", f"of the reached, detector {arm.facts.detector}"))
+    return numbers
+
+
+def format_share(rate: Rate) -> str:
+    """`99.4 %`; never 100 % or 0 % of what is not all or nothing."""
+    if not rate.total:
+        return "–"
+    if 0 < rate.count < rate.total and not 0.05 <= 100 * rate.share < 99.95:
+        return "> 99.9 %" if rate.share > 0.5 else "< 0.1 %"
+    return f"{fixed(100 * rate.share, 1)} %"

@@ -1,0 +1,117 @@
+"""What ran, on what, and how to do it again."""
+
+import shlex
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ikde.batch.manifest import ArmFacts, Manifest
+from ikde.report.batch_page.answers import RunAnswers
+from ikde.report.markup import verbatim
+from ikde.report.page import Block, Code, Column, Facts, Section, Table
+
+
+def make_recipe(manifest: Manifest) -> Section:
+    """Robot, targets, arms and what differs between them, machine and versions."""
+    arms = {arm.name: dict(_flatten(_describe(manifest, arm))) for arm in manifest.arms}
+    keys = list(dict.fromkeys(key for settings in arms.values() for key in settings))
+    differing = [key for key in keys if len({settings.get(key) for settings in arms.values()}) > 1]
+    blocks: list[Block] = [_state_facts(manifest)]
+    if len(arms) > 1:
+        blocks.append(_compare(arms, differing))
+    first = next(iter(arms.values()))
+    blocks.append(_list_settings({key: first[key] for key in keys if key not in differing}, len(arms)))
+    return Section("What ran", tuple(blocks), anchor="recipe")
+
+
+def _describe(manifest: Manifest, arm: ArmFacts) -> Mapping[str, Any]:
+    """Everything about an arm: from the recipe, or what the manifest knows of any arm."""
+    known = manifest.recipe.get("arms", {}).get(arm.name)
+    return known or {"method": arm.method, "detector": arm.detector, "settings": arm.settings}
+
+
+def _state_facts(manifest: Manifest) -> Facts:
+    machine = manifest.machine
+    kind = ", ".join(name for name in manifest.recipe.get("targets", {}) if name != "units")
+    facts = (
+        ("robot", manifest.robot),
+        ("targets", f"{manifest.targets:,}{f' ({kind})' if kind else ''}"),
+        ("solves of a target", f"{manifest.repeats:,}"),
+        ("seed", str(manifest.seed)),
+        ("graded again by", ", ".join(manifest.graders) or "none"),
+        ("run file", manifest.file or "none, made in Python"),
+        ("started", manifest.started),
+        ("machine", f"{machine['processor']}, {machine['cores']} cores, {machine['system']}"),
+        ("versions", ", ".join(f"{name} {version}" for name, version in manifest.versions.items())),
+        ("recipe", manifest.hash),
+    )
+    return Facts(tuple((name, verbatim(value)) for name, value in facts))
+
+
+def _compare(arms: Mapping[str, Mapping[str, str]], differing: list[str]) -> Table:
+    return Table(
+        columns=(Column("arm", align="left"), *(_column(key) for key in differing)),
+        rows=tuple((name, *(settings.get(key, "–") for key in differing)) for name, settings in arms.items()),
+        caption="What differs between the arms",
+        note="" if differing else "Nothing: only their names do.",
+    )
+
+
+def _list_settings(settings: Mapping[str, str], arms: int) -> Table:
+    return Table(
+        columns=(Column("setting", align="left"), Column("value", align="left")),
+        rows=tuple((key.replace("_", " "), value) for key, value in settings.items()),
+        caption="What all arms have in common" if arms > 1 else "How it was solved",
+        note="Lengths in m, angles in rad; joints in the robot's own convention.",
+    )
+
+
+def _column(key: str) -> Column:
+    return Column(key.removeprefix("settings: ").replace("_", " "), align="left")
+
+
+def _flatten(data: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, str]]:
+    """Leaves with their keys: `detector: pairs`; a detector that keeps nothing apart and a range each in a line."""
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            yield from _flatten(value, f"{above}{key}: ")
+        else:
+            yield f"{above}{key}", _show(value)
+
+
+def _show(value: Any) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list | tuple) and len(value) == 2:
+        return " to ".join(map(_show, value))
+    return str(value)
+
+
+def make_again(run: RunAnswers) -> Section:
+    """The commands that make run and page again, and the answers in three libraries."""
+    folder = str(run.folder)
+    commands = [f"ikde report {shlex.quote(folder)}"]
+    if run.manifest.file:
+        commands.insert(0, f"ikde batch {shlex.quote(run.manifest.file)} --out {shlex.quote(folder)}")
+    return Section(
+        "Do it again, read on",
+        (
+            Code("\n".join(commands), caption="To make answers and page again; the same recipe gives the same bits."),
+            Code(_read_on(folder), caption="To read the answers; times stand in `read_batch(..., timing=True)`."),
+        ),
+        anchor="again",
+    )
+
+
+def _read_on(folder: str) -> str:
+    files = f"{folder}/solutions/*.parquet".replace("'", "''")
+    return "\n".join(
+        (
+            "import duckdb, ikde, polars",
+            "",
+            f"frame = ikde.read_batch({folder!r}).to_pandas()               # pandas",
+            f"frame = polars.from_arrow(ikde.read_batch({folder!r}))        # polars",
+            f"duckdb.sql(\"select arm, avg(reached::int) from '{files}' group by arm\")",
+        )
+    )

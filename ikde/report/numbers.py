@@ -1,0 +1,46 @@
+"""How figures are written on a page: few digits, the same everywhere."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+
+def fixed(value: float, digits: int) -> str:
+    """A number with thousands separated and no minus zero: `1,481.10`."""
+    return f"{round(value, digits) + 0.0:,.{digits}f}"
+
+
+def significant(value: float, digits: int = 3) -> str:
+    """A number with so many significant digits: `0.00154`, `83.0`, `1,240`."""
+    rounded = float(f"{value:.{digits - 1}e}")
+    if rounded == 0.0 or abs(rounded) < 1e-4:
+        return f"{rounded:.{digits - 1}e}" if rounded else "0"
+    exponent = int(f"{abs(rounded):e}".split("e")[1])
+    return f"{rounded:,.{max(0, digits - 1 - exponent)}f}"
+
+
+def percent(value_pct: float) -> str:
+    """`73.0 %`."""
+    return f"{fixed(value_pct, 1)} %"
+
+
+def rate(cell: Mapping[str, Any]) -> str:
+    """A rate of rejection in % with its interval: `73.0 (63.6–80.7)`; a dash of nothing."""
+    if not cell["SN"]:
+        return "–"
+    return with_interval(cell["rejected_pct"], cell["interval_pct"])
+
+
+def with_interval(value: float, interval: Sequence[float], digits: int = 1) -> str:
+    """A number with the interval that it lies in: `73.0 (63.6–80.7)`."""
+    low, high = interval
+    return f"{fixed(value, digits)} ({fixed(low, digits)}–{fixed(high, digits)})"
+
+
+def spread(values: Mapping[str, float], digits: int = 3) -> str:
+    """`1.5 / 5.6 / 9.4`: median, 95th percentile, maximum."""
+    return " / ".join(significant(values[key], digits) for key in ("median", "p95", "max"))
+
+
+def vector(values: Sequence[float], digits: int) -> str:
+    """`540.0, 0.0, 569.2`."""
+    return ", ".join(fixed(value, digits) for value in values)

@@ -1,0 +1,103 @@
+"""Parts solved by a real Dask cluster of two processes, one of which gets killed."""
+
+import os
+import signal
+import socket
+import sys
+
+import dask.config
+import pytest
+from distributed import LocalCluster
+
+import ikde
+from ikde.batch import cluster as module
+from ikde.batch.cluster import SILENT, solve_on_cluster, solve_remotely
+from ikde.batch.parts import Part
+from ikde.batch.task import make_task
+from ikde.errors import InputError
+from tests.batch.small import BLINK, ROBOT, make_arm, make_batch, read_files
+
+SLOW = {"population": 30, "generations": 300, "restarts": 1, "position_tolerance_m": 1e-12}
+
+
+@pytest.fixture(scope="module")
+def batch():
+    arms = (make_arm("free", detector="none", **SLOW), make_arm("careful", **BLINK))
+    return make_batch(arms=arms, graders=(ROBOT.detectors["typical"],), explain=True)
+
+
+@pytest.fixture(scope="module")
+def whole(batch, tmp_path_factory):
+    """The parts of a run in this process, on one thread."""
+    folder = tmp_path_factory.mktemp("whole")
+    ikde.run_batch(batch, folder, threads=1)
+    return read_files(folder)
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Two workers, and a scheduler that gives up a part as soon as one dies of it."""
+    facts = {"threads_per_worker": 1, "dashboard_address": ":0", "memory_limit": None, "silence_logs": SILENT}
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), LocalCluster(2, **facts) as started:
+        yield started
+
+
+def kill_a_busy_worker(cluster, after):
+    """What to tell progress to: after so many parts, a worker process with work is no more."""
+
+    def tell(now):
+        if now.parts_done == after:
+            busy = next(worker.address for worker in cluster.scheduler.workers.values() if worker.processing)
+            os.kill(next(w.pid for w in cluster.workers.values() if w.worker_address == busy), signal.SIGKILL)
+
+    return tell
+
+
+def test_a_cluster_gives_the_same_bytes(batch, whole, cluster, tmp_path):
+    ikde.run_batch(batch, tmp_path, dask=cluster.scheduler_address)
+    assert read_files(tmp_path) == whole
+
+
+def test_a_local_cluster_gives_the_same_bytes_and_says_nothing(batch, whole, tmp_path, capfd):
+    ikde.run_batch(batch, tmp_path, dask="local", workers=2)
+    assert read_files(tmp_path) == whole
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_worker_that_dies_is_replaced(batch, whole, cluster, tmp_path, capfd):
+    ikde.run_batch(batch, tmp_path, dask=cluster.scheduler_address, progress=kill_a_busy_worker(cluster, 2))
+    assert read_files(tmp_path) == whole
+    assert capfd.readouterr().err == ""
+
+
+def test_a_part_that_kills_its_workers_is_given_up(batch, cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "TRIES", 1)
+    with pytest.raises(InputError, match=r"workers keep dying of part \d of arm free.*run the same command again"):
+        ikde.run_batch(batch, tmp_path, dask=cluster.scheduler_address, progress=kill_a_busy_worker(cluster, 1))
+
+
+def test_a_worker_with_other_kernels_is_refused(batch):
+    with pytest.raises(InputError, match="another version of ikde"):
+        solve_remotely(make_task(batch, Part("careful", 0, 0, 5)), "0123456789ab")
+
+
+@pytest.mark.parametrize("address", ["", "nowhere", "127.0.0.1", "ftp://127.0.0.1:21", "a b:1", "tcp://127.0.0.1:x"])
+def test_what_is_no_address_is_refused(address):
+    with pytest.raises(InputError, match=r"expected 'local' or an address such as tcp://10.0.0.5:8786"):
+        next(solve_on_cluster([], address))
+
+
+def test_a_cluster_that_does_not_answer_is_one_line(monkeypatch, capfd):
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        port = unused.getsockname()[1]
+    monkeypatch.setattr(module, "PATIENCE", "0.5s")
+    with pytest.raises(InputError, match=rf"^dask: no cluster answers at tcp://127.0.0.1:{port} \([^\n]*\)$"):
+        next(solve_on_cluster([], f"tcp://127.0.0.1:{port}"))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_without_dask_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r"dask: Dask is not installed: pip install 'ikde\[cluster\]'"):
+        next(solve_on_cluster([], "local"))

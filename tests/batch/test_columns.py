@@ -1,0 +1,103 @@
+"""What stands in the columns of a part."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.batch.columns import GROUPS, STOP_REASONS, make_solutions, make_timing
+from ikde.model.rotation import rotation_from_quat_wxyz
+from ikde.solver.rows import solve_rows
+from tests.batch.small import FAR, ROBOT, make_arm
+
+NUMBERS = np.arange(5, 9)  # targets 2, 3, 3, 4 of two repeats each
+POSE = rotation_from_quat_wxyz(np.array([0.5, 0.5, -0.5, 0.5]))
+ALWAYS = ["arm", "target", "target_name", "repeat", "reached", "verified", "stop_reason"]
+
+
+@pytest.fixture(scope="module")
+def rows():
+    near = ikde.Target((0.6, 0.3, 0.9), axis_world_tool=(0, 0, -2))
+    targets = [ikde.Target((0.5, 0.2, 0.8)), near, ikde.Target((0.6, 0.3, 0.9), POSE), ikde.Target(FAR)]
+    return solve_rows(make_arm().problem, targets, seed=3, first_stream=5)
+
+
+def tabulate(rows, **changes):
+    facts = {"numbers": NUMBERS, "repeats": 2, "names": list("wxyz"), "groups": tuple(GROUPS), "graders": ()}
+    return make_solutions("a", rows, **(facts | changes))
+
+
+def test_a_solve_is_known_by_arm_target_and_repeat(rows):
+    table = tabulate(rows).to_pydict()
+    assert table["arm"] == ["a"] * 4
+    assert table["target"] == [2, 3, 3, 4]
+    assert table["target_name"] == list("wxyz")
+    assert table["repeat"] == [1, 0, 1, 0]
+
+
+def test_the_verdict_is_that_of_the_rows(rows):
+    table = tabulate(rows).to_pydict()
+    assert table["reached"] == [True, True, True, False]
+    assert table["verified"] == [True] * 4
+    assert table["stop_reason"] == ["reached"] * 3 + ["out_of_reach"]
+    assert set(table["stop_reason"]) <= set(STOP_REASONS)
+
+
+def test_figures_are_those_of_the_rows_to_the_last_bit(rows):
+    table = tabulate(rows)
+    q = np.column_stack([table[f"q_{name}"].to_numpy() for name in ROBOT.joint_names])
+    assert np.array_equal(q, rows.q)
+    for k in range(4):
+        row, result = table.slice(k, 1).to_pylist()[0], rows.row(k)
+        assert row["position_error_m"] == pytest.approx(result.position_error_m, abs=1e-11)
+        assert row["orientation_error_rad"] == pytest.approx(result.orientation_error_rad, abs=1e-11)
+        assert row["clearance_m"] == pytest.approx(result.clearance_m, abs=1e-11)
+        assert row["closest_pair"] == "-".join(result.closest_pair)
+        assert (row["attempts"], row["evaluations"]) == (result.attempts, result.evaluations)
+        assert row["rejected"] == result.rejected
+
+
+def test_reasons_are_those_of_failures(rows):
+    table = tabulate(rows).to_pydict()
+    assert table["reason"] == [None] * 3 + [rows.row(3).reason]
+    assert table["hint"] == [None] * 3 + [rows.row(3).hint]
+
+
+def test_targets_are_given_back(rows):
+    table = tabulate(rows).to_pydict()
+    assert table["target_kind"] == ["position", "axis", "pose", "position"]
+    assert (table["target_x_m"][3], table["target_z_m"][0]) == (9.0, 0.8)
+    quats = list(zip(*(table[f"target_q{k}"] for k in "wxyz"), strict=True))
+    assert quats[0] == quats[3] == (None,) * 4
+    assert quats[2] == pytest.approx((0.5, 0.5, -0.5, 0.5))
+    assert rotation_from_quat_wxyz(np.array(quats[1]))[:, 2] == pytest.approx([0, 0, -1])
+
+
+def test_each_grader_adds_its_columns(rows):
+    table = tabulate(rows, graders=(ROBOT.detectors["typical"],))
+    for k, row in enumerate(table.to_pylist()):
+        seen = ikde.check(ROBOT, rows.q[k], "typical")
+        assert row["typical_clearance_m"] == pytest.approx(seen.clearance_m, abs=1e-11)
+        assert row["typical_collides"] == seen.collision
+        assert row["typical_closest_pair"] == f"{seen.pairs[0].a}-{seen.pairs[0].b}"
+
+
+def test_without_a_detector_there_is_no_clearance():
+    rows = solve_rows(make_arm(detector="none").problem, [ikde.Target((0.5, 0.2, 0.8))], seed=1)
+    table = tabulate(rows, numbers=NUMBERS[:1], names=None)
+    assert (table["clearance_m"].to_pylist(), table["closest_pair"].to_pylist()) == ([None], [None])
+
+
+def test_only_the_groups_asked_for_are_there(rows):
+    assert tabulate(rows, groups=()).column_names == ALWAYS
+    assert tabulate(rows, groups=("cost",)).column_names == [*ALWAYS, "attempts", "evaluations", "rejected"]
+    assert "target_name" not in tabulate(rows, names=None).column_names
+
+
+def test_the_order_of_groups_does_not_matter(rows):
+    assert tabulate(rows, groups=("cost", "q")).equals(tabulate(rows, groups=("q", "cost")))
+
+
+def test_timing_holds_what_hangs_on_the_machine(rows):
+    table = make_timing("a", rows, numbers=NUMBERS, repeats=2)
+    assert table.column_names == ["arm", "target", "repeat", "solve_seconds", "host"]
+    assert np.array_equal(table["solve_seconds"].to_numpy(), rows.found.seconds)

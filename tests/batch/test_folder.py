@@ -1,0 +1,118 @@
+"""Whose a folder is, and who may write to it."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from ikde.batch.atomic import temporary_path
+from ikde.batch.folder import LOCK, claim_folder
+from ikde.batch.manifest import MANIFEST, read_manifest
+from ikde.errors import FileError
+from tests.batch.small import make_batch
+
+HOLD = """
+import fcntl, sys, time
+file = open(sys.argv[1], "a+")
+fcntl.flock(file, fcntl.LOCK_EX)
+print("held", flush=True)
+time.sleep(60)
+"""
+
+
+def claim(folder, overwrite=False, **changes):
+    with claim_folder(folder, make_batch(**changes), overwrite=overwrite):
+        pass
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A folder with a manifest, a finished part and something of the user's."""
+    claim(tmp_path)
+    for kind in ("solutions", "timing"):
+        (tmp_path / kind / "auto-00000.parquet").write_text("a part")
+    (tmp_path / "report").mkdir()
+    (tmp_path / "solutions" / "notes.txt").write_text("mine")
+    return tmp_path
+
+
+def test_a_new_folder_is_made_with_its_parents(tmp_path):
+    folder = tmp_path / "runs" / "a"
+    claim(folder)
+    assert read_manifest(folder).hash == make_batch().hash
+    assert {path.name for path in folder.iterdir()} == {MANIFEST, LOCK, "solutions", "timing"}
+
+
+def test_a_run_of_the_same_recipe_is_kept_as_it_is(run):
+    before = (run / MANIFEST).read_bytes()
+    leftover = temporary_path(run / "solutions" / "auto-00001.parquet")
+    leftover.touch()
+    claim(run)
+    assert (run / MANIFEST).read_bytes() == before
+    assert (run / "solutions" / "auto-00000.parquet").exists()
+    assert not leftover.exists()
+
+
+def test_a_run_of_another_recipe_is_refused_with_the_difference(run):
+    with pytest.raises(FileError, match=r"holds another run: seed: 7 there, 8 now \(--overwrite replaces it\)$"):
+        claim(run, seed=8)
+    assert (run / "solutions" / "auto-00000.parquet").exists()
+
+
+@pytest.mark.parametrize("seed", [7, 8])
+def test_overwriting_deletes_parts_and_nothing_else(run, seed):
+    claim(run, overwrite=True, seed=seed)
+    assert read_manifest(run).seed == seed
+    assert [path.name for path in (run / "solutions").iterdir()] == ["notes.txt"]
+    assert list((run / "timing").iterdir()) == []
+    assert (run / "report").exists()
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize(("name", "text"), [("thesis.tex", "precious"), (MANIFEST, "{}"), (".git", "")])
+def test_a_folder_of_somebody_else_is_refused_untouched(tmp_path, overwrite, name, text):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(FileError, match="no run of ikde"):
+        claim(tmp_path, overwrite)
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [(name, text)]
+
+
+def test_a_run_that_was_killed_before_its_manifest_was_whole_goes_on(tmp_path):
+    (tmp_path / LOCK).touch()
+    temporary_path(tmp_path / MANIFEST).write_text('{"for')
+    claim(tmp_path)
+    assert read_manifest(tmp_path)
+
+
+@pytest.mark.parametrize("place", ["a", "a/b"])
+def test_a_file_is_no_folder(tmp_path, place):
+    (tmp_path / "a").touch()
+    with pytest.raises(FileError, match="is a file or lies below one"):
+        claim(tmp_path / place)
+
+
+def test_a_folder_that_cannot_be_written_is_an_error_in_one_line(tmp_path, monkeypatch):
+    def refuse(*arguments, **options):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("pathlib.Path.open", refuse)  # the tests may run as root, whom no mode stops
+    with pytest.raises(FileError, match=f"^{tmp_path}: cannot be used: Permission denied$"):
+        claim(tmp_path)
+
+
+def test_two_cannot_write_one_run(tmp_path):
+    with claim_folder(tmp_path, make_batch(), overwrite=False), pytest.raises(FileError) as caught:
+        claim(tmp_path, overwrite=True)
+    assert f"process {os.getpid()} is writing this run" in str(caught.value)
+    claim(tmp_path)
+
+
+def test_a_lock_dies_with_its_holder(tmp_path):
+    claim(tmp_path)
+    with subprocess.Popen([sys.executable, "-c", HOLD, tmp_path / LOCK], stdout=subprocess.PIPE, text=True) as holder:
+        assert holder.stdout.readline() == "held\n"
+        with pytest.raises(FileError, match="is writing this run"):
+            claim(tmp_path)
+        holder.kill()
+    claim(tmp_path)

@@ -1,0 +1,77 @@
+"""The manifest: what it holds, whose it is, and how two recipes differ."""
+
+import json
+
+import pytest
+
+from ikde.batch.manifest import MANIFEST, describe_difference, make_manifest, read_manifest, write_manifest
+from ikde.errors import FileError
+from tests.batch.small import BLINK, ROBOT, make_arm, make_batch
+
+
+@pytest.fixture
+def manifest():
+    arms = (make_arm("a", **BLINK), make_arm("b", detector="none", method="de", **BLINK))
+    return make_manifest(make_batch(arms=arms, graders=(ROBOT.detectors["typical"],)))
+
+
+def test_it_comes_back_as_it_was_written(tmp_path, manifest):
+    write_manifest(tmp_path, manifest)
+    assert read_manifest(tmp_path) == manifest
+
+
+def test_it_says_what_runs(manifest):
+    assert (manifest.targets, manifest.repeats, manifest.solves, manifest.chunk) == (12, 2, 24, 5)
+    assert manifest.parts == len(list(manifest.list_parts())) == 10
+    assert [(arm.name, arm.method, arm.detector) for arm in manifest.arms] == [
+        ("a", "auto", "improved"),
+        ("b", "de", "none"),
+    ]
+    assert manifest.arms[0].settings["population"] == 6
+    assert manifest.graders == ("typical",)
+    assert manifest.hash == make_batch().hash
+    assert manifest.started.endswith("+00:00")
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": "other"}', '{"format": "ikde batch 1"}', "\x00"])
+def test_a_file_of_somebody_else_is_refused(tmp_path, text):
+    (tmp_path / MANIFEST).write_text(text)
+    with pytest.raises(FileError, match=r"holds no run of ikde: its manifest.json is none of ours"):
+        read_manifest(tmp_path)
+
+
+def test_an_unknown_key_is_refused(tmp_path, manifest):
+    write_manifest(tmp_path, manifest)
+    path = tmp_path / MANIFEST
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"more": 1}))
+    with pytest.raises(FileError, match="none of ours"):
+        read_manifest(tmp_path)
+
+
+def test_a_folder_without_one_is_refused(tmp_path):
+    with pytest.raises(FileError, match=r"holds no run of ikde: manifest.json: No such file"):
+        read_manifest(tmp_path)
+
+
+def test_one_that_cannot_be_written_is_an_error_in_one_line(tmp_path, manifest):
+    with pytest.raises(FileError, match=r"manifest.json: cannot be written: No such file or directory$"):
+        write_manifest(tmp_path / "gone", manifest)
+
+
+@pytest.mark.parametrize(
+    ("there", "now", "words"),
+    [
+        ({"s": {"strategy": "rand/1"}}, {"s": {"strategy": "best/1"}}, "s.strategy: 'rand/1' there, 'best/1' now"),
+        ({"a": [1, 2]}, {"a": [1, 3]}, "a[1]: 2 there, 3 now"),
+        ({"a": 1}, {"b": 1}, "a: 1 there, nothing now; b: nothing there, 1 now"),
+        ({"a": {}}, {"a": {"b": None}}, "a: {} there, nothing now; a.b: nothing there, None now"),
+        ({}, {"a": "x" * 99}, f"a: nothing there, '{'x' * 59} ... now"),
+    ],
+)
+def test_a_difference_is_told_by_key(there, now, words):
+    assert words in describe_difference(there, now)
+
+
+def test_of_many_differences_the_first_are_told():
+    words = describe_difference(dict.fromkeys("abcde", 1), dict.fromkeys("abcde", 2))
+    assert words == "a: 1 there, 2 now; b: 1 there, 2 now; c: 1 there, 2 now; and 2 more"

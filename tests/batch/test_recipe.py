@@ -1,0 +1,39 @@
+"""The recipe: plain data, and digests that change exactly when an answer can."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+
+import ikde
+from ikde.batch.recipe import array_digest, as_plain, digest, ikde_version, robot_digest
+from ikde.solver.settings import SolveSettings
+
+
+def test_plain_data_survives_json(qiao):
+    plain = as_plain({"a": (1, np.float64(0.1)), "b": np.arange(3), "c": SolveSettings(), "d": None, "e": qiao})
+    assert json.loads(json.dumps(plain)) == plain
+    assert plain["a"] == [1, 0.1]
+    assert plain["c"]["population"] == 50
+
+
+def test_the_order_of_keys_does_not_matter_and_the_last_bit_does():
+    assert digest({"a": 1, "b": 0.1}) == digest({"b": 0.1, "a": 1})
+    assert digest({"a": 0.1}) != digest({"a": float(np.nextafter(0.1, 1))})
+
+
+def test_a_robot_is_its_numbers_and_not_its_title(qiao):
+    assert robot_digest(qiao) == robot_digest(replace(qiao, title="another", provenance={}))
+    moved = replace(qiao.frames[5], p_parent_frame=np.nextafter(qiao.frames[5].p_parent_frame, np.inf))
+    assert robot_digest(qiao) != robot_digest(replace(qiao, frames=(*qiao.frames[:5], moved, *qiao.frames[6:])))
+
+
+def test_arrays_differ_by_shape_and_bits():
+    a = np.arange(6.0)
+    assert array_digest(a) == array_digest(a.copy())
+    assert array_digest(a) != array_digest(a.reshape(2, 3))
+    assert array_digest(a) != array_digest(np.nextafter(a, 9))
+
+
+def test_the_version_is_that_of_the_package():
+    assert ikde_version() == ikde.__version__

@@ -1,0 +1,96 @@
+"""A resolved run file: names, columns and graders, and a hash that changes exactly when an answer can."""
+
+import json
+import pickle
+from pathlib import Path
+
+import pytest
+
+from ikde.batch.resolve import make_batch
+from ikde.batch.spec import BatchSpec
+from ikde.errors import InputError
+
+TARGETS = {"inline": [{"position": [0.8, 0.5, 1.0], "name": "task 1"}]}
+HERE = Path()
+
+
+def make(robot, file=None, **keys):
+    spec = BatchSpec.model_validate({"robot": "qiao2021", "targets": TARGETS, **keys})
+    return make_batch(spec, robot, folder=HERE, file=file)
+
+
+@pytest.mark.parametrize(
+    ("keys", "file", "expected"),
+    [({}, None, "batch"), ({}, "runs/first.yaml", "first"), ({"name": "mine"}, "runs/first.yaml", "mine")],
+)
+def test_a_run_has_a_name(qiao, keys, file, expected):
+    assert make(qiao, file, **keys).name == expected
+
+
+def test_columns_stand_in_one_order(qiao):
+    assert make(qiao, output={"columns": ["cost", "q", "cost"]}).columns == ("q", "cost")
+    assert make(qiao, output={"columns": []}).columns == ()
+
+
+def test_graders_are_names_or_the_users_own(qiao):
+    own = {"name": "typical_all", "spheres": "typical", "pairs": "non_adjacent"}
+    graders = make(qiao, grade=[own, "improved"]).graders
+    assert [(g.name, g.pairs) for g in graders] == [("typical_all", "non_adjacent"), ("improved", "formula_22")]
+
+
+def test_the_recipe_is_json_and_the_batch_can_travel(qiao):
+    batch = make(qiao, grade=["typical"], seed=2**64 - 1)
+    assert json.loads(json.dumps(batch.recipe)) == batch.recipe
+    assert pickle.loads(pickle.dumps(batch.arms[0].problem)).settings == batch.arms[0].problem.settings
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"seed": 1},
+        {"repeats": 2},
+        {"chunk": 10},
+        {"explain": False},
+        {"output": {"columns": ["q"]}},
+        {"grade": ["typical"]},
+        {"solve": {"settings": {"population": 51}}},
+        {"solve": {"near": {"q1": 0.1}}},
+        {"solve": {"freeze": {"q1": 0.1}}},
+        {"solve": {"ranges": {"q1": [0, 1]}}},
+        {"solve": {"detector": "typical"}},
+        {"arms": {"other": {}}},
+        {"targets": {"inline": [{"position": [0.8, 0.5, 1.0]}]}},
+        {"units": {"length": "mm"}},
+        {"targets": {"reachable": {"count": 1}}},
+    ],
+    ids=str,
+)
+def test_what_changes_an_answer_changes_the_hash(qiao, keys):
+    assert make(qiao, **keys).hash != make(qiao).hash
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [{"name": "x"}, {"arms": {"auto": {"method": "auto"}}}, {"solve": {"settings": {"population": 50}}}],
+    ids=str,
+)
+def test_what_changes_nothing_keeps_the_hash(qiao, keys):
+    assert make(qiao, **keys).hash == make(qiao).hash
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ({"grade": ["typical", "typicl"]}, "grade[1]: qiao2021 has no detector 'typicl'"),
+        ({"grade": ["typical", "typical"]}, "grade[1]: two detectors are called 'typical'"),
+        ({"grade": ["none"]}, "grade[0]: expected a detector; 'none' grades nothing"),
+        ({"grade": [{"name": "a b", "spheres": "typical"}]}, "grade[0]: expected a name of letters"),
+        ({"grade": [{"name": "a", "spheres": "typical", "pairs": "all"}]}, "grade[0].pairs: no pair list is called"),
+        ({"repeats": 10**9, "targets": {"inline": TARGETS["inline"] * 2}}, "repeats: 2 targets make more than"),
+        ({"solve": {"freeze": {"q1": 9}}}, "solve.freeze.q1: 9 is outside the limits"),
+    ],
+)
+def test_what_is_wrong_is_named(qiao, keys, expected):
+    with pytest.raises(InputError) as caught:
+        make(qiao, **keys)
+    assert str(caught.value).startswith(expected)

@@ -1,0 +1,63 @@
+"""Sources make the same targets however they are cut."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ikde.batch.sources import ListSource, PointSource, TableSource, make_orientation
+from ikde.errors import InputError
+from ikde.model.target import Target
+
+few = settings(derandomize=True, deadline=None, max_examples=25)
+POSITIONS = np.arange(30.0).reshape(10, 3)
+AXES = np.array([[1.0 + k, 2.0, 3.0 - k] for k in range(10)])
+
+
+def bits(targets):
+    return [(t.kind, t.p_world_tool.tobytes(), t.R_world_tool.tobytes()) for t in targets]
+
+
+SOURCES = {
+    "list": ListSource(targets=[Target(p) for p in POSITIONS]),
+    "positions": TableSource(positions=POSITIONS, kind=None, orientations=None),
+    "axes": TableSource(positions=POSITIONS, kind="axis", orientations=AXES),
+    "rpy": TableSource(positions=POSITIONS, kind="rpy", orientations=AXES),
+    "quaternions": TableSource(positions=POSITIONS, kind="quat_wxyz", orientations=np.ones((10, 4))),
+    "points": PointSource(count=10, make_points=lambda a, b: POSITIONS[a:b], orientation={"R_world_tool": np.eye(3)}),
+}
+
+
+@pytest.mark.parametrize("source", SOURCES.values(), ids=SOURCES)
+@few
+@given(cut=st.integers(0, 10))
+def test_any_cut_gives_the_same_targets(source, cut):
+    whole = bits(source.read(0, source.count))
+    assert len(whole) == source.count == 10
+    assert bits(source.read(0, cut)) + bits(source.read(cut, 10)) == whole
+
+
+@pytest.mark.parametrize("source", SOURCES.values(), ids=SOURCES)
+def test_reading_past_the_end_gives_what_there_is(source):
+    assert len(source.read(8, 99)) == 2
+
+
+@pytest.mark.parametrize(
+    ("source", "kind"), [("positions", "position"), ("axes", "axis"), ("rpy", "pose"), ("quaternions", "pose")]
+)
+def test_a_row_becomes_its_kind_of_target(source, kind):
+    target = SOURCES[source].read(4, 5)[0]
+    assert target.kind == kind
+    np.testing.assert_array_equal(target.p_world_tool, POSITIONS[4])
+
+
+def test_orientations_are_what_target_takes():
+    half_turn = np.diag([-1.0, -1.0, 1.0])
+    np.testing.assert_allclose(make_orientation("rpy", np.array([0, 0, np.pi]))["R_world_tool"], half_turn, atol=1e-15)
+    np.testing.assert_array_equal(make_orientation("quat_wxyz", np.array([0, 0, 0, 9.0]))["R_world_tool"], half_turn)
+    np.testing.assert_array_equal(make_orientation("axis", [0, 0, 2])["axis_world_tool"], [0, 0, 2])
+
+
+def test_a_quaternion_of_length_zero_is_refused():
+    with pytest.raises(InputError, match="quaternion of length 0"):
+        make_orientation("quat_wxyz", np.zeros(4))

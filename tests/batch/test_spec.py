@@ -1,0 +1,87 @@
+"""The run file's model: it knows every setting of a search, explains every key, and its units are right."""
+
+import math
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+import yaml
+from pydantic import ValidationError
+
+from ikde.batch.spec import (
+    COLUMN_GROUPS,
+    BatchSpec,
+    Entry,
+    InlineTarget,
+    SettingsEntry,
+    TargetsEntry,
+    UnitsEntry,
+    chosen_orientation,
+)
+from ikde.errors import InputError
+from ikde.solver.settings import CHOICES, SolveSettings
+
+DOCUMENTATION = (Path(__file__).parents[2] / "docs" / "batch.md").read_text(encoding="utf-8")
+LEAST = {"robot": "qiao2021", "targets": {"inline": [{"position": [1, 2, 3]}]}}
+
+
+def entries(model=Entry):
+    """Every part of a run file."""
+    return [model, *(found for child in model.__subclasses__() for found in entries(child))]
+
+
+def test_the_least_run_file_has_defaults():
+    spec = BatchSpec.model_validate(LEAST)
+    assert (spec.repeats, spec.chunk, spec.seed, spec.explain) == (1, 1000, 0, True)
+    assert tuple(spec.output.columns) == COLUMN_GROUPS
+    assert spec.solve.method == "auto"
+
+
+def test_every_setting_of_a_search_can_be_written():
+    written = {field.name.removesuffix("_m").removesuffix("_rad") for field in fields(SolveSettings)}
+    assert set(SettingsEntry.model_fields) == written
+
+
+def test_editors_are_told_the_choices():
+    properties = SettingsEntry.model_json_schema()["properties"]
+    assert tuple(properties["strategy"]["enum"][:-1]) == CHOICES["strategy"]
+    assert tuple(properties["bounds"]["enum"][:-1]) == CHOICES["bounds"]
+
+
+@pytest.mark.parametrize("model", entries(), ids=lambda model: model.__name__)
+def test_every_key_is_explained(model):
+    assert model.__doc__
+    assert [name for name, field in model.model_fields.items() if not field.description] == []
+
+
+@pytest.mark.parametrize("model", entries(), ids=lambda model: model.__name__)
+def test_every_key_is_in_the_documentation(model):
+    keys = [field.alias or name for name, field in model.model_fields.items()]
+    assert [key for key in keys if f"`{key}`" not in DOCUMENTATION] == []
+
+
+def test_the_examples_of_the_documentation_are_run_files():
+    example, *files = re.findall(r"```yaml\n(.*?)```", DOCUMENTATION, flags=re.DOTALL)
+    assert BatchSpec.model_validate(yaml.safe_load(example)).repeats == 100
+    for line in files[0].splitlines():
+        assert TargetsEntry.model_validate(yaml.safe_load(line)).file
+
+
+@pytest.mark.parametrize("key", ["reapeats", "Robot"])
+def test_unknown_keys_are_errors(key):
+    with pytest.raises(ValidationError, match="extra_forbidden"):
+        BatchSpec.model_validate({**LEAST, key: 1})
+
+
+def test_units_are_metres_and_radians():
+    assert (UnitsEntry().length_m, UnitsEntry().angle_rad) == (1.0, 1.0)
+    units = UnitsEntry(length="mm", angle="deg")
+    assert (units.length_m, units.angle_rad) == (1e-3, math.pi / 180.0)
+
+
+def test_at_most_one_orientation():
+    assert chosen_orientation(InlineTarget(position=[0, 0, 0])) is None
+    assert chosen_orientation(InlineTarget(position=[0, 0, 0], rpy=[0, 0, 0])) == "rpy"
+    with pytest.raises(InputError, match="rpy: axis and rpy both ask for an orientation"):
+        chosen_orientation(InlineTarget(position=[0, 0, 0], rpy=[0, 0, 0], axis=[0, 0, 1]))

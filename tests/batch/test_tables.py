@@ -1,0 +1,106 @@
+"""Tables give their columns whatever the kind of file, and say in one line what is wrong with it."""
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from ikde.batch.tables import as_floats, as_names, errors_of, open_table
+from ikde.errors import FileError, InputError
+
+ROWS = "name,x,note\na,1.5,\nb,-2e3,ok\n"
+
+
+def write(path, kind):
+    path = path / f"points.{kind}"
+    if kind == "csv":
+        path.write_text(ROWS)
+    elif kind == "parquet":
+        pq.write_table(pa.table({"name": ["a", "b"], "x": [1.5, -2e3], "note": [None, "ok"]}), path)
+    else:
+        np.savez(path, name=["a", "b"], x=[1.5, -2e3], note=["", "ok"])
+    return path
+
+
+def column(path, name):
+    with errors_of(path):
+        return open_table(path).read([name])[name]
+
+
+def complaint(path, name="x"):
+    with pytest.raises(InputError) as caught:
+        as_floats(path, name, column(path, name))
+    assert "\n" not in str(caught.value)
+    return str(caught.value).replace(str(path), path.name)
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet", "npz"])
+def test_every_kind_gives_its_columns(tmp_path, kind):
+    path = write(tmp_path, kind)
+    assert open_table(path).names == ["name", "x", "note"]
+    np.testing.assert_array_equal(as_floats(path, "x", column(path, "x")), [1.5, -2e3])
+    assert as_names(path, "name", column(path, "name")) == ("a", "b")
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet", "npz"])
+def test_text_is_no_number_and_nothing_is_no_name(tmp_path, kind):
+    path = write(tmp_path, kind)
+    assert "name: expected" in complaint(path, "name")
+    with pytest.raises(FileError, match="row 1: note: no value"):
+        as_names(path, "note", column(path, "note"))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x,y\n1,2\nabc,3\n", "points.csv: row 2: x: expected a number, got 'abc'"),
+        ("x,y\n,2\n", "points.csv: row 1: x: expected a number, got ''"),
+        ("x,y\n1,2\n\n3\n", "points.csv: row 2: expected 2 values, got 1"),
+        ("x,y\n1,2\n3,4,5\n", "points.csv: row 2: expected 2 values, got 3"),
+    ],
+)
+def test_a_wrong_row_of_a_csv_file_is_named(tmp_path, text, expected):
+    path = tmp_path / "points.csv"
+    path.write_text(text)
+    assert complaint(path) == expected
+
+
+def test_a_csv_file_is_read_as_people_write_it(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_bytes("\ufeffx,y\r\n +1.5 ,1\r\n1e3,2\r\n\r\n".encode())
+    np.testing.assert_array_equal(as_floats(path, "x", column(path, "x")), [1.5, 1000.0])
+
+
+def test_whole_numbers_may_turn_into_fractions_far_down(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("x,other\n" + "1,a\n" * 400_000 + "1.5,2\n")
+    assert as_floats(path, "x", column(path, "x"))[-1] == 1.5
+
+
+def test_a_missing_value_is_named(tmp_path):
+    path = tmp_path / "points.parquet"
+    pq.write_table(pa.table({"x": [1.0, None]}), path)
+    assert complaint(path) == "points.parquet: row 2: x: no value"
+
+
+def test_columns_of_other_types_are_refused(tmp_path):
+    path = tmp_path / "points.parquet"
+    pq.write_table(pa.table({"x": [[1.0], [2.0]]}), path)
+    assert complaint(path) == "points.parquet: x: expected numbers, got list<element: double>"
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet", "npz"])
+def test_what_is_no_table_is_refused_in_one_line(tmp_path, kind):
+    path = tmp_path / f"points.{kind}"
+    path.write_bytes(b"\xff\xfe\x00 nothing \n that is a table")
+    assert complaint(path).startswith(f"points.{kind}: ")
+
+
+def test_missing_files_folders_and_other_kinds_are_refused(tmp_path):
+    with pytest.raises(InputError, match=r"path: no such file: .*points\.csv"):
+        open_table(tmp_path / "points.csv")
+    (tmp_path / "folder.csv").mkdir()
+    with pytest.raises(InputError, match="path: this is a folder"):
+        open_table(tmp_path / "folder.csv")
+    with pytest.raises(InputError, match=r"expected a file that ends in \.csv, \.parquet, \.npz, got 'points\.txt'"):
+        open_table(tmp_path / "points.txt")

@@ -1,0 +1,118 @@
+"""Targets of a run file: every way to give them, and what is wrong named by its key."""
+
+import numpy as np
+import pytest
+
+from ikde.batch.arms import make_arm
+from ikde.batch.spec import BatchSpec
+from ikde.batch.targets import make_source
+from ikde.errors import InputError
+
+UNITS = {"length": "mm", "angle": "deg"}
+DOWN = {"axis": [0, 0, -1]}
+GRID = {"from": [0, 0, 0], "to": [1000, 0, 500], "counts": [3, 1, 2]}
+BOX = {"from": [0, 0, 0], "to": [1000, 1, 500], "count": 4}
+BALL = {"center": [1000, 0, 0], "radius": 500, "count": 4}
+
+
+@pytest.fixture
+def make(qiao, tmp_path):
+    def call(solve=None, units=UNITS, **targets):
+        spec = BatchSpec.model_validate({"robot": "qiao2021", "units": units, "targets": targets, "solve": solve or {}})
+        return make_source(spec, make_arm("a", qiao, spec.solve, spec.units).problem, tmp_path)
+
+    return call
+
+
+@pytest.fixture
+def complaint(make):
+    def call(**targets):
+        with pytest.raises(InputError) as caught:
+            make(**targets)
+        return str(caught.value)
+
+    return call
+
+
+def test_inline_targets_may_differ_in_kind(make):
+    entries = [{"position": [1, 2, 3]}, {"position": [0, 0, 1000], **DOWN}, {"position": [0, 0, 0], "rpy": [0, 0, 90]}]
+    targets = make(inline=entries)[0].read(0, 3)
+    assert [t.kind for t in targets] == ["position", "axis", "pose"]
+    np.testing.assert_array_equal(targets[0].p_world_tool, [1e-3, 2e-3, 3e-3])
+    np.testing.assert_array_equal(targets[2].R_world_tool, [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+
+
+def test_inline_targets_may_have_names(make):
+    assert make(inline=[{"position": [1, 2, 3]}])[0].names is None
+    source, _ = make(inline=[{"position": [1, 2, 3], "name": "a"}, {"position": [1, 2, 3]}])
+    assert source.names == ("a", "target 1")
+
+
+@pytest.mark.parametrize(("key", "entry", "count"), [("grid", GRID, 6), ("box", BOX, 4), ("sphere", BALL, 4)])
+def test_points_are_in_metres_with_an_orientation(make, key, entry, count):
+    source, _ = make(**{key: {**entry, "orientation": DOWN}})
+    targets = source.read(0, 99)
+    assert len(targets) == source.count == count
+    assert {t.kind for t in targets} == {"axis"}
+    assert max(np.abs(t.p_world_tool).max() for t in targets) <= 1.5
+
+
+def test_reachable_targets_lie_in_the_ranges_of_solve(make):
+    source, recipe = make(
+        solve={"ranges": {"d_x": [-10, 10]}, "freeze": {"d_y": 100}}, reachable={"count": 5, "goal": "axis"}
+    )
+    ranges = recipe["reachable"]["ranges"]
+    assert (ranges["d_x"], ranges["d_y"]) == ([-0.01, 0.01], [0.1, 0.1])
+    assert (recipe["reachable"]["detector"]["name"], source.read(0, 1)[0].kind) == ("improved", "axis")
+
+
+def test_a_table_counts_by_its_numbers_and_not_by_its_name(make, tmp_path):
+    for name, unit in (("a.csv", "m"), ("b.csv", "mm")):
+        (tmp_path / name).write_text("x,y,z\n" + ("0.5,1,2\n" if unit == "m" else "500,1000,2000\n"))
+    columns = {"position": ["x", "y", "z"]}
+    recipes = [
+        make(file={"path": name, "columns": columns, "units": {"length": unit}})[1]
+        for name, unit in (("a.csv", "m"), ("b.csv", "mm"))
+    ]
+    assert recipes[0] == recipes[1]
+    assert recipes[0]["file"]["count"] == 1
+
+
+@pytest.mark.parametrize(
+    ("targets", "expected"),
+    [
+        ({}, "targets: expected one of inline, file, reachable, grid, box, sphere, got none"),
+        ({"grid": GRID, "box": BOX}, "targets.box: expected one of inline, file"),
+        ({"inline": [{"position": [1, 2, 3], "axis": [0, 0, 0]}]}, "targets.inline[0].axis: an axis of length 0"),
+        (
+            {"inline": [{"position": [1, 2, 3], "rpy": [0, 0, 0], **DOWN}]},
+            "targets.inline[0].rpy: axis and rpy both ask for an orientation; give one",
+        ),
+        (
+            {"box": {**BOX, "orientation": {"quat_wxyz": [0, 0, 0, 0]}}},
+            "targets.box.orientation.quat_wxyz: a quaternion of length 0",
+        ),
+        ({"reachable": {"count": 3, "detector": "typcal"}}, "targets.reachable.detector: qiao2021 has no detector"),
+        (
+            {"file": {"path": "none.csv", "columns": {"position": ["x", "y", "z"]}}},
+            "targets.file.path: no such file: ",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named(make, complaint, targets, expected):
+    assert complaint(**targets).startswith(expected)
+
+
+@pytest.mark.parametrize(
+    ("targets", "key"),
+    [
+        ({"inline": [{"position": [1, 2, 1e9]}]}, "inline[0].position"),
+        ({"grid": {**GRID, "from": [0, -1e8, 0]}}, "grid.from"),
+        ({"box": {**BOX, "to": [1e7, 0, 0]}}, "box.to"),
+        ({"sphere": {**BALL, "center": [2e6, 0, 0]}}, "sphere.center"),
+        ({"sphere": {**BALL, "center": [-1e6, 0, 0]}}, "sphere.radius"),
+    ],
+)
+def test_targets_beyond_a_thousand_kilometres_are_refused(complaint, targets, key):
+    message = complaint(units={"length": "m"}, **targets)
+    assert message.startswith(f"targets.{key}: expected finite numbers up to 1e+06")

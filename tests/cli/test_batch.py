@@ -1,0 +1,134 @@
+"""`ikde batch`."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import ikde
+
+SPEC = """
+robot: qiao2021
+targets:
+  inline:
+    - {name: near, position: [0.5, 0.2, 0.8]}
+    - {position: [0.3, 0.3, 0.9]}
+repeats: 3
+chunk: 4
+solve: {settings: {position_tolerance: 0.01}}
+grade: [typical]
+"""
+INTERRUPTIBLE = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job may have inherited "ignore"
+from ikde.__main__ import main
+main()
+"""
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "two.yaml"
+    path.write_text(SPEC)
+    return path
+
+
+def far(spec):
+    """The same file with a target that is out of reach."""
+    spec.write_text(SPEC.replace("[0.3, 0.3, 0.9]", "[9, 9, 9]"))
+    return spec
+
+
+def test_a_run_is_summarised_and_what_is_next_is_said(cli, spec, tmp_path):
+    out = tmp_path / "run"
+    outcome = cli("batch", spec, "--out", out)
+    assert outcome.code == 0
+    assert outcome.out.startswith("all reached: 6 solves\n")
+    assert outcome.out.endswith(f"answers    {out}\nnext       ikde report {out}\n")
+    assert outcome.err == f"two → {out}: 6 solves, 0 of 2 parts done before\n"
+    assert len(ikde.read_batch(out)) == 6
+
+
+def test_the_same_command_goes_on(cli, spec, tmp_path):
+    first = cli("batch", spec, "--out", tmp_path / "run", "--threads", "1")
+    second = cli("batch", spec, "--out", tmp_path / "run")
+    assert (second.code, second.out) == (0, first.out)
+    assert "6 solves, 2 of 2 parts done before" in second.err
+
+
+def test_a_target_that_is_not_reached_is_named_and_exits_with_1(cli, spec, tmp_path):
+    outcome = cli("batch", far(spec), "--out", tmp_path / "run")
+    assert outcome.code == 1
+    assert outcome.out.startswith("3 of 6 solves not reached\n")
+    for repeat in range(3):
+        assert f"  auto, target 1, repeat {repeat}: out of reach: at least" in outcome.out
+
+
+def test_json_is_the_summary(cli, spec, tmp_path):
+    outcome = cli("batch", far(spec), "--out", tmp_path / "run", "--json")
+    assert outcome.code == 1
+    assert (outcome.data["solves"], outcome.data["unreached"], len(outcome.data["listed"])) == (6, 3, 3)
+    assert outcome.data["arms"][0]["reached"]["count"] == 3
+    assert outcome.data["arms"][0]["collisions"]["typical"]["total"] == 3
+
+
+def test_a_dry_run_writes_nothing(cli, spec, tmp_path, monkeypatch):
+    monkeypatch.setattr("ikde.batch.preview.SAMPLE_SECONDS", 0.1)
+    out = tmp_path / "run"
+    text = cli("batch", spec, "--dry-run")
+    data = cli("batch", spec, "--dry-run", "--out", out, "--json").data
+    assert (text.code, text.err) == (0, "")
+    assert "two: robot qiao2021, 2 targets, 3 repeats" in text.out
+    assert "nothing was written" in text.out
+    assert (data["solves"], data["parts"]) == (6, 2)
+    assert not out.exists()
+
+
+def test_a_run_of_another_file_is_replaced_only_if_told_to(cli, spec, tmp_path):
+    out = tmp_path / "run"
+    cli("batch", spec, "--out", out)
+    spec.write_text(SPEC + "seed: 8\n")
+    refused = cli("batch", spec, "--out", out)
+    assert refused.code == 2
+    assert refused.err.startswith(f"ikde: {out}: holds another run: ")
+    assert "there, 8 now" in refused.err
+    assert cli("batch", spec, "--out", out, "--overwrite").code == 0
+    assert json.loads((out / "manifest.json").read_text())["seed"] == 8
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("", "--out: a run needs a folder"),
+        ("--out run --threads 0", "threads: expected a whole number of at least 1"),
+        ("--out run --workers 2", "workers: only a local cluster"),
+        ("--out run --dask nowhere", "dask: expected 'local' or an address"),
+        ("--out run --dask local --threads 2", "threads: workers of a cluster use one thread each"),
+    ],
+)
+def test_what_batch_refuses(cli, spec, tmp_path, monkeypatch, options, words):
+    monkeypatch.chdir(tmp_path)
+    outcome = cli("batch", spec, *options.split())
+    assert (outcome.code, outcome.out) == (2, "")
+    assert words in outcome.err
+
+
+def test_a_file_that_is_not_there_is_refused(refuse):
+    assert "nowhere.yaml" in refuse("batch", "nowhere.yaml", "--out", "run")
+
+
+def test_ctrl_c_says_how_to_go_on(spec, tmp_path):
+    spec.write_text(SPEC.replace("repeats: 3", "repeats: 100000"))
+    out = tmp_path / "run"
+    command = [sys.executable, "-W", "error", "-c", INTERRUPTIBLE, "batch", str(spec), "--out", str(out)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while not list(out.glob("solutions/*.parquet")):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        printed, said = process.communicate(timeout=60)
+    line = "ikde: interrupted; finished parts are intact; run the same command again to go on"
+    assert (process.returncode, printed, said.splitlines()[1:]) == (130, "", [line])
+    assert len(ikde.read_batch(out)) >= 4

@@ -1,0 +1,58 @@
+"""`ikde bench paper`: files that are whole, a check that finds what was changed, and words for what is wrong."""
+
+import json
+
+import pytest
+
+from ikde.bench import budget as budgets
+from tests.tiny_paper import TINY
+
+
+@pytest.fixture
+def report(cli, tmp_path, monkeypatch):
+    """A tiny report in a folder of its own."""
+    monkeypatch.setattr(budgets, "QUICK", TINY)
+    outcome = cli("bench", "paper", "--out", tmp_path / "report", "--quick")
+    assert outcome.code == 0, outcome
+    return tmp_path / "report", outcome
+
+
+def test_a_report_is_a_page_its_markdown_and_its_data_and_the_data_checks(cli, report):
+    folder, outcome = report
+    assert sorted(path.name for path in folder.iterdir()) == ["report.html", "report.md", "results.json"]
+    assert outcome.out.startswith(str(folder / "report.html"))
+    assert "computing: rejection" in outcome.err
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Table 4" in page
+    assert "A quick run" in page
+
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    before = {path: path.stat().st_mtime_ns for path in folder.iterdir()}
+    checked = cli("bench", "paper", "--out", folder, "--check")
+    assert (checked.code, checked.out) == (0, f"{folder / 'results.json'}: every exact figure comes out the same\n")
+
+    results["sections"]["kinematics"]["exact"]["points"][0]["printed_mm"][0] += 1.0
+    (folder / "results.json").write_text(json.dumps(results))
+    tampered = cli("bench", "paper", "--out", folder, "--check", "--json")
+    assert tampered.code == 1
+    assert tampered.data["agrees"] is False
+    assert [line.split(":")[0] for line in tampered.data["differences"]] == ["kinematics.exact.points[0].printed_mm[0]"]
+    del before[folder / "results.json"]
+    assert all(path.stat().st_mtime_ns == time for path, time in before.items())
+
+
+def test_a_check_needs_a_record(refuse, tmp_path):
+    assert "no such file" in refuse("bench", "paper", "--out", tmp_path / "none", "--check")
+
+
+def test_a_check_takes_its_sizes_from_the_record(refuse):
+    assert "--quick" in refuse("bench", "paper", "--check", "--quick")
+
+
+def test_a_file_is_no_folder(refuse, tmp_path):
+    (tmp_path / "report").write_text("mine")
+    assert "this is a file" in refuse("bench", "paper", "--out", tmp_path / "report")
+
+
+def test_an_unknown_benchmark_is_refused(refuse):
+    assert "paperr" in refuse("bench", "paperr")

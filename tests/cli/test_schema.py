@@ -1,0 +1,26 @@
+"""`ikde schema` prints JSON schemas that editors can use."""
+
+import pytest
+
+
+def test_the_schema_of_a_run_file_explains_its_keys(cli):
+    outcome = cli("schema", "batch")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.data["additionalProperties"] is False
+    assert outcome.data["required"] == ["robot", "targets"]
+    assert outcome.data["properties"]["repeats"]["description"].startswith("How often each target is solved")
+    targets = outcome.data["$defs"]["TargetsEntry"]
+    assert (targets["minProperties"], targets["maxProperties"]) == (1, 1)
+    assert outcome.data["$defs"]["GridEntry"]["required"] == ["from", "to", "counts"]
+
+
+def test_the_schema_of_a_robot_file_is_there_too(cli):
+    assert {"joints", "frames", "tool"} <= set(cli("schema", "robot").data["required"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [((), "batch or robot, got nothing"), (("bacth",), "batch or robot, got bacth (did you mean 'batch'?)")],
+)
+def test_other_names_are_refused(refuse, arguments, words):
+    assert words in refuse("schema", *arguments)

@@ -1,0 +1,122 @@
+"""Charts show the numbers that they are given."""
+
+import numpy as np
+import pytest
+
+from ikde.plot.charts import (
+    MOST_POINTS,
+    Bars,
+    Estimate,
+    Event,
+    Line,
+    Sample,
+    plot_bars,
+    plot_cdf,
+    plot_forest,
+    plot_histogram,
+    plot_lines,
+)
+from ikde.plot.images import INK, to_svg
+from ikde.plot.style import COLORS, Axis
+
+TIME, MM = Axis(label="time", unit="s"), Axis(label="clearance", unit="mm")
+
+
+def labels(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def curves(figure):
+    return {line.get_label(): line for line in figure.axes[0].lines}
+
+
+def test_lines_carry_units_level_and_events():
+    events = [Event(label="detected", x=1.5, line="b"), Event(label="contact", x=2.0)]
+    lines = [Line(label=name, x=[0, 3], y=[k, -k]) for k, name in enumerate("ab")]
+    figure = plot_lines(lines, x=TIME, y=MM, events=events, level=(0.0, "safe distance"))
+    assert labels(figure) == ["a", "b", "safe distance", "detected", "contact"]
+    drawn = curves(figure)
+    assert drawn["detected"].get_xdata() == [1.5]
+    assert drawn["detected"].get_color() == drawn["b"].get_color() == COLORS[1]
+    assert drawn["contact"].get_color() == INK
+    assert drawn["a"].get_linestyle() != drawn["b"].get_linestyle()
+    assert figure.axes[0].get_xlabel() == "time [s]"
+    assert figure.axes[0].get_ylabel() == "clearance [mm]"
+
+
+def test_bars_carry_intervals_and_published_values():
+    bars = [
+        Bars(label="a", values=[70, 80], lower=[65, 75], upper=[80, 82], published=[75, float("nan")]),
+        Bars(label="b", values=[60, 61], published=[60, 60]),
+    ]
+    figure = plot_bars(["one", "two"], bars, y=Axis(label="rate", unit="%"))
+    axes = figure.axes[0]
+    assert [patch.get_height() for patch in axes.patches] == [70, 80, 60, 61]
+    assert sorted(labels(figure)) == ["a", "b", "published"]
+    whiskers = axes.collections[0].get_segments()
+    np.testing.assert_allclose([segment[:, 1] for segment in whiskers], [[65, 80], [75, 82]])
+    assert [text.get_text() for text in axes.get_xticklabels()] == ["one", "two"]
+
+
+def test_a_forest_marks_intervals_that_miss_the_published_value():
+    estimates = [Estimate(label=str(v), value=v, lower=v - 2, upper=v + 2) for v in (70.0, 74.0, 76.0)]
+    figure = plot_forest(estimates, x=Axis(label="rate", unit="%"), published=75.0)
+    assert sorted(labels(figure)) == ["interval holds it", "interval misses it", "published"]
+    axes = figure.axes[0]
+    points = {tuple(line.get_xdata()): line.get_fillstyle() for line in axes.lines if line.get_marker() == "o"}
+    assert points == {(74.0, 76.0): "full", (70.0,): "none"}
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["70.0", "74.0", "76.0"]
+    assert axes.get_ylim()[0] > axes.get_ylim()[1]  # the first on top
+
+
+def test_a_forest_without_published_value_has_nothing_to_miss():
+    assert plot_forest([Estimate(label="a", value=1, lower=0, upper=2)], x=MM).legends == []
+
+
+def test_a_cdf_ends_at_the_share_that_has_a_value():
+    figure = plot_cdf([Sample(label="a", values=[3.0, 1.0, np.nan, 2.0], total=4)], x=TIME, y="solves")
+    line = curves(figure)["a"]
+    assert list(line.get_xdata()) == [1.0, 2.0, 3.0]
+    assert list(line.get_ydata()) == [25.0, 50.0, 75.0]
+    assert figure.axes[0].get_ylabel() == "solves done [%]"
+
+
+def test_a_cdf_of_many_values_has_few_points():
+    line = curves(plot_cdf([Sample(label="a", values=np.arange(100_000))], x=TIME))["a"]
+    assert len(line.get_xdata()) == MOST_POINTS
+    assert line.get_xdata()[-1] == 99_999
+    assert line.get_ydata()[-1] == 100.0
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_a_histogram_counts_every_value_once(log):
+    values = np.append(np.random.default_rng(0).uniform(1e-6, 1.0, 999), 0.0)
+    samples = [Sample(label="a", values=values), Sample(label="b", values=values + 1.0)]
+    figure = plot_histogram(samples, x=Axis(label="error", unit="m", log=log), bins=30)
+    for stairs in figure.axes[0].patches:
+        shares, edges, _ = stairs.get_data()
+        assert len(edges) == 31
+        assert sum(shares) == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize("values", [[], [float("nan")], [2.0, 2.0], [0.0]])
+def test_little_to_show_is_shown(values, log):
+    axis = Axis(label="x", log=log)
+    for plot in (plot_cdf, plot_histogram):
+        figure = plot([Sample(label="a", values=values)], x=axis)
+        assert ">a</text>" in to_svg(figure)
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_a_curve_of_nothing_but_nan_is_shown(log):
+    line = Line(label="a", x=[1.0, 2.0], y=[np.nan, np.nan])
+    assert ">clearance [mm]</text>" in to_svg(plot_lines([line], x=TIME, y=Axis(label="clearance", unit="mm", log=log)))
+
+
+def test_bars_and_estimates_may_have_no_value():
+    nan = [float("nan")]
+    bars = [Bars(label="a", values=nan, lower=nan, upper=nan, published=nan)]
+    assert ">one</text>" in to_svg(plot_bars(["one"], bars, y=MM))
+    assert ">rate</text>" in to_svg(plot_forest([], x=Axis(label="rate")))
+    assert ">one</text>" in to_svg(plot_forest([Estimate(label="one", value=nan[0], lower=0, upper=1)], x=MM))

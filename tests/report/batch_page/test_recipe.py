@@ -1,0 +1,87 @@
+"""What ran, and how to do it again."""
+
+import ast
+from dataclasses import replace
+from pathlib import Path
+
+from ikde.report.batch_page.recipe import make_again, make_recipe
+from ikde.report.page import Code, Facts
+from tests.report.batch_page.blocks import column, tables
+
+
+def facts(section):
+    (block,) = [block for block in section.blocks if isinstance(block, Facts)]
+    return dict(block.items)
+
+
+def codes(run):
+    return [block.text for block in make_again(run).blocks if isinstance(block, Code)]
+
+
+def test_what_ran_is_stated(answers):
+    stated = facts(make_recipe(answers.manifest))
+    assert stated["robot"] == "qiao2021"
+    assert (stated["targets"], stated["solves of a target"], stated["seed"]) == ("4", "8", "7")
+    assert stated["graded again by"] == "typical, improved"
+    assert stated["recipe"] == answers.manifest.hash
+    assert "cores" in stated["machine"]
+    for library in ("ikde", "numpy", "numba", "pyarrow"):
+        assert library in stated["versions"]
+
+
+def test_a_file_with_brackets_is_shown_as_it_is(answers):
+    stated = facts(make_recipe(replace(answers.manifest, file="runs/[a].yaml")))
+    assert stated["run file"] == r"runs/\[a\].yaml"
+
+
+def test_arms_are_compared_by_what_differs(answers):
+    differing, common = tables(make_recipe(answers.manifest))
+    assert column(differing, "arm") == ["free", "careful"]
+    assert column(differing, "method") == ["auto", "de"]
+    assert column(differing, "detector") == ["none", "improved"]
+    assert "position tolerance m" not in [column.title for column in differing.columns]
+    settings = dict(common.rows)
+    assert settings["settings: position tolerance m"] == "0.02"
+    assert "method" not in settings
+
+
+def test_arms_that_differ_in_nothing_say_so(answers):
+    twins = tuple(replace(answers.manifest.arms[0], name=name) for name in "ab")
+    table = tables(make_recipe(replace(answers.manifest, arms=twins)))[0]
+    assert table.rows == (("a",), ("b",))
+    assert "Nothing" in table.note
+
+
+def test_one_arm_is_described_and_not_compared(bare):
+    (table,) = tables(make_recipe(bare.manifest))
+    assert table.caption == "How it was solved"
+    assert dict(table.rows)["method"] == "auto"
+
+
+def test_the_recipe_knows_more_than_the_settings(bare):
+    """A run that came from a file."""
+    recipe = {
+        "targets": {"grid": {}, "units": {}},
+        "arms": {"auto": {"ranges": {"q1": [0.0, 1 / 3]}, "near": None, "detector": {"name": "typical"}}},
+    }
+    section = make_recipe(replace(bare.manifest, recipe=recipe))
+    assert facts(section)["targets"] == "12 (grid)"
+    assert dict(tables(section)[0].rows) == {
+        "ranges: q1": "0 to 0.333333",
+        "near": "none",
+        "detector: name": "typical",
+    }
+
+
+def test_commands_make_run_and_page_again(answers):
+    run = replace(answers, folder=Path("my runs/a"), manifest=replace(answers.manifest, file="b.yaml"))
+    assert codes(run)[0] == "ikde batch b.yaml --out 'my runs/a'\nikde report 'my runs/a'"
+    assert codes(answers)[0] == f"ikde report {answers.folder}"  # made in Python, from no file
+
+
+def test_reading_on_is_python_whatever_the_folder_is_called(answers):
+    for name in ("runs/a", "it's"):
+        text = codes(replace(answers, folder=Path(name)))[1]
+        ast.parse(text)
+        for library in ("pandas", "polars", "duckdb"):
+            assert library in text

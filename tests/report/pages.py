@@ -1,0 +1,47 @@
+"""A page with every kind of block, and a drawing small enough to read."""
+
+from ikde.report.page import (
+    Cell,
+    Code,
+    Column,
+    Facts,
+    Figure,
+    Gallery,
+    Notice,
+    Number,
+    Numbers,
+    Page,
+    Section,
+    Table,
+    Text,
+)
+
+HOSTILE = "<script>alert('a|b')</script> & co_"
+DRAWING = (
+    '<svg viewBox="0 0 9 9"><defs><path id="m1" d="M 0 0"/><clipPath id="c1"/></defs>'
+    '<use href="#m1" clip-path="url(#c1)"/></svg>'
+)
+RATES = Table(
+    columns=(
+        Column("detector", align="left"),
+        Column("SR", "%", group="print", mark="published"),
+        Column("SR", "%", group="here", mark="ours"),
+    ),
+    rows=(("typical", "75.0", "73.2"), ("improved", "86.0", Cell("82.1", "off")), (HOSTILE, "", "-")),
+    caption="Rates of **both** detectors",
+    note="Intervals are `Wilson's`.",
+)
+
+
+def make_page():
+    svg, png = Figure(image=DRAWING, alt='a "curve"', caption="Drawn."), Figure(image=b"\x89PNG", alt="pose")
+    return Page(
+        title=HOSTILE,
+        subtitle="two targets",
+        lead=(Numbers((Number("73.2 %", "reached", "print: 75 %"), Number("0", "lost"))), Notice("**Not** finished.")),
+        sections=(
+            Section("Rates", (Text("See [poses](#poses).\n\n- one\n- two"), RATES, svg)),
+            Section("Poses", (Gallery((svg, png)), Facts((("seed", "`2021`"),)), Code("a < b | c", "In a shell"))),
+        ),
+        footer="ikde `0.1`",
+    )

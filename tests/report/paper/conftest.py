@@ -1,0 +1,30 @@
+"""One tiny report for all sections."""
+
+import pytest
+from matplotlib.figure import Figure
+
+from ikde.bench.paper import compute_paper
+from ikde.report.paper import pictures
+from tests.tiny_paper import TINY, load_sources
+
+
+@pytest.fixture(scope="session")
+def results():
+    """What `compute_paper` gives."""
+    return compute_paper(load_sources(), TINY)
+
+
+@pytest.fixture(scope="session")
+def robots():
+    """Both models."""
+    sources = load_sources()
+    return {"key_point": sources.key_point, "classical": sources.classical}
+
+
+@pytest.fixture(autouse=True, scope="package")
+def _blank_pictures():
+    """Drawing a robot takes half a second; tests/report/paper/test_pictures.py and tests/cli/test_bench.py do it."""
+    patch = pytest.MonkeyPatch()
+    patch.setattr(pictures, "plot_pose", lambda *_, **__: Figure(figsize=(1, 1)))
+    yield
+    patch.undo()

@@ -1,0 +1,37 @@
+"""Table 4's section: printed cells beside ours in both readings, and what agrees said as it is."""
+
+import json
+
+from ikde.report.page import Cell, Figure, Table, Text
+from ikde.report.paper.rejection import make_rejection, make_waiting
+
+
+def tables(section):
+    return [block for block in section.blocks if isinstance(block, Table)]
+
+
+def test_two_readings_with_every_printed_cell(results):
+    section = make_rejection(results["sections"]["rejection"])
+    for table in tables(section)[:2]:
+        assert [row[2] for row in table.rows] == ["73 of 100", "63 of 100", "86 of 100", "65 of 100"]
+        assert [row[3].split()[0] for row in table.rows] == ["73.0", "63.0", "86.0", "65.0"]
+    assert [row[2] for row in tables(section)[-1].rows] == ["1.9053", "1.6700", "1.9353", "1.7081"]
+    assert any(isinstance(block, Figure) for block in section.blocks)
+
+
+def test_a_print_outside_our_interval_is_said(results):
+    data = json.loads(json.dumps(results["sections"]["rejection"]))
+    for target in data["exact"]["targets"]:
+        for cell in target["samples"][-1]["rates"]:
+            cell.update(CN=5000, SN=10000, rejected_pct=50.0, interval_pct=[49.0, 51.0])
+    section = make_rejection(data)
+    assert all(row[-2:] == (Cell("no", "off"), Cell("no", "off")) for row in tables(section)[0].rows)
+    judged = [block.markup for block in section.blocks if isinstance(block, Text)][1]
+    assert "0 of 4 of our rates lie within the sampling error of the print" in judged
+    assert "the farthest is 36.0 points off" in judged
+
+
+def test_waiting_has_a_row_a_detector_reading_and_target(results):
+    table = tables(make_waiting(results["sections"]["waiting"]))[0]
+    assert len(table.rows) == 8
+    assert all(row[3].endswith(f"of {results['made']['budget']['waits']}") for row in table.rows)

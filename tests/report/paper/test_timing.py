@@ -1,0 +1,23 @@
+"""Table 3's section: eight columns, the ratios of the text, of its table and ours, and who is faster here."""
+
+import json
+
+from ikde.report.page import Table, Text
+from ikde.report.paper.timing import make_timing
+
+
+def test_eight_columns_and_four_ratios(results):
+    section = make_timing(results["sections"]["timing"])
+    times, ratios = [block for block in section.blocks if isinstance(block, Table)]
+    assert [row[0] for row in times.rows] == ["Ta1", "Tb1", "Tc1", "Td1", "Ta2", "Tb2", "Tc2", "Td2"]
+    assert times.rows[0][4] == "631.1"
+    assert [row[3:5] for row in ratios.rows] == [("47", "40.4"), ("47", "37.7"), ("61", "66.6"), ("61", "67.9")]
+
+
+def test_the_conclusion_follows_the_figures(results):
+    data = json.loads(json.dumps(results["sections"]["timing"]))
+    for ratio, median in zip(data["measured"]["kinematics"]["ratios"], (0.5, 0.5, 1.2, 1.3), strict=True):
+        ratio["median"] = median
+    last = [block for block in make_timing(data).blocks if isinstance(block, Text)][-1]
+    assert "surface points by key points take 50 to 50 % of the time by transformation (less than it)" in last.markup
+    assert "120 to 130 % of the time by transformation (no less than it)" in last.markup
