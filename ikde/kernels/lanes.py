@@ -73,3 +73,21 @@ def solve_lane(robot, detector, target, index, search, seed, stream, attempts, o
         elif meets:
             out_counts[REACHED] = 1
             return
+
+
+@kernel
+def solve_lanes(
+    robot, detector, target, lanes, search, seed, streams, attempts, last, out_q, out_score, out_counts, out_pairs
+):
+    """Run attempts attempts[0] .. attempts[1]-1 of the lanes lanes[0] .. lanes[1]-1 that are not reached yet.
+
+    A call from Python costs as much as a short search: this one call serves many. `streams` [T]; `last` [T]: where the
+    budget of each lane ends; the outputs are those of `solve_lane`, a row a lane.
+    """
+    block = np.empty(2, dtype=np.int64)
+    for index in range(lanes[0], lanes[1]):
+        if out_counts[index, REACHED]:
+            continue
+        block[0], block[1] = attempts[0], min(attempts[1], last[index])
+        outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
+        solve_lane(robot, detector, target, index, search, seed, streams[index], block, *outputs)

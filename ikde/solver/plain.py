@@ -70,8 +70,8 @@ def compute_components(robot: Robot, spheres: str, q: Floats) -> dict[str, Spher
 
 def compute_sphere_gaps(a: Spheres, b: Spheres) -> Floats:
     """Distance - R_i - R_j between all spheres of two components [..., n, m] in m."""
-    distances = np.linalg.norm(a[0][..., :, None, :] - b[0][..., None, :, :], axis=-1)
-    return distances - a[1][:, None] - b[1]
+    x, y, z = (a[0][..., :, None, k] - b[0][..., None, :, k] for k in range(3))  # thrice as fast as a norm over an axis
+    return np.sqrt(x * x + y * y + z * z) - a[1][:, None] - b[1]
 
 
 def compute_gaps(robot: Robot, spheres: str, pairs: Pairs, q: Floats) -> Floats:

@@ -10,13 +10,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
-from ikde.kernels.lanes import COUNTS, REACHED, solve_lane
+from ikde.kernels.lanes import COUNTS, REACHED, solve_lanes
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.reach import reach_excess_m
 from ikde.model.target import Target
 from ikde.solver.problem import ROUNDING, Problem, pack_search
 
 ATTEMPTS_PER_CALL = 16  # Python hears Ctrl-C between calls
+EVALUATIONS_PER_CALL = 20_000  # some 20 ms: searches that are shorter share a call, up to
+LANES_PER_CALL = 64
 OUT_OF_REACH_ATTEMPTS = 4
 
 
@@ -61,24 +63,38 @@ def search(
     counts = np.zeros((count, COUNTS), dtype=np.int64)
     pair_counts = np.zeros((count, detector.pairs.shape[0]), dtype=np.int64)
     excess, seconds = _excess_m(problem, targets), np.zeros(count)
-    stop = threading.Event()
+    last = first_attempt + (_budgets(problem, excess) if attempts is None else np.full(count, attempts))
+    lane_streams, stop = np.array(streams, dtype=np.int64), threading.Event()
 
-    def run(index: int) -> None:
-        last = first_attempt + (_budget(problem, excess[index]) if attempts is None else attempts)
+    def run(lanes: range) -> None:
+        rows = slice(lanes.start, lanes.stop)
         started = time.perf_counter()
         # One call at least: with no attempts to make it is empty, and compiles or loads the kernel.
-        for begin in range(first_attempt, max(last, first_attempt + 1), ATTEMPTS_PER_CALL):
-            if stop.is_set() or counts[index, REACHED]:
-                return
-            block = np.array([begin, min(begin + ATTEMPTS_PER_CALL, last)])
-            outputs = (q[index], score[index], counts[index], pair_counts[index])
-            stream = np.int64(streams[index])
+        for begin in range(first_attempt, max(int(last[rows].max()), first_attempt + 1), ATTEMPTS_PER_CALL):
+            if stop.is_set() or counts[rows, REACHED].all():
+                break
+            where, block = np.array([lanes.start, lanes.stop]), np.array([begin, begin + ATTEMPTS_PER_CALL])
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-                solve_lane(robot, detector, packed, index, settings, np.uint64(seed), stream, block, *outputs)
-            seconds[index] = time.perf_counter() - started
+                solve_lanes(
+                    *(robot, detector, packed, where, settings, np.uint64(seed), lane_streams, block, last),
+                    *(q, score, counts, pair_counts),
+                )
+        seconds[rows] = (time.perf_counter() - started) / len(lanes)
 
-    _on_threads(run, count, threads or usable_cores(), stop)
+    _on_threads(run, _cut(count, _lanes_per_call(problem)), threads or usable_cores(), stop)
     return Found(q=q, counts=counts, pair_counts=pair_counts, excess_m=excess, seconds=seconds)
+
+
+def _lanes_per_call(problem: Problem) -> int:
+    """How many lanes share a call: one, unless the search is very short."""
+    settings = problem.settings
+    evaluations = settings.population * (settings.generations + 1) * min(settings.restarts, ATTEMPTS_PER_CALL)
+    return int(np.clip(EVALUATIONS_PER_CALL // evaluations, 1, LANES_PER_CALL))
+
+
+def _cut(count: int, size: int) -> list[range]:
+    """0 .. count - 1 in pieces of `size`."""
+    return [range(first, min(first + size, count)) for first in range(0, count, size)]
 
 
 def _excess_m(problem: Problem, targets: Sequence[Target]) -> Floats:
@@ -88,10 +104,10 @@ def _excess_m(problem: Problem, targets: Sequence[Target]) -> Floats:
     return np.where(excess > problem.settings.position_tolerance_m, excess, 0.0)
 
 
-def _budget(problem: Problem, excess_m: float) -> int:
+def _budgets(problem: Problem, excess_m: Floats) -> Ints:
     """Attempts to make: a target that is proved out of reach only needs showing how close the tool can come."""
     restarts = problem.settings.restarts
-    return min(OUT_OF_REACH_ATTEMPTS, restarts) if excess_m > 0.0 else restarts
+    return np.where(excess_m > 0.0, min(OUT_OF_REACH_ATTEMPTS, restarts), restarts)
 
 
 def usable_cores() -> int:
@@ -99,15 +115,15 @@ def usable_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _on_threads(run: Callable[[int], None], count: int, threads: int, stop: threading.Event) -> None:
-    """Call `run(0) .. run(count - 1)`; the kernels let go of Python's lock, so plain threads use all cores."""
-    if count == 1 or threads == 1:
-        for index in range(count):
-            run(index)
+def _on_threads(run: Callable[[range], None], pieces: Sequence[range], threads: int, stop: threading.Event) -> None:
+    """Call `run` for every piece; the kernels let go of Python's lock, so plain threads use all cores."""
+    if len(pieces) == 1 or threads == 1:
+        for piece in pieces:
+            run(piece)
         return
     with ThreadPoolExecutor(threads) as pool:
         try:
-            for _ in pool.map(run, range(count)):
+            for _ in pool.map(run, pieces):
                 pass
         except BaseException:
             stop.set()

@@ -26,13 +26,13 @@ import signal, sys
 import ikde.solver.search as module
 from ikde.__main__ import main
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job may have inherited "ignore"
-search = module.solve_lane
+search = module.solve_lanes
 
 def announced(*arguments):
     print("started", flush=True)
     return search(*arguments)
 
-module.solve_lane = announced
+module.solve_lanes = announced
 main()
 """
 ENDLESS = ["solve", "--position", "0.8", "0.5", "1", "--method", "de", "--tolerance", "1e-300", "--restarts", "100000"]

@@ -84,7 +84,7 @@ def test_the_clock_stands_still_when_nothing_compiles(qiao):
 ONE_SIGNATURE = """
 import ikde
 from ikde.kernels.figures import compute_figures
-from ikde.kernels.lanes import solve_lane
+from ikde.kernels.lanes import solve_lanes
 from tests.random_robots import random_robot
 
 settings = ikde.SolveSettings(population=8, generations=5, restarts=2)
@@ -98,7 +98,7 @@ for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
                 ikde.solve(robot, target, changed, detector=detector, near=robot.home)
                 ikde.solve(robot, target, settings, detector=detector, freeze=robot.joint_names[:1])
     ikde.solve_many(robot, [pose, pose], settings, threads=2)
-print(len(solve_lane.signatures), len(compute_figures.signatures))
+print(len(solve_lanes.signatures), len(compute_figures.signatures))
 """
 
 

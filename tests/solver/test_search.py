@@ -45,6 +45,29 @@ def test_cutting_attempts_into_calls_does_not_change_the_bits(problem, monkeypat
     assert bits(run(problem)) == bits(whole)
 
 
+@pytest.mark.parametrize("lanes", [1, 2, 3, 64])
+def test_lanes_that_share_a_call_do_not_change_the_bits(qiao, monkeypatch, lanes):
+    settings = ikde.SolveSettings(population=8, generations=40, restarts=6, position_tolerance_m=0.02)
+    far = ikde.Target((50.0, 0.0, 1.0))  # proved out of reach: fewer attempts than its neighbours
+    targets = [*TARGETS, far, *TARGETS]
+    problem = make_problem(qiao, settings, detector=None, near=None, freeze=None)
+    whole = search(problem, targets, seed=7, streams=range(11))
+    assert len(set(whole.counts[:, ATTEMPTS])) > 2
+    monkeypatch.setattr(module, "EVALUATIONS_PER_CALL", 10**9)
+    monkeypatch.setattr(module, "LANES_PER_CALL", lanes)
+    assert bits(search(problem, targets, seed=7, streams=range(11))) == bits(whole)
+
+
+def test_short_searches_share_a_call_and_long_ones_do_not(qiao):
+    def lanes(**changes):
+        settings = ikde.SolveSettings.for_method("de").with_changes(**changes)
+        return module._lanes_per_call(make_problem(qiao, settings, detector=None, near=None, freeze=None))
+
+    assert lanes() == 1
+    assert lanes(generations=1, restarts=1) == 64
+    assert lanes(generations=7, restarts=1) == 50
+
+
 def test_streams_and_seeds_are_different_searches(problem):
     same_target = run(problem, [TARGETS[0]] * 3, range(3)).q
     assert len({q.tobytes() for q in same_target}) == 3
@@ -84,7 +107,7 @@ def test_ctrl_c_inside_a_lane_gets_through(problem, monkeypatch, threads):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "solve_lane", interrupted)
+    monkeypatch.setattr(module, "solve_lanes", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(problem, threads=threads)
 
@@ -93,14 +116,15 @@ def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch):
     begun = []
     wait = threading.Event()
 
-    def lane(robot, detector, target, index, *rest):
-        begun.append(index)
-        if index == 0:
+    def lane(robot, detector, target, lanes, *rest):
+        begun.append(lanes[0])
+        if lanes[0] == 0:
             raise KeyboardInterrupt
         wait.wait(0.05)  # long enough that the first is heard of
 
-    monkeypatch.setattr(module, "solve_lane", lane)
+    monkeypatch.setattr(module, "solve_lanes", lane)
     monkeypatch.setattr(module, "ATTEMPTS_PER_CALL", 1)
+    monkeypatch.setattr(module, "LANES_PER_CALL", 1)
     targets = TARGETS * 20
     with pytest.raises(KeyboardInterrupt):
         run(problem, targets, range(100), threads=2, attempts=50)
@@ -111,7 +135,7 @@ def test_an_error_inside_a_lane_gets_through(problem, monkeypatch):
     def broken(*arguments):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(module, "solve_lane", broken)
+    monkeypatch.setattr(module, "solve_lanes", broken)
     with pytest.raises(ZeroDivisionError):
         run(problem, threads=2)
 
