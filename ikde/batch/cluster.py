@@ -5,7 +5,7 @@ import re
 import signal
 import threading
 import warnings
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from itertools import islice
@@ -17,6 +17,7 @@ from ikde.errors import InputError
 from ikde.kernels.jit import CACHE_FOLDER
 from ikde.solver.search import usable_cores
 
+Solve = Callable[[Iterable[Task]], Generator[Answer]]
 LOCAL = "local"
 ADDRESS = re.compile(r"((tcp|tls|ws|wss|ucx)://)?[^/\s]+:\d+")
 SILENT = logging.CRITICAL + 1
@@ -31,8 +32,11 @@ SETTINGS = {
 }
 
 
-def solve_on_cluster(tasks: Iterable[Task], address: str, workers: int | None = None) -> Generator[Answer]:
-    """Solve tasks on the cluster at `address`, or on a `"local"` one of so many processes; answers come in any order.
+@contextmanager
+def open_cluster(address: str, workers: int | None = None) -> Iterator[Solve]:
+    """Reach the cluster at `address`, or start a `"local"` one of so many processes; what it gives solves tasks there.
+
+    Answers come in any order.
 
     Raises:
         InputError: if `distributed` is not installed, the cluster cannot be reached or goes away, or its workers have
@@ -40,7 +44,7 @@ def solve_on_cluster(tasks: Iterable[Task], address: str, workers: int | None = 
     """
     distributed = _import_distributed()
     with _quiet(), _connect(distributed, address, workers) as client:
-        yield from _exchange(distributed, client, iter(tasks))
+        yield lambda tasks: _exchange(distributed, client, iter(tasks))
 
 
 def solve_remotely(task: Task, kernels: str) -> Answer:
@@ -116,7 +120,7 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
+def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Generator[Answer]:
     """Keep the cluster busy with a bounded number of tasks and give back answers as they come."""
     flying: dict[Any, tuple[Task, int]] = {}
     landed = distributed.as_completed(loop=client.loop)

@@ -1,17 +1,17 @@
 """Run a batch: part after part into a folder, stopped at any moment, gone on with by the same call."""
 
-from collections.abc import Callable, Generator, Iterable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
-from ikde.batch.cluster import LOCAL, solve_on_cluster
+from ikde.batch.cluster import LOCAL, Solve, open_cluster
 from ikde.batch.folder import claim_folder
 from ikde.batch.parts import Part, is_finished, list_parts, write_part
 from ikde.batch.plan import Batch
 from ikde.batch.summary import RunSummary, summarise
-from ikde.batch.task import Answer, Task, make_task, solve_task
+from ikde.batch.task import make_task, solve_task
 from ikde.errors import InputError
 
 
@@ -66,14 +66,13 @@ def run_batch(
     """
     _check_options(threads, dask, workers)
     folder = Path(out)
-    with claim_folder(folder, batch, overwrite=overwrite):
+    with _open(threads, dask, workers, announce_compile) as solve, claim_folder(folder, batch, overwrite=overwrite):
         parts = list(list_parts([arm.name for arm in batch.arms], batch.solves, batch.chunk))
         missing = [part for part in parts if not is_finished(folder, part)]
-        tasks = (make_task(batch, part) for part in missing)
         now, tell = _start(parts, missing), progress or (lambda now: None)
         tell(now)
-        with closing(_solve(tasks, threads, dask, workers, announce_compile)) as answers:
-            for answer in answers if missing else ():
+        with closing(solve(make_task(batch, part) for part in missing)) as answers:
+            for answer in answers:
                 write_part(folder, answer.part, answer.solutions, answer.timing)
                 now = now.after(answer.part)
                 tell(now)
@@ -101,14 +100,13 @@ def _start(parts: list[Part], missing: list[Part]) -> Progress:
     )
 
 
-def _solve(
-    tasks: Iterable[Task],
-    threads: int | None,
-    dask: str | None,
-    workers: int | None,
-    announce_compile: Callable[[], None] | None,
-) -> Generator[Answer]:
-    """Answers as they come, here or on a cluster."""
+@contextmanager
+def _open(
+    threads: int | None, dask: str | None, workers: int | None, announce_compile: Callable[[], None] | None
+) -> Iterator[Solve]:
+    """What solves tasks, here or on a cluster: reached, or found out of reach, before a folder is made."""
     if dask is None:
-        return (solve_task(task, threads, announce_compile) for task in tasks)
-    return solve_on_cluster(tasks, dask, workers)
+        yield lambda tasks: (solve_task(task, threads, announce_compile) for task in tasks)
+    else:
+        with open_cluster(dask, workers) as solve:
+            yield solve

@@ -1,6 +1,6 @@
 """A batch for the terminal: what would run, and what came of it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 from ikde.batch.preview import Preview
 from ikde.batch.statistics import Rate, Spread
 from ikde.batch.summary import ArmSummary, RunSummary, Unreached
+from ikde.report.numbers import significant
 from ikde.report.render import make_table, plain, render
 
 WIDTH = 160
@@ -32,7 +33,7 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
         table.add_row(
             *map(plain, (arm.name, arm.method, arm.detector)),
             f"{solves:,}",
-            f"{arm.seconds / solves * 1e3:.3g}",
+            significant(arm.seconds / solves * 1e3),
             format_seconds(arm.seconds),
             f"{arm.sample_reached} / {arm.sample}",
         )
@@ -104,8 +105,8 @@ def _arm_table(arms: Iterable[ArmSummary]) -> Any:
             *map(plain, (arm.name, arm.method, arm.detector)),
             f"{arm.reached.count:,} / {arm.reached.total:,}",
             format_rate(arm.reached),
-            _format_spread(arm.attempts, "{:.0f}"),
-            _format_spread(arm.milliseconds, "{:.3g}"),
+            _format_spread(arm.attempts, "{:,.0f}".format),
+            _format_spread(arm.milliseconds, significant),
         )
     return table
 
@@ -147,8 +148,8 @@ def format_rate(rate: Rate) -> str:
     return f"{100 * rate.share:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
 
 
-def _format_spread(spread: Spread | None, number: str) -> str:
-    return " / ".join(number.format(value) for value in (spread.median, spread.p95, spread.max)) if spread else ""
+def _format_spread(spread: Spread | None, write: Callable[[float], str]) -> str:
+    return " / ".join(map(write, (spread.median, spread.p95, spread.max))) if spread else ""
 
 
 def format_seconds(seconds: float) -> str:

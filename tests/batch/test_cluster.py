@@ -11,7 +11,7 @@ from distributed import LocalCluster
 
 import ikde
 from ikde.batch import cluster as module
-from ikde.batch.cluster import SILENT, solve_on_cluster, solve_remotely
+from ikde.batch.cluster import SILENT, open_cluster, solve_remotely
 from ikde.batch.parts import Part
 from ikde.batch.task import make_task
 from ikde.errors import InputError
@@ -84,7 +84,7 @@ def test_a_worker_with_other_kernels_is_refused(batch):
 @pytest.mark.parametrize("address", ["", "nowhere", "127.0.0.1", "ftp://127.0.0.1:21", "a b:1", "tcp://127.0.0.1:x"])
 def test_what_is_no_address_is_refused(address):
     with pytest.raises(InputError, match=r"expected 'local' or an address such as tcp://10.0.0.5:8786"):
-        next(solve_on_cluster([], address))
+        open_cluster(address).__enter__()
 
 
 def test_a_cluster_that_does_not_answer_is_one_line(monkeypatch, capfd):
@@ -93,11 +93,18 @@ def test_a_cluster_that_does_not_answer_is_one_line(monkeypatch, capfd):
         port = unused.getsockname()[1]
     monkeypatch.setattr(module, "PATIENCE", "0.5s")
     with pytest.raises(InputError, match=rf"^dask: no cluster answers at tcp://127.0.0.1:{port} \([^\n]*\)$"):
-        next(solve_on_cluster([], f"tcp://127.0.0.1:{port}"))
+        open_cluster(f"tcp://127.0.0.1:{port}").__enter__()
     assert capfd.readouterr() == ("", "")
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InputError, match=r"dask: Dask is not installed: pip install 'ikde\[cluster\]'"):
-        next(solve_on_cluster([], "local"))
+        open_cluster("local").__enter__()
+
+
+def test_a_cluster_that_cannot_be_reached_leaves_no_folder(batch, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match="Dask is not installed"):
+        ikde.run_batch(batch, tmp_path / "run", dask="local")
+    assert not (tmp_path / "run").exists()

@@ -66,7 +66,7 @@ def test_a_run_opens_with_the_verdict_and_ends_with_what_is_next():
 def test_each_arm_has_its_figures():
     text = format_run(SUMMARY)
     row = next(line for line in text.splitlines() if line.strip().startswith("plain [de]"))
-    for words in ("1,999 / 2,000", "100.0 % (99.7 to 100.0)", "1 / 3 / 12", "20 / 30.5 / 1.23e+03"):
+    for words in ("1,999 / 2,000", "100.0 % (99.7 to 100.0)", "1 / 3 / 12", "20.0 / 30.5 / 1,230"):
         assert words in row
     assert "30 / 1,999" in text
 
