@@ -36,7 +36,7 @@ def format_search(record: dict[str, Any]) -> str:
         attempts = " / ".join(f"{cell['attempts'][k]:.0f}" for k in ("median", "p95", "max"))
         times = " / ".join(f"{cell['milliseconds'][k]:.0f}" for k in ("median", "p95", "max"))
         lines.append(f"| {name} | {cell['solved']:,} of {cell['seeds']:,} | {attempts} | {times} |")
-    lines += ["", "The paper reports 1.67 to 1.94 s a solve for the collision detection alone (Table 4, MATLAB)."]
+    lines += ["", "The paper reports 1.67 to 1.94 s a solve for the collision detection alone (Table 4)."]
     return "\n".join(lines)
 
 

@@ -117,7 +117,8 @@ class TestSpheres:
         volumes = volumes_mm3(qiao, approximation)
         ours = {name: 100 * row["original_mm3"] / volumes[name] for name, row in PAPER["table_2"].items()}
         printed = {name: meant(row[approximation])["degree_pct"] for name, row in PAPER["table_2"].items()}
-        assert ours == pytest.approx(printed, abs=0.0051)
+        for name, degree in printed.items():  # the second term is what five printed digits of a volume leave open
+            assert abs(ours[name] - degree) < 0.0051 + 5e-5 * degree
 
 
 class TestCollisions:
@@ -193,6 +194,7 @@ class TestMisprints:
             entry = PAPER["table_2"]["LT"][approximation]
             degree = 100 * PAPER["table_2"]["LT"]["original_mm3"] / entry["volume_mm3"]
             assert degree == pytest.approx(10 * entry["degree_pct"], abs=0.06)
+            assert round(degree, 2) == meant(entry)["degree_pct"]
 
     def test_averages_of_table_3_are_those_of_its_rows(self):
         table = PAPER["table_3"]

@@ -1,7 +1,6 @@
 """Parts solved by a Dask cluster: sent out a few at a time, taken back as they come, sent again if a worker dies."""
 
 import logging
-import re
 import signal
 import threading
 import warnings
@@ -11,6 +10,7 @@ from contextlib import ExitStack, contextmanager
 from itertools import islice
 from typing import Any
 
+from ikde.batch.options import LOCAL, check_address
 from ikde.batch.parts import GO_ON
 from ikde.batch.task import Answer, Task, solve_task
 from ikde.errors import InputError
@@ -18,8 +18,6 @@ from ikde.kernels.jit import CACHE_FOLDER
 from ikde.solver.search import usable_cores
 
 Solve = Callable[[Iterable[Task]], Generator[Answer]]
-LOCAL = "local"
-ADDRESS = re.compile(r"((tcp|tls|ws|wss|ucx)://)?[^/\s]+:\d+")
 SILENT = logging.CRITICAL + 1
 DEAF_TO_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"  # for workers that start later
 TASKS_A_THREAD = 3  # in flight: enough that no worker waits, few enough that memory stays flat
@@ -44,7 +42,7 @@ def open_cluster(address: str, workers: int | None = None) -> Iterator[Solve]:
     """
     distributed = _import_distributed()
     with _quiet(), _connect(distributed, address, workers) as client:
-        yield lambda tasks: _exchange(distributed, client, iter(tasks))
+        yield lambda tasks: _until_it_goes(_exchange(distributed, client, iter(tasks)))
 
 
 def solve_remotely(task: Task, kernels: str) -> Answer:
@@ -81,8 +79,7 @@ def _connect(distributed: Any, address: str, workers: int | None) -> Iterator[An
     """A client of the cluster; a local cluster lives and dies with it."""
     import dask.config
 
-    if address != LOCAL and not ADDRESS.fullmatch(address):
-        raise InputError(f"expected {LOCAL!r} or an address such as tcp://10.0.0.5:8786, got {address!r}", ("dask",))
+    check_address(address)
     with dask.config.set(SETTINGS), warnings.catch_warnings(), ExitStack() as stack:
         warnings.simplefilter("ignore", distributed.versions.VersionMismatchWarning)
         if address == LOCAL:
@@ -118,6 +115,15 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def _until_it_goes(answers: Generator[Answer]) -> Generator[Answer]:
+    """Answers for as long as the cluster is there; raises `InputError` when it is not."""
+    try:
+        yield from answers
+    except (OSError, CancelledError) as error:  # what a lost connection is depends on who finds out first
+        why = _first_line(error) or type(error).__name__
+        raise InputError(f"the cluster has gone away; {GO_ON} ({why})", ("dask",)) from None
 
 
 def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Generator[Answer]:
@@ -156,8 +162,6 @@ def _take(distributed: Any, future: Any, task: Task) -> Answer:
     except distributed.KilledWorker:
         message = f"workers keep dying of part {task.part.number} of arm {task.part.arm}; have they enough memory?"
         raise InputError(f"{message} ({GO_ON})", ("dask",)) from None
-    except (CancelledError, distributed.comm.CommClosedError):
-        raise InputError(f"the cluster has gone away; {GO_ON}", ("dask",)) from None
     except ModuleNotFoundError as error:
         raise InputError(f"the workers need the same packages as this machine ({error})", ("dask",)) from None
 

@@ -7,7 +7,15 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from ikde.batch.atomic import remove_temporaries, sync_folder, temporary_path
-from ikde.batch.manifest import MANIFEST, describe_difference, make_manifest, read_manifest, write_manifest
+from ikde.batch.manifest import (
+    MANIFEST,
+    REPORT,
+    REPORT_FILES,
+    describe_difference,
+    make_manifest,
+    read_manifest,
+    write_manifest,
+)
 from ikde.batch.parts import SOLUTIONS, TIMING
 from ikde.batch.plan import Batch
 from ikde.errors import FileError
@@ -49,6 +57,9 @@ def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
         remove_temporaries(folder / kind)
         if overwrite:
             _remove_parts(folder / kind)
+            sync_folder(folder / kind)
+    if overwrite:
+        _remove_report(folder / REPORT)
     if there and overwrite:
         write_manifest(folder, make_manifest(batch))
     sync_folder(folder)
@@ -81,3 +92,12 @@ def _lock(folder: Path) -> Iterator[None]:
 def _remove_parts(folder: Path) -> None:
     for path in folder.glob("*.parquet"):
         path.unlink()
+
+
+def _remove_report(folder: Path) -> None:
+    """Delete the page of a run that is gone, and nothing that somebody else has put there."""
+    if folder.is_dir():
+        for name in REPORT_FILES:
+            (folder / name).unlink(missing_ok=True)
+        if not any(folder.iterdir()):
+            folder.rmdir()

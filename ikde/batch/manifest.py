@@ -14,6 +14,8 @@ from ikde.batch.plan import Batch
 from ikde.errors import FileError, format_path
 
 MANIFEST = "manifest.json"
+REPORT = "report"  # where `ikde report` puts its page
+REPORT_FILES = ("report.html", "report.md")
 FORMAT = "ikde batch 1"
 SHOWN = 3  # differences that are spelt out
 LONGEST = 60  # characters of a value in a message

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
 import pyarrow as pa
@@ -11,6 +12,8 @@ from ikde.batch.atomic import write_atomically
 from ikde.errors import FileError
 
 SOLUTIONS, TIMING = "solutions", "timing"
+RECIPE, SEAL = b"ikde_recipe", b"ikde_seal"  # keys in the metadata of a file
+DAMAGED = (OSError, ValueError, pa.ArrowException)  # what reading a damaged file raises, bad UTF-8 included
 GO_ON = "finished parts are intact; run the same command again to go on"
 
 
@@ -40,12 +43,17 @@ def list_parts(arms: Sequence[str], solves: int, chunk: int) -> Iterator[Part]:
             yield Part(arm, number, first, min(first + chunk, solves))
 
 
-def write_part(folder: Path, part: Part, solutions: pa.Table, timing: pa.Table) -> None:
-    """Write both files of a part; the solutions come last, so that where they are, all is there."""
-    for kind, table in ((TIMING, timing), (SOLUTIONS, solutions)):
+def write_part(folder: Path, part: Part, solutions: pa.Table, timing: pa.Table, *, recipe: str) -> None:
+    """Write both files of a part; the solutions come last, so that where they are, all is there.
+
+    Both carry the hash of the recipe, and the timing carries a seal on the solutions, byte by byte.
+    """
+    answers = serialize(solutions.replace_schema_metadata({RECIPE: recipe}))
+    timing = timing.replace_schema_metadata({RECIPE: recipe, SEAL: _seal(answers, timing)})
+    for kind, data in ((TIMING, serialize(timing)), (SOLUTIONS, answers)):
         path = part.path(folder, kind)
         try:
-            write_atomically(path, serialize(table))
+            write_atomically(path, data)
         except OSError as error:
             raise FileError(path, f"cannot be written: {error.strerror}; {GO_ON}") from None
 
@@ -61,15 +69,30 @@ def serialize(table: pa.Table) -> pa.Buffer:
         compression="zstd",
         compression_level=3,
         row_group_size=2**20,
+        write_page_checksum=True,
         use_dictionary=words,  # type: ignore[arg-type]
     )
     return sink.getvalue()
 
 
-def is_finished(folder: Path, part: Part) -> bool:
-    """True if both files can be read and hold the rows they should."""
+def read_table(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
+    """A file of a part, or those of `columns` that it has; raises what is `DAMAGED` if it is."""
+    with pq.ParquetFile(path, page_checksum_verification=True) as file:
+        wanted = None if columns is None else [name for name in file.schema_arrow.names if name in columns]
+        return file.read(wanted)
+
+
+def is_finished(folder: Path, part: Part, recipe: str) -> bool:
+    """True if both files are there, of this recipe, undamaged, and hold the rows they should."""
     try:
-        found = {pq.read_metadata(part.path(folder, kind)).num_rows for kind in (SOLUTIONS, TIMING)}
-    except (OSError, pa.ArrowException):
+        answers, timing = part.path(folder, SOLUTIONS).read_bytes(), read_table(part.path(folder, TIMING))
+    except DAMAGED:
         return False
-    return found == {part.rows}
+    marks = {RECIPE: recipe.encode(), SEAL: _seal(answers, timing).encode()}
+    return len(timing) == part.rows and timing.schema.metadata == marks
+
+
+def _seal(answers: pa.Buffer | bytes, timing: pa.Table) -> str:
+    """Digest of all that the checksums of Parquet's pages leave out: the solutions' file, the timing's columns."""
+    columns = [f"{field.name}: {field.type}" for field in timing.schema]
+    return sha256(b"\n".join([bytes(answers), *(column.encode() for column in columns)])).hexdigest()

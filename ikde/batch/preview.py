@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pyarrow as pa
 
+from ikde.batch.options import check_options
 from ikde.batch.parts import Part, serialize
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.task import Answer, Task, solve_task
@@ -57,6 +58,7 @@ def preview_batch(
     batch: Batch, *, threads: int | None = None, announce_compile: Callable[[], None] | None = None
 ) -> Preview:
     """Say what would run; solves a sample of each arm, some seconds long, and writes nothing."""
+    check_options(threads, None, None)
     cores, parts = threads or usable_cores(), -(-batch.solves // batch.chunk)
     budget = SAMPLE_SECONDS / len(batch.arms)
     samples = [_time_arm(batch, arm, cores, budget, announce_compile) for arm in batch.arms]

@@ -5,10 +5,9 @@ from os import PathLike
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from ikde.batch.manifest import Manifest, read_manifest
-from ikde.batch.parts import SOLUTIONS, TIMING, Part
+from ikde.batch.parts import DAMAGED, SOLUTIONS, TIMING, Part, read_table
 from ikde.errors import FileError
 
 
@@ -39,9 +38,7 @@ def read_part(folder: Path, part: Part, kind: str, columns: Sequence[str] | None
     """One file of a part, or those of `columns` that it has."""
     path = part.path(folder, kind)
     try:
-        with pq.ParquetFile(path) as file:
-            wanted = None if columns is None else [name for name in file.schema_arrow.names if name in columns]
-            return file.read(wanted)
-    except (OSError, pa.ArrowException) as error:
+        return read_table(path, columns)
+    except DAMAGED as error:
         cause = str(error).splitlines()[0]
         raise FileError(path, f"cannot be read; running the batch again redoes this part ({cause})") from None

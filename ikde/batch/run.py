@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
-from ikde.batch.cluster import LOCAL, Solve, open_cluster
+from ikde.batch.cluster import Solve, open_cluster
 from ikde.batch.folder import claim_folder
+from ikde.batch.options import check_options
 from ikde.batch.parts import Part, is_finished, list_parts, write_part
 from ikde.batch.plan import Batch
 from ikde.batch.summary import RunSummary, summarise
@@ -61,32 +62,24 @@ def run_batch(
         What came of it, over all parts of the folder.
 
     Raises:
-        InputError: for options that contradict each other, or a cluster that cannot be reached.
+        InputError: for what is no batch, options that contradict each other, or a cluster that cannot be reached.
         FileError: for a folder that cannot be used, a full disk, or an input that has gone.
     """
-    _check_options(threads, dask, workers)
+    if not isinstance(batch, Batch):
+        raise InputError("expected a Batch; ikde.load_batch reads files and mappings")
+    check_options(threads, dask, workers)
     folder = Path(out)
     with _open(threads, dask, workers, announce_compile) as solve, claim_folder(folder, batch, overwrite=overwrite):
         parts = list(list_parts([arm.name for arm in batch.arms], batch.solves, batch.chunk))
-        missing = [part for part in parts if not is_finished(folder, part)]
+        missing = [part for part in parts if not is_finished(folder, part, batch.hash)]
         now, tell = _start(parts, missing), progress or (lambda now: None)
         tell(now)
         with closing(solve(make_task(batch, part) for part in missing)) as answers:
             for answer in answers:
-                write_part(folder, answer.part, answer.solutions, answer.timing)
+                write_part(folder, answer.part, answer.solutions, answer.timing, recipe=batch.hash)
                 now = now.after(answer.part)
                 tell(now)
     return summarise(folder)
-
-
-def _check_options(threads: int | None, dask: str | None, workers: int | None) -> None:
-    for name, value in (("threads", threads), ("workers", workers)):
-        if value is not None and value < 1:
-            raise InputError(f"expected a whole number of at least 1, got {value}", (name,))
-    if workers is not None and dask != LOCAL:
-        raise InputError("only a local cluster is told how many workers it has (dask local)", ("workers",))
-    if threads is not None and dask is not None:
-        raise InputError("workers of a cluster use one thread each; say workers instead", ("threads",))
 
 
 def _start(parts: list[Part], missing: list[Part]) -> Progress:

@@ -36,6 +36,8 @@ class CsvTable:
         self._ragged: FileError | None = None
         with path.open(encoding="utf-8-sig", newline="") as file:
             self.names = next(csv.reader(file), [])
+        if not self.names:
+            raise FileError(path, "the first line is empty; expected the names of the columns")
 
     def read(self, names: Sequence[str]) -> dict[str, Column]:
         """Columns as text: types guessed from a file's beginning may not fit its end."""

@@ -156,9 +156,15 @@ def _time_surface(robot: Robot, detector: Detector, Q: Floats, budget: Budget) -
         judge_surfaces(arrays, packed, directions, angle, detector.safe_distance_m, qs, out)
 
     check_surface(robot, Q[0], detector, m_steps=3, n_steps=2)  # compiles or loads
-    plain = [_clock(lambda q=q: check_surface(robot, q, detector)) for q in Q[: budget.plain_verdicts]]
+    few, seen = Q[: budget.plain_verdicts], []
+    plain = [_clock(lambda q=q: seen.append(check_surface(robot, q, detector).collision)) for q in few]
     quick = _time_kernel(judge, Q[: budget.timed_verdicts], budget.timing_rounds)
-    return {"approximation": detector.name, "every_point": _summarise(np.array(plain)), "quick": quick}
+    return {
+        "approximation": detector.name,
+        "every_point": _summarise(np.array(plain)),
+        "quick": quick,
+        "same_verdicts": int((check_surface_many(robot, few, detector) == np.array(seen)).sum()),
+    }
 
 
 def _time_kernel(judge: Callable[[Floats, Bools], None], Q: Floats, rounds: int) -> Data:

@@ -25,6 +25,10 @@ from ikde.bench.timing import compute_timing
 from ikde.kernels.jit import compile_clock
 from ikde.model.robot import Robot
 
+SECTIONS = (
+    *("kinematics", "approximation", "timing", "rejection", "sensitivity", "waiting"),
+    *("detection", "solutions", "situations", "misprints"),
+)
 SAME = 1e-9  # relative: numpy's last bits may differ between processors, ours do not
 
 
@@ -78,8 +82,8 @@ def list_sections(sources: Sources, budget: Budget, progress: Progress) -> dict[
         "approximation": lambda: compute_approximation(robot, published),
         "timing": lambda: compute_timing(robot, published, budget),
         "rejection": lambda: compute_rejection(robot, published, **solves),
-        "waiting": lambda: compute_waiting(robot, published, **solves),
         "sensitivity": lambda: compute_sensitivity(robot, published, **solves),
+        "waiting": lambda: compute_waiting(robot, published, **solves),
         "detection": lambda: compute_detection(robot, budget),
         "solutions": lambda: compute_solutions(robot, published),
         "situations": lambda: compute_situations(robot, published, budget),
@@ -91,14 +95,16 @@ def compute_paper(
     sources: Sources,
     budget: Budget = FULL,
     *,
+    only: Sequence[str] = SECTIONS,
     progress: Progress = SILENCE,
     announce_compile: Callable[[], None] | None = None,
 ) -> Data:
-    """Compute every section.
+    """Compute the report's sections.
 
     Args:
         sources: robots and published figures.
         budget: sample sizes; `QUICK` takes seconds instead of minutes.
+        only: names of the sections to compute.
         progress: told how far it is.
         announce_compile: called once if kernels must be compiled first.
 
@@ -108,14 +114,16 @@ def compute_paper(
     started, clock = datetime.now(UTC), time.perf_counter()
     sections, seconds = {}, {}
     with compile_clock(announce_compile) as compiling:
-        for name, compute in list_sections(sources, budget, progress).items():
+        computations = list_sections(sources, budget, progress)
+        for name in filter(set(only).__contains__, computations):
             progress.begin(name)
             began = time.perf_counter()
-            sections[name] = as_json(compute())
+            sections[name] = as_json(computations[name]())
             seconds[name] = time.perf_counter() - began
     return {
         "made": {
             "whole": budget == FULL,
+            "only": [name for name in SECTIONS if name in only],
             "budget": asdict(budget),
             "started": started.isoformat(timespec="seconds"),
             "seconds": time.perf_counter() - clock,
@@ -144,19 +152,26 @@ def check_paper(
         announce_compile: called once if kernels must be compiled first.
     """
     budget = Budget(**results["made"]["budget"])
-    again = compute_paper(sources, budget, progress=progress, announce_compile=announce_compile)
-    found: list[str] = []
-    for name, section in again["sections"].items():
-        recorded = results["sections"].get(name, {})
-        for part in ("exact", "settings"):
-            found += list_differences(recorded.get(part), section[part], f"{name}.{part}")
-    return found
+    again = compute_paper(
+        sources, budget, only=results["made"]["only"], progress=progress, announce_compile=announce_compile
+    )
+    return list_differences(_drop_times(results["sections"]), _drop_times(again["sections"]))
 
 
-def list_differences(recorded: Any, again: Any, path: str) -> list[str]:
+def _drop_times(sections: Mapping[str, Data]) -> Data:
+    return {name: {part: section[part] for part in section if part != "measured"} for name, section in sections.items()}
+
+
+def list_differences(recorded: Any, again: Any, path: str = "") -> list[str]:
     """Where two pieces of plain data differ, a line each; numbers may differ by 1e-9 of their size."""
-    if isinstance(recorded, Mapping) and isinstance(again, Mapping) and recorded.keys() == again.keys():
-        return [line for key in again for line in list_differences(recorded[key], again[key], f"{path}.{key}")]
+    if isinstance(recorded, Mapping) and isinstance(again, Mapping):
+        paths = {key: f"{path}.{key}".removeprefix(".") for key in [*again, *recorded]}
+        shared = [key for key in again if key in recorded]
+        return [
+            *(line for key in shared for line in list_differences(recorded[key], again[key], paths[key])),
+            *(f"{paths[key]}: not on record" for key in again if key not in recorded),
+            *(f"{paths[key]}: only on record" for key in recorded if key not in again),
+        ]
     if isinstance(recorded, list) and isinstance(again, list) and len(recorded) == len(again):
         pairs = enumerate(zip(recorded, again, strict=True))
         return [line for k, (a, b) in pairs for line in list_differences(a, b, f"{path}[{k}]")]

@@ -11,7 +11,7 @@ from ikde.batch.statistics import Rate
 from ikde.bench.budget import FULL, Budget
 from ikde.bench.misprints import Data
 from ikde.bench.plain_search import SEED, Advance, Setup, collides, make_detector, read_targets, solve_plainly
-from ikde.bench.rejection import PAIR_LISTS, READINGS, SPHERES, describe_setup, rate_data
+from ikde.bench.rejection import PAIR_LISTS, READINGS, SPHERES, describe_setup, rate_data, read_print
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.model.surface import M_STEPS, N_STEPS
@@ -96,7 +96,11 @@ def compute_sensitivity(
             rows.append(_row(variation.group, variation.value, reading, cells, published))
     rows += _vary_judgement(robot, stated, published)
     return {
-        "exact": {"rows": rows, "closest": _rank(rows)},
+        "exact": {
+            "rows": rows,
+            "closest": _rank(rows),
+            "printed": {name: read_print(published["table_4"][name]) for name in targets},
+        },
         "measured": {},
         "settings": {
             "source": "[Qiao2021, Table 4]",

@@ -50,6 +50,7 @@ def _compute_situation(robot: Robot, sweep: Sweep, entry: Data, points: int) -> 
         "misprint": entry.get("misprint"),
         "simulator": {
             "t_s": simulator["t_s"],
+            "angle_at_s": sweep.time(simulator["angle_deg"]),
             "angle_deg": {"printed": simulator["angle_deg"], "meant": meant(simulator)["angle_deg"]},
             "misprint": simulator.get("misprint"),
         },

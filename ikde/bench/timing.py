@@ -1,6 +1,6 @@
 """Table 3: seconds to place surface points and centres, by spatial transformation and by key points.
 
-The paper timed MATLAB, ours are compiled loops, so the seconds say little beside one another; the ratios may.
+Another machine and another program than the paper's, so the seconds say little beside one another; the ratios may.
 """
 
 import time

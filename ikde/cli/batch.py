@@ -8,7 +8,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption
-from ikde.cli.output import announce_compile, print_json, print_result, use_color
+from ikde.cli.output import announce_compile, print_json, print_note, print_result, use_color
 from ikde.cli.progress import show_progress
 
 if TYPE_CHECKING:
@@ -52,17 +52,21 @@ def batch(
         raise typer.BadParameter("a run needs a folder; only --dry-run needs none", param_hint="--out")
     plan = load_batch(spec)
     if out is None or dry_run:
-        _preview(plan, threads, as_json)
+        _preview(plan, threads, dask, workers, as_json)
         return
     summary = _run(plan, out, threads, overwrite, dask, workers)
     _print(summary, as_json)
     raise typer.Exit(ExitCode.NOT_REACHED if summary.unreached else ExitCode.OK)
 
 
-def _preview(plan: "Batch", threads: int | None, as_json: bool) -> None:
+def _preview(plan: "Batch", threads: int | None, dask: str | None, workers: int | None, as_json: bool) -> None:
+    from ikde.batch.options import check_options
     from ikde.batch.preview import preview_batch
     from ikde.report.batch import format_preview, preview_json
 
+    check_options(threads, dask, workers)
+    if dask is not None:
+        print_note("a dry run solves its sample on this machine: the cluster is left alone")
     preview = preview_batch(plan, threads=threads, announce_compile=announce_compile)
     if as_json:
         print_json(preview_json(preview))

@@ -31,6 +31,10 @@ def paper(
         Path, typer.Option(metavar="FOLDER", help="Where report.html, report.md and results.json go.")
     ] = Path("report"),
     quick: Annotated[bool, typer.Option("--quick", help="Small samples: seconds instead of minutes.")] = False,
+    only: Annotated[
+        str | None,
+        typer.Option(metavar="SECTION,...", help="Compute these sections alone."),
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Compute what is exact again, compare it with results.json; write nothing.")
     ] = False,
@@ -45,22 +49,35 @@ def paper(
     from ikde.io.report_folder import prepare_folder, read_results
 
     gc.enable()
-    if check and quick:
-        raise typer.BadParameter("results.json says how large its samples are; leave --quick out", param_hint="--check")
+    if check and (quick or only):
+        raise typer.BadParameter("results.json says what is in it; leave --quick and --only out", param_hint="--check")
+    sections = _read_sections(only)
     if check:
         raise typer.Exit(_check(read_results(out), out, as_json))
     prepare_folder(out)
-    _make(out, quick, as_json)
+    _make(out, quick, sections, as_json)
 
 
-def _make(out: Path, quick: bool, as_json: bool) -> None:
+def _read_sections(only: str | None) -> tuple[str, ...]:
+    from ikde.bench.paper import SECTIONS
+
+    if only is None:
+        return SECTIONS
+    chosen = tuple(filter(None, only.split(",")))
+    wrong = [name for name in chosen if name not in SECTIONS]
+    if wrong or not chosen:
+        raise typer.BadParameter(f"expected some of {', '.join(SECTIONS)}, got {only!r}", param_hint="--only")
+    return chosen
+
+
+def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> None:
     from ikde.bench.budget import FULL, QUICK
     from ikde.bench.paper import compute_paper
     from ikde.io.report_folder import RESULTS, format_results, write_report
 
     sources, budget = _load_sources(), QUICK if quick else FULL
     with _show_progress(sources, budget) as progress:
-        results = compute_paper(sources, budget, progress=progress, announce_compile=announce_compile)
+        results = compute_paper(sources, budget, only=sections, progress=progress, announce_compile=_announce)
         progress.begin("page")
         write_report(out, {RESULTS: format_results(results), **_render(results, sources)})
     if as_json:
@@ -85,7 +102,7 @@ def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
 
     sources = _load_sources()
     with _show_progress(sources, Budget(**recorded["made"]["budget"])) as progress:
-        differences = check_paper(recorded, sources, progress=progress, announce_compile=announce_compile)
+        differences = check_paper(recorded, sources, progress=progress, announce_compile=_announce)
     if as_json:
         print_json({"agrees": not differences, "differences": differences})
     elif differences:
@@ -93,6 +110,10 @@ def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
     else:
         print_result(f"{out / RESULTS}: every exact figure comes out the same")
     return ExitCode.NOT_REACHED if differences else ExitCode.OK
+
+
+def _announce() -> None:
+    announce_compile("about a minute")
 
 
 def _load_sources() -> "Sources":

@@ -37,9 +37,9 @@ def working(text: str) -> AbstractContextManager[Any]:
     return Console(stderr=True).status(text)
 
 
-def announce_compile() -> None:
+def announce_compile(takes: str = "about 15 s") -> None:
     """Said once, when kernels must be compiled before the first solve."""
     from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
 
     often = "once on this machine" if CACHE_IS_WRITABLE else f"every time, since {CACHE_FOLDER} cannot be written"
-    print_note(f"compiling the kernels: {often}, about 15 s ...")
+    print_note(f"compiling the kernels: {often}, {takes} ...")

@@ -22,6 +22,7 @@ def report(
 
     Example: ikde report runs/first
     """
+    from ikde.batch.manifest import REPORT, REPORT_FILES
     from ikde.io.report_folder import prepare_folder, write_report
     from ikde.report.batch_page.answers import gather_answers
     from ikde.report.batch_page.page import make_batch_page
@@ -30,10 +31,10 @@ def report(
 
     gc.enable()
     answers = gather_answers(run)
-    folder = run / "report" if out is None else out
+    folder = run / REPORT if out is None else out
     prepare_folder(folder)
     page = make_batch_page(answers)
-    html, markdown = folder / "report.html", folder / "report.md"
+    html, markdown = (folder / name for name in REPORT_FILES)
     write_report(folder, {html.name: render_html(page), markdown.name: render_markdown(page)})
     if as_json:
         print_json({"html": str(html), "markdown": str(markdown), "finished": answers.finished})

@@ -1,6 +1,7 @@
 """The run file: how it becomes a `Batch`."""
 
 from collections.abc import Mapping
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -26,10 +27,12 @@ def load_batch(source: str | Path | Mapping[str, Any]) -> Batch:
 
     Raises:
         FileError: for a file that cannot be read or is wrong, with its line and key.
-        InputError: for a mapping that is wrong, with its key.
+        InputError: for a mapping that is wrong, with its key, and for what is neither path nor mapping.
     """
     if isinstance(source, Mapping):
         return _resolve(Given(dict(source)), Path(), None)
+    if not isinstance(source, str | PathLike):
+        raise InputError(f"expected the path of a run file or a mapping, got {type(source).__name__}")
     path = Path(source)
     return _resolve(read_yaml(path), path.parent, str(path))
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -48,8 +49,18 @@ def read_results(folder: Path) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         raise FileError(path, f"not JSON: {error.msg}", line=error.lineno) from None
     try:
-        Budget(**results["made"]["budget"])
-        results["sections"].items()
-    except (AttributeError, KeyError, TypeError):
+        made, sections = results["made"], results["sections"]
+        budget, _ = asdict(Budget(**made["budget"])), set(made["only"])
+    except (KeyError, TypeError):
         raise FileError(path, "not a record of this version's `ikde bench paper`") from None
+    for name, size in budget.items():
+        if type(size) is not int or size < 1:
+            raise FileError(path, f"expected a whole number of at least 1, got {size!r}", ("made", "budget", name))
+    for where, value in {("sections",): sections, **_list_sections(sections)}.items():
+        if not isinstance(value, dict):
+            raise FileError(path, f"expected a mapping, got {value!r:.40}", where)
     return results
+
+
+def _list_sections(sections: Any) -> dict[tuple[str, ...], Any]:
+    return {("sections", name): section for name, section in sections.items()} if isinstance(sections, dict) else {}

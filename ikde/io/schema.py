@@ -12,6 +12,10 @@ EXPECTED = {
     "missing": "this key is missing",
     "float_type": "expected a number",
     "int_type": "expected a whole number",
+    "bool_type": "expected true or false",
+    "bool_parsing": "expected true or false",
+    "int_parsing": "expected a whole number",
+    "int_from_float": "expected a whole number",
     "string_type": "expected text",
     "dict_type": "expected keys with values",
     "list_type": "expected a list",
@@ -20,6 +24,12 @@ EXPECTED = {
     "model_attributes_type": "expected keys with values",
     "finite_number": "expected a finite number",
     "string_too_short": "expected text that is not empty",
+}
+LIMITS = {
+    "greater_than_equal": ("at least", "ge"),
+    "greater_than": ("more than", "gt"),
+    "less_than_equal": ("at most", "le"),
+    "less_than": ("less than", "lt"),
 }
 
 
@@ -54,11 +64,16 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
         keys = _keys_at(model, where[:-1])
         return document.error(f"unknown key{nearest(key, keys) or '; expected one of ' + ', '.join(keys)}", where)
     if kind == "too_short" and "actual_length" in context:
-        message = f"expected {context['min_length']} values, got {context['actual_length']}"
+        least = context["min_length"]
+        message = f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {context['actual_length']}"
     elif kind == "too_long" and "actual_length" in context:
         message = f"expected {context['max_length']} values, got {context['actual_length']}"
     elif kind == "literal_error":
         message = f"expected {context['expected']}, got {first['input']!r}"
+    elif kind in LIMITS:
+        words, key = LIMITS[kind]
+        limit = context[key]
+        message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {_shorten(first['input'])}"
     elif kind in EXPECTED:
         got = "" if kind == "missing" else f", got {_shorten(first['input'])}"
         message = f"{EXPECTED[kind]}{got}"

@@ -138,15 +138,23 @@ def _draw_estimates(
 
 def plot_cdf(samples: Sequence[Sample], *, x: Axis, y: str = "cases") -> Any:
     """The share of all cases whose value is at most x; a curve that ends below 100 % has cases without a value."""
+    numbers = [np.sort(_finite(sample)) for sample in samples]
+    end = max((values[-1] for values in numbers if len(values)), default=0.0)
     with drawing(x, Axis(label=f"{y} done", unit=SHARE, limits=(0, 101))) as (figure, axes):
-        for k, sample in enumerate(samples):
-            values = _finite(sample)
+        for k, (sample, values) in enumerate(zip(samples, numbers, strict=True)):
             total = len(values) if sample.total is None else sample.total
-            shown = np.unique(np.linspace(0, len(values) - 1, MOST_POINTS).astype(int)) if len(values) else []
-            shares = 100.0 * (np.asarray(shown) + 1) / max(total, 1)
             look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "drawstyle": "steps-post"}
-            axes.plot(np.sort(values)[shown], shares, label=sample.label, **look)
+            axes.plot(*_climb(values, total, end), label=sample.label, **look)
     return figure
+
+
+def _climb(values: Any, total: int, end: float) -> tuple[Any, Any]:
+    """Places and percentages of a curve: up from 0 at the least of the sorted values, and level from the last on."""
+    if not len(values):
+        return [], []
+    shown = np.unique(np.linspace(0, len(values) - 1, MOST_POINTS).astype(int))
+    shares = 100.0 * (shown + 1) / total
+    return np.r_[values[0], values[shown], end], np.r_[0.0, shares, shares[-1]]
 
 
 def plot_histogram(samples: Sequence[Sample], *, x: Axis, bins: int = 60) -> Any:

@@ -42,6 +42,8 @@ class Axis:
     label: str
     unit: str = ""
     log: bool = False
+    whole: bool = False
+    """Only whole numbers are marked."""
     limits: tuple[float | None, float | None] = (None, None)
 
     @property
@@ -82,6 +84,8 @@ def _set_scale(ticks: Any, set_scale: Any, set_limits: Any, axis: Axis) -> None:
     if axis.log and ticks.get_minpos() < float("inf"):  # a logarithm of nothing cannot be drawn
         set_scale("log")
         _set_log_ticks(ticks)
+    elif axis.whole:
+        ticks.get_major_locator().set_params(integer=True)
     if axis.limits != (None, None):
         set_limits(*axis.limits)
 

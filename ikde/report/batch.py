@@ -1,17 +1,20 @@
 """A batch for the terminal: what would run, and what came of it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
+from ikde.batch.arm_summary import ArmSummary, TargetSummary, Unreached
 from ikde.batch.preview import Preview
 from ikde.batch.statistics import Rate, Spread
-from ikde.batch.summary import ArmSummary, RunSummary, Unreached
+from ikde.batch.summary import RunSummary
 from ikde.report.numbers import significant
 from ikde.report.render import make_table, plain, render
 
 WIDTH = 160
+MOST_NAMED = 20  # unreached targets of an arm
+MOST_TARGETS = 5  # that have rows of their own
 TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
 BYTES = ("B", "kB", "MB", "GB", "TB")
 
@@ -59,8 +62,9 @@ def run_json(summary: RunSummary) -> dict[str, Any]:
         "parts_done": summary.parts_done,
         "solves": sum(arm.reached.total for arm in summary.arms),
         "unreached": summary.unreached,
+        "unreached_targets": sum(arm.unreached_targets for arm in summary.arms),
         "arms": [_arm_json(arm) for arm in summary.arms],
-        "listed": [asdict(row) for row in summary.listed],
+        "listed": [asdict(row) for arm in summary.arms for row in arm.listed],
     }
 
 
@@ -73,8 +77,17 @@ def _arm_json(arm: ArmSummary) -> dict[str, Any]:
         "stop_reasons": dict(arm.stop_reasons),
         "attempts": asdict(arm.attempts) if arm.attempts else None,
         "milliseconds": asdict(arm.milliseconds) if arm.milliseconds else None,
-        "collisions": {grader: _rate_json(rate) for grader, rate in arm.collisions.items()},
+        "collisions": _collisions_json(arm),
+        "by_target": [
+            {"target": row.target, "name": row.name, "reached": _rate_json(row.reached)}
+            | {"collisions": _collisions_json(row)}
+            for row in arm.by_target
+        ],
     }
+
+
+def _collisions_json(counted: ArmSummary | TargetSummary) -> dict[str, Any]:
+    return {grader: _rate_json(rate) for grader, rate in counted.collisions.items()}
 
 
 def _rate_json(rate: Rate) -> dict[str, Any]:
@@ -89,9 +102,14 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
         verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/]"
     else:
         verdict = f"[bold green]all reached[/]: {_count(solves, 'solve')}"
-    tables = [_arm_table(summary.arms)]
+    tables: list[Any] = [_arm_table(summary.arms)]
     if any(arm.collisions for arm in summary.arms):
         tables.append(_collision_table(summary.arms))
+    few = max(len(arm.by_target) for arm in summary.arms)
+    if few:
+        tables.append(f"these are the rates and intervals of just these {few} targets, not of targets in general\n")
+    if 0 < few <= MOST_TARGETS:
+        tables.append(_target_table(summary.arms))
     path = plain(str(summary.folder))
     tail = [f"answers    {path}", f"next       ikde report {path}"]
     return render(verdict, *tables, *_list_unreached(summary), *tail, color=color, width=WIDTH)
@@ -119,6 +137,21 @@ def _collision_table(arms: Iterable[ArmSummary]) -> Any:
     return table
 
 
+def _target_table(arms: Sequence[ArmSummary]) -> Any:
+    """Rates by target, a column a grader."""
+    graders = tuple(arms[0].collisions)
+    columns = (">reached", ">rate (95 %)", *(f">in collision by {grader}" for grader in graders))
+    table = make_table("arm", "target", *columns, title="by target")
+    for arm in arms:
+        for row in arm.by_target:
+            rates = (format_rate(row.collisions[grader]) for grader in graders)
+            reached = f"{row.reached.count:,} / {row.reached.total:,}"
+            table.add_row(
+                plain(arm.name), plain(row.name or str(row.target)), reached, format_rate(row.reached), *rates
+            )
+    return table
+
+
 def _list_unreached(summary: RunSummary) -> list[str]:
     if not summary.unreached:
         return []
@@ -128,16 +161,20 @@ def _list_unreached(summary: RunSummary) -> list[str]:
         for reason, count in arm.stop_reasons.items()
         if reason != "reached"
     ]
-    more = summary.unreached - len(summary.listed)
-    tail = [f"  and {more:,} more"] if more else []
-    head = f"[bold]not reached[/]: {', '.join(reasons)}"
-    return [head, *(f"  {plain(_format_unreached(row))}" for row in summary.listed), *tail, ""]
+    lines = [f"[bold]not reached[/]: {', '.join(reasons)}"]
+    for arm in summary.arms:
+        named = arm.listed[:MOST_NAMED]
+        more = arm.unreached_targets - len(named)
+        lines += (f"  {plain(_format_unreached(row, summary.repeats))}" for row in named)
+        lines += [f"  {plain(arm.name)}, and {_count(more, 'more target')}"] if more else []
+    return [*lines, ""]
 
 
-def _format_unreached(row: Unreached) -> str:
+def _format_unreached(row: Unreached, repeats: int) -> str:
     number = f"target {row.target}"
     name = f" {row.name}" if row.name not in (None, number) else ""
-    return f"{row.arm}, {number}{name}, repeat {row.repeat}: {row.reason or row.stop_reason}"
+    often = f", {row.missed:,} of {repeats:,} repeats, first repeat {row.repeat}" if repeats > 1 else ""
+    return f"{row.arm}, {number}{name}{often}: {row.reason or row.stop_reason}"
 
 
 def format_rate(rate: Rate) -> str:

@@ -59,7 +59,7 @@ class SolveResult:
     blocking_pairs: Mapping[tuple[str, str], int]
     """How often each pair blocked a pose that was met, most often first."""
     solve_seconds: float
-    """Wall time of this search, without compilation."""
+    """Wall time of this search, without compilation; in bulk, very short searches share a call and its time evenly."""
     compile_seconds: float
 
     @property

@@ -30,7 +30,7 @@ class Found:
     counts: Ints  # [T, COUNTS]
     pair_counts: Ints  # [T, P]
     excess_m: Floats  # [T] how far out of reach each target provably is, beyond the tolerance; 0 if nobody knows
-    seconds: Floats  # [T] wall time of each lane
+    seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
 
     def row(self, index: int) -> "Found":
         """One target's share."""

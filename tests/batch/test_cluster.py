@@ -1,11 +1,16 @@
 """Parts solved by a real Dask cluster of two processes, one of which gets killed."""
 
+import json
 import os
 import signal
 import socket
+import subprocess
 import sys
+import threading
+import time
 
 import dask.config
+import distributed
 import pytest
 from distributed import LocalCluster
 
@@ -74,6 +79,37 @@ def test_a_part_that_kills_its_workers_is_given_up(batch, cluster, tmp_path, mon
     monkeypatch.setattr(module, "TRIES", 1)
     with pytest.raises(InputError, match=r"workers keep dying of part \d of arm free.*run the same command again"):
         ikde.run_batch(batch, tmp_path, dask=cluster.scheduler_address, progress=kill_a_busy_worker(cluster, 1))
+
+
+def test_a_scheduler_that_dies_is_one_line(batch, tmp_path):
+    told = tmp_path / "scheduler.json"
+    options = ["--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(told)]
+    command = [sys.executable, "-m", "distributed.cli.dask_scheduler", *options]
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL) as scheduler:
+        try:
+            while not (told.exists() and told.read_text()):
+                time.sleep(0.05)
+            address = json.loads(told.read_text())["address"]
+            with open_cluster(address) as solve:
+                answers = solve(make_task(batch, Part("careful", k, 5 * k, 5 * k + 5)) for k in range(4))
+                threading.Timer(0.5, scheduler.kill).start()  # no worker: the answers are waited for
+                with pytest.raises(InputError, match=r"^dask: the cluster has gone away; finished parts are intact"):
+                    next(answers)
+        finally:
+            scheduler.kill()
+
+
+@pytest.mark.parametrize("call", ["submit", "nthreads"])
+def test_a_connection_that_breaks_is_one_line(batch, cluster, monkeypatch, call):
+    def refuse(*arguments, **options):
+        raise OSError("Timed out trying to connect\nafter 30 s")
+
+    monkeypatch.setattr(distributed.Client, call, refuse)
+    with open_cluster(cluster.scheduler_address) as solve:
+        with pytest.raises(
+            InputError, match=r"^dask: the cluster has gone away; [^\n]* \(Timed out trying to connect\)$"
+        ):
+            next(solve([make_task(batch, Part("careful", 0, 0, 5))]))
 
 
 def test_a_worker_with_other_kernels_is_refused(batch):

@@ -66,7 +66,25 @@ def test_overwriting_deletes_parts_and_nothing_else(run, seed):
     assert read_manifest(run).seed == seed
     assert [path.name for path in (run / "solutions").iterdir()] == ["notes.txt"]
     assert list((run / "timing").iterdir()) == []
-    assert (run / "report").exists()
+
+
+@pytest.mark.parametrize("notes", [False, True])
+def test_overwriting_deletes_the_page_of_the_run_and_nothing_else(run, notes):
+    for name in ("report.html", "report.md", *(["notes.txt"] if notes else [])):
+        (run / "report" / name).touch()
+    claim(run)
+    assert (run / "report" / "report.html").exists()
+    claim(run, overwrite=True)
+    assert (run / "report").exists() == notes
+    assert [path.name for path in (run / "report").glob("*")] == ["notes.txt"] * notes
+
+
+def test_old_parts_are_gone_from_the_disk_before_the_new_manifest_is_there(run, monkeypatch):
+    done = []
+    monkeypatch.setattr("ikde.batch.folder.sync_folder", lambda folder: done.append(folder.name))
+    monkeypatch.setattr("ikde.batch.folder.write_manifest", lambda folder, manifest: done.append(MANIFEST))
+    claim(run, overwrite=True, seed=8)
+    assert done == ["solutions", "timing", MANIFEST, run.name]
 
 
 @pytest.mark.parametrize("overwrite", [False, True])

@@ -69,6 +69,19 @@ def test_a_damaged_part_is_done_again(batch, whole, tmp_path, kind):
     assert len(ikde.read_batch(tmp_path, timing=True)) == 48
 
 
+@pytest.mark.parametrize("share", [0.05, 0.2, 0.4, 0.6, 0.8, 0.95])
+def test_a_part_with_a_flipped_bit_is_done_again(batch, whole, tmp_path, share):
+    ikde.run_batch(batch, tmp_path)
+    part = tmp_path / "solutions" / "free-00002.parquet"
+    data = bytearray(part.read_bytes())
+    data[int(share * len(data))] ^= 1
+    part.write_bytes(data)
+    told = []
+    ikde.run_batch(batch, tmp_path, progress=told.append)
+    assert told[0].parts_found == 9
+    assert read_files(tmp_path) == whole
+
+
 def test_a_finished_run_has_nothing_to_do(batch, tmp_path, monkeypatch):
     first = ikde.run_batch(batch, tmp_path)
     monkeypatch.setattr("ikde.batch.run.solve_task", None)  # would be a bug if it were called
@@ -139,11 +152,18 @@ def test_options_that_contradict_each_other_are_refused(batch, tmp_path, options
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.parametrize("batch", ["x.yaml", {"robot": "qiao2021"}, None])
+def test_what_is_no_batch_is_refused(batch, tmp_path):
+    with pytest.raises(InputError, match=r"expected a Batch; ikde.load_batch reads files and mappings"):
+        ikde.run_batch(batch, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
 def test_of_a_thousand_targets_the_ten_unreachable_are_named_with_their_reasons(tmp_path):
     blocked = [ikde.Target(FAR) if k % 100 == 50 else target for k, target in enumerate(make_targets(1000))]
     loose = make_arm(position_tolerance_m=0.05)
     source = ListSource(targets=blocked, names=tuple(f"t{k}" for k in range(1000)))
     summary = ikde.run_batch(make_batch(arms=(loose,), source=source, repeats=1, chunk=200, explain=True), tmp_path)
     assert summary.unreached == 10
-    assert [(row.target, row.name) for row in summary.listed] == [(k, f"t{k}") for k in range(50, 1000, 100)]
-    assert all(row.reason.startswith("out of reach: at least") for row in summary.listed)
+    assert [(row.target, row.name) for row in summary.arms[0].listed] == [(k, f"t{k}") for k in range(50, 1000, 100)]
+    assert all(row.reason.startswith("out of reach: at least") for row in summary.arms[0].listed)

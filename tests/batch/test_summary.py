@@ -6,7 +6,7 @@ import pytest
 import ikde
 from ikde.batch.sources import ListSource
 from ikde.batch.statistics import Rate
-from ikde.batch.summary import LISTED, summarise
+from ikde.batch.summary import summarise
 from ikde.errors import FileError
 from tests.batch.small import BLINK, FAR, ROBOT, make_arm, make_batch
 
@@ -66,24 +66,22 @@ def test_cost_is_spread_over_all_solves(run):
         assert arm.milliseconds.p95 == pytest.approx(1e3 * np.percentile(seconds[32 * k : 32 * k + 32], 95))
 
 
-def test_the_first_unreached_are_listed(run):
+def test_an_unreached_target_is_listed_once_an_arm(run):
     _, summary, rows = run
-    failures = [row for row in rows if not row["reached"]]
-    assert summary.unreached == len(failures)
-    assert [(row.arm, row.target, row.name, row.repeat, row.stop_reason, row.reason) for row in summary.listed] == [
-        tuple(row[key] for key in ("arm", "target", "target_name", "repeat", "stop_reason", "reason"))
-        for row in failures[:LISTED]
-    ]
-    assert {row.name for row in summary.listed} >= {"b"}
-
-
-def test_columns_that_are_not_kept_are_missed_by_nobody(tmp_path):
-    summary = ikde.run_batch(make_batch(columns=()), tmp_path)
-    assert summary.arms[0].attempts is None
-    assert summary.arms[0].milliseconds is not None
-    assert (summary.unreached, len(summary.listed)) == (24, LISTED)
-    assert summary.listed[0].reason is summary.listed[0].name is None
-    assert summary.listed[0].stop_reason == "budget"
+    assert summary.unreached == sum(not row["reached"] for row in rows)
+    assert summary.repeats == 8
+    for arm in summary.arms:
+        failures = [row for row in of_arm(rows, arm.name) if not row["reached"]]
+        targets = sorted({row["target"] for row in failures})
+        assert [row.target for row in arm.listed] == targets
+        assert arm.unreached_targets == len(targets)
+        for listed in arm.listed:
+            mine = [row for row in failures if row["target"] == listed.target]
+            assert listed.missed == len(mine)
+            names = ("arm", "target_name", "repeat", "stop_reason", "reason")
+            facts = (listed.arm, listed.name, listed.repeat, listed.stop_reason, listed.reason)
+            assert facts == tuple(mine[0][key] for key in names)
+        assert next(row.missed for row in arm.listed if row.name == "b") == 8  # of two parts
 
 
 def test_an_unfinished_run_is_summarised_as_far_as_it_goes(tmp_path):

@@ -104,3 +104,11 @@ def test_missing_files_folders_and_other_kinds_are_refused(tmp_path):
         open_table(tmp_path / "folder.csv")
     with pytest.raises(InputError, match=r"expected a file that ends in \.csv, \.parquet, \.npz, got 'points\.txt'"):
         open_table(tmp_path / "points.txt")
+
+
+@pytest.mark.parametrize("text", ["", "\n", "\n1,2,3\n"])
+def test_a_csv_file_without_a_header_says_so(tmp_path, text):
+    path = tmp_path / "points.csv"
+    path.write_text(text)
+    with pytest.raises(FileError, match=r"points.csv: the first line is empty; expected the names of the columns$"):
+        open_table(path)

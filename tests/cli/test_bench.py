@@ -1,6 +1,7 @@
 """`ikde bench paper`: files that are whole, a check that finds what was changed, and words for what is wrong."""
 
 import json
+from dataclasses import asdict
 
 import pytest
 
@@ -45,8 +46,31 @@ def test_a_check_needs_a_record(refuse, tmp_path):
     assert "no such file" in refuse("bench", "paper", "--out", tmp_path / "none", "--check")
 
 
+def test_a_damaged_record_is_one_line(refuse, tmp_path):
+    (tmp_path / "results.json").write_text(
+        json.dumps({"made": {"budget": asdict(TINY), "only": []}, "sections": {"kinematics": 3}})
+    )
+    assert "sections.kinematics: expected a mapping" in refuse("bench", "paper", "--out", tmp_path, "--check")
+
+
 def test_a_check_takes_its_sizes_from_the_record(refuse):
     assert "--quick" in refuse("bench", "paper", "--check", "--quick")
+
+
+def test_a_section_alone(cli, tmp_path):
+    outcome = cli("bench", "paper", "--out", tmp_path / "r", "--only", "kinematics,misprints")
+    assert outcome.code == 0
+    page = (tmp_path / "r" / "report.md").read_text(encoding="utf-8")
+    assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == [
+        *("Formula 23 and Figure 6: kinematics", "Misprints, puzzles and what was calibrated", "How this was made"),
+    ]
+    assert "ikde bench paper --only kinematics --out report/" in page
+    assert cli("bench", "paper", "--out", tmp_path / "r", "--check").code == 0
+
+
+@pytest.mark.parametrize("only", ["kinematic", "", ",", "kinematics,x"])
+def test_an_unknown_section_is_refused(refuse, only):
+    assert "expected some of kinematics, approximation" in refuse("bench", "paper", "--only", only)
 
 
 def test_a_file_is_no_folder(refuse, tmp_path):

@@ -96,6 +96,7 @@ def test_robots_and_tables_stand_beside_the_run_file(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "place", "words"),
     [
+        ("grade: [improved]", "name: ''", ":16 → name:", "expected text that is not empty"),
         (TASK_2, "[540, -131]", ":6 → targets.inline[1].position:", "expected 3 values, got 2"),
         (TASK_2, "[1, 2, 3, 4]", ":6 → targets.inline[1].position:", "expected 3 values, got 4"),
         (TASK_2, "[1, 2, .nan]", ":6 → targets.inline[1].position[2]:", "expected a finite number"),
@@ -122,10 +123,12 @@ def test_robots_and_tables_stand_beside_the_run_file(tmp_path):
         ("grade: [improved]", "grade: [{name: a}]", ":16 → grade[0].spheres:", "this key is missing"),
         ("grade: [improved]", "grade: [3]", ":16 → grade[0]:", "expected keys with values, got 3"),
         ("grade: [improved]", "output: {columns: [qq]}", ":16 → output.columns[0]:", "expected 'q', 'errors'"),
-        ("repeats: 2", "repeats: 0", ":17 → repeats:", "greater than or equal to 1"),
+        ("repeats: 2", "repeats: 0", ":17 → repeats:", "expected at least 1, got 0"),
         ("repeats: 2", "repeats: 2.5", ":17 → repeats:", "whole number"),
         ("repeats: 2", "repeat: 2", ":17 → repeat:", "unknown key (did you mean 'repeats'?)"),
-        ("seed: 7", "seed: -1", ":18 → seed:", "greater than or equal to 0"),
+        ("seed: 7", "seed: -1", ":18 → seed:", "expected at least 0, got -1"),
+        ("[-60, 60]", "[-1.0e+10, 60]", ":11 → solve.ranges.d_x[0]:", "expected at least -1e+09, got -10000000000.0"),
+        ("seed: 7", "explain: maybe", ":18 → explain:", "expected true or false, got 'maybe'"),
         ("seed: 7", "seed: [", ":", "not YAML"),
     ],
 )
@@ -167,6 +170,12 @@ def test_a_mapping_is_refused_by_key_alone():
     assert str(caught.value) == "repeat: unknown key (did you mean 'repeats'?)"
     with pytest.raises(InputError, match=r"^solve\.freeze\.q9: qiao2021 has no joint 'q9'"):
         load_batch({**yaml.safe_load(GOOD), "solve": {"freeze": {"q9": None}}})
+
+
+@pytest.mark.parametrize(("source", "kind"), [(None, "NoneType"), ([1], "list"), (b"run.yaml", "bytes")])
+def test_what_is_neither_file_nor_mapping_is_refused(source, kind):
+    with pytest.raises(InputError, match=f"^expected the path of a run file or a mapping, got {kind}$"):
+        load_batch(source)
 
 
 @pytest.mark.parametrize("text", ["", "- 1\n", "5\n", "{}\n"])

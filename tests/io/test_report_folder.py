@@ -9,7 +9,7 @@ from ikde.bench.budget import QUICK
 from ikde.errors import FileError
 from ikde.io.report_folder import RESULTS, format_results, prepare_folder, read_results, write_report
 
-RECORD = {"made": {"budget": asdict(QUICK)}, "sections": {}}
+RECORD = {"made": {"budget": asdict(QUICK), "only": []}, "sections": {}}
 
 
 def test_a_folder_is_made_with_its_parents(tmp_path):
@@ -60,12 +60,25 @@ def test_a_record_comes_back(tmp_path):
         ("[]", "not a record"),
         ("{}", "not a record"),
         (json.dumps({"made": {"budget": {"solves": 1}}, "sections": {}}), "not a record"),
-        (json.dumps({**RECORD, "sections": None}), "not a record"),
+        (json.dumps({**RECORD, "made": 3}), "not a record"),
+        (json.dumps({**RECORD, "sections": None}), "→ sections: expected a mapping, got None"),
+        (
+            json.dumps({**RECORD, "sections": {"a": {}, "kinematics": 3}}),
+            r"→ sections\.kinematics: expected a mapping, got 3",
+        ),
     ],
 )
 def test_something_else_is_no_record(tmp_path, text, words):
     (tmp_path / RESULTS).write_text(text)
     with pytest.raises(FileError, match=words):
+        read_results(tmp_path)
+
+
+@pytest.mark.parametrize("size", [0, -1, 1.0, True, "300", None])
+def test_a_sample_size_is_a_whole_number(tmp_path, size):
+    budget = asdict(QUICK) | {"solves": size}
+    (tmp_path / RESULTS).write_text(json.dumps({**RECORD, "made": {"budget": budget, "only": []}}))
+    with pytest.raises(FileError, match=r"→ made\.budget\.solves: expected a whole number of at least 1, got"):
         read_results(tmp_path)
 
 

@@ -102,7 +102,7 @@ def test_frames_may_stand_in_any_order(tmp_path):
         ("spheres: coarse,", "spheres: fine,", "detectors.coarse.spheres", "no approximation is called 'fine'"),
         ("safe_distance: 5", "safe_distance: -5", "detectors.coarse.safe_distance", "at least 0"),
         ("to: tip,", "to: rail,", "spheres.coarse[1].to", "a joint moves these two frames"),
-        ("count: 4", "count: 0", "spheres.coarse[1].count", "greater than or equal to 1"),
+        ("count: 4", "count: 0", "spheres.coarse[1].count", "expected at least 1, got 0"),
         ("count: 4", "count: 2.5", "spheres.coarse[1].count", "whole number"),
         ("kind: prismatic", "kind: sliding", "joints.slide.kind", "'revolute' or 'prismatic'"),
         ("length: mm", "length: cm", "robot.yaml:2 → units.length", "'mm' or 'm'"),

@@ -76,14 +76,21 @@ def test_a_forest_without_published_value_has_nothing_to_miss():
 def test_a_cdf_ends_at_the_share_that_has_a_value():
     figure = plot_cdf([Sample(label="a", values=[3.0, 1.0, np.nan, 2.0], total=4)], x=TIME, y="solves")
     line = curves(figure)["a"]
-    assert list(line.get_xdata()) == [1.0, 2.0, 3.0]
-    assert list(line.get_ydata()) == [25.0, 50.0, 75.0]
+    assert list(line.get_xdata()) == [1.0, 1.0, 2.0, 3.0, 3.0]
+    assert list(line.get_ydata()) == [0.0, 25.0, 50.0, 75.0, 75.0]
     assert figure.axes[0].get_ylabel() == "solves done [%]"
+
+
+def test_curves_of_a_cdf_begin_at_zero_and_end_together():
+    samples = [Sample(label="a", values=[2.0], total=2), Sample(label="b", values=[1.0, 7.0])]
+    lines = curves(plot_cdf(samples, x=TIME))
+    assert list(zip(*lines["a"].get_data(), strict=True)) == [(2.0, 0.0), (2.0, 50.0), (7.0, 50.0)]
+    assert lines["b"].get_xdata()[-1] == 7.0
 
 
 def test_a_cdf_of_many_values_has_few_points():
     line = curves(plot_cdf([Sample(label="a", values=np.arange(100_000))], x=TIME))["a"]
-    assert len(line.get_xdata()) == MOST_POINTS
+    assert len(line.get_xdata()) == MOST_POINTS + 2
     assert line.get_xdata()[-1] == 99_999
     assert line.get_ydata()[-1] == 100.0
 

@@ -57,6 +57,12 @@ def test_an_axis_without_a_logarithm_is_linear():
     assert axes.get_xscale() == "linear"
 
 
+def test_a_count_is_marked_at_whole_numbers():
+    with drawing(Axis(label="attempts", whole=True), PLAIN) as (_, axes):
+        axes.plot([1.0, 4.0], [0.0, 1.0])
+    assert all(tick == round(tick) for tick in axes.xaxis.get_major_locator()())
+
+
 def test_limits_hold():
     with drawing(PLAIN, Axis(label="rate", unit="%", limits=(0, None))) as (_, axes):
         axes.plot([0.0, 1.0], [5.0, 90.0])

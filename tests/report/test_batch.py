@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from ikde.batch.arm_summary import ArmSummary, TargetSummary, Unreached
 from ikde.batch.preview import ArmPreview, Preview
 from ikde.batch.statistics import Rate, Spread
-from ikde.batch.summary import ArmSummary, RunSummary, Unreached
+from ikde.batch.summary import RunSummary
 from ikde.report.batch import (
     format_bytes,
     format_preview,
@@ -19,6 +20,9 @@ from ikde.report.batch import (
     run_json,
 )
 
+LOST = Unreached(
+    arm="plain [de]", target=3, name="shelf [1]", repeat=2, missed=1, stop_reason="out_of_reach", reason="too far"
+)
 ARM = ArmSummary(
     name="plain [de]",
     method="de",
@@ -28,19 +32,20 @@ ARM = ArmSummary(
     attempts=Spread(1.0, 3.0, 12.0),
     milliseconds=Spread(20.0, 30.5, 1234.5),
     collisions={"typical": Rate(30, 1999)},
+    by_target=(),
+    unreached_targets=1,
+    listed=(LOST,),
 )
-LOST = Unreached(arm="plain [de]", target=3, name="shelf [1]", repeat=2, stop_reason="out_of_reach", reason="too far")
 SUMMARY = RunSummary(
     folder=Path("runs/a"),
     name="demo",
     robot="qiao2021",
     seed=1,
     hash="ab",
+    repeats=4,
     parts_done=2,
     parts=2,
     arms=(ARM,),
-    unreached=1,
-    listed=(LOST,),
 )
 PREVIEW = Preview(
     name="demo",
@@ -72,19 +77,45 @@ def test_each_arm_has_its_figures():
 
 
 def test_who_was_not_reached_is_named_with_the_reason():
-    text = format_run(replace(SUMMARY, unreached=5))
+    text = format_run(SUMMARY)
     assert "not reached: 1 out of reach (arm plain [de])" in text
-    assert "  plain [de], target 3 shelf [1], repeat 2: too far" in text
-    assert "  and 4 more" in text
+    assert "  plain [de], target 3 shelf [1], 1 of 4 repeats, first repeat 2: too far" in text
+    assert "more" not in text
+    assert "  plain [de], target 3 shelf [1]: too far" in format_run(replace(SUMMARY, repeats=1))
+
+
+def test_of_many_unreached_targets_twenty_an_arm_are_named():
+    many = replace(ARM, unreached_targets=1234, listed=tuple(replace(LOST, target=k) for k in range(30)))
+    lines = format_run(replace(SUMMARY, arms=(many, replace(ARM, name="other")))).splitlines()
+    named = [line for line in lines if "too far" in line]
+    assert len(named) == 21
+    assert "  plain [de], and 1,214 more targets" in lines
+
+
+def test_a_few_targets_are_shown_one_by_one():
+    rows = tuple(
+        TargetSummary(target=k, name=f"t{k}", reached=Rate(40, 50), collisions={"typical": Rate(10 * k, 40)})
+        for k in range(7)
+    )
+    text = format_run(replace(SUMMARY, arms=(replace(ARM, by_target=rows[:5]),)))
+    assert "rates and intervals of just these 5 targets" in text
+    row = next(line for line in text.splitlines() if " t2 " in line)
+    for words in ("40 / 50", "80.0 % (67.0 to 88.8)", "50.0 % (35.2 to 64.8)"):
+        assert words in row
+    text = format_run(replace(SUMMARY, arms=(replace(ARM, by_target=rows),)))
+    assert "rates and intervals of just these 7 targets" in text
+    assert " t2 " not in text
+    assert "just these" not in format_run(SUMMARY)
 
 
 def test_without_a_reason_the_word_for_it_is_given():
-    assert "repeat 2: out_of_reach" in format_run(replace(SUMMARY, listed=(replace(LOST, reason=None),)))
+    arm = replace(ARM, listed=(replace(LOST, reason=None),))
+    assert "repeat 2: out_of_reach" in format_run(replace(SUMMARY, arms=(arm,)))
 
 
 def test_all_reached_is_said_in_a_line():
-    arm = replace(ARM, reached=Rate(1, 1), collisions={}, attempts=None, milliseconds=None)
-    text = format_run(replace(SUMMARY, arms=(arm,), unreached=0, listed=()))
+    arm = replace(ARM, reached=Rate(1, 1), collisions={}, attempts=None, milliseconds=None, listed=())
+    text = format_run(replace(SUMMARY, arms=(arm,)))
     assert text.startswith("all reached: 1 solve\n")
     assert "not reached" not in text
     assert "graded" not in text

@@ -27,6 +27,7 @@ class Measure:
     factor: float
 
 
+CLEARANCE_NOTE = "Clearance: the smallest distance between two spheres that the arm's detector compares."
 CLEARANCE = Measure("clearance_m", "clearance", "mm", 1e3)
 ERRORS = (
     Measure("position_error_m", "position error", "mm", 1e3),
@@ -62,7 +63,7 @@ def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
             for arm in run.arms
         ),
         caption="The solutions that reached their target",
-        note="Clearance: the smallest distance between two spheres that the arm's detector compares.",
+        note=CLEARANCE_NOTE if CLEARANCE in measures else "",
     )
 
 
@@ -92,11 +93,11 @@ def _draw(arms: Sequence[ArmAnswers], measure: Measure) -> Figure:
 
 def _make_pairs(run: RunAnswers) -> Table:
     """Which pairs are closest, how often."""
-    totals = {arm.name: max(1, sum(arm.closest_pairs.values())) for arm in run.arms}
+    arms = [_share_pairs(arm) for arm in run.arms]
     sums: dict[str, float] = {}
-    for arm in run.arms:
-        for pair, count in arm.closest_pairs.items():
-            sums[pair] = sums.get(pair, 0.0) + count / totals[arm.name]
+    for shares in arms:
+        for pair, share in shares.items():
+            sums[pair] = sums.get(pair, 0.0) + share
     shown = sorted(sums, key=lambda pair: (-sums[pair], pair))[:MOST_PAIRS]
     left = len(sums) - len(shown)
     return Table(
@@ -104,10 +105,16 @@ def _make_pairs(run: RunAnswers) -> Table:
         rows=tuple(
             (
                 pair.replace("-", " – "),
-                *(fixed(100 * arm.closest_pairs.get(pair, 0) / totals[arm.name], 1) for arm in run.arms),
+                *(fixed(100 * shares.get(pair, 0.0), 1) if shares else "–" for shares in arms),
             )
             for pair in shown
         ),
         caption="Which two components come closest, in percent of the reached solutions",
         note=f"{left} more pairs are rarer." if left else "",
     )
+
+
+def _share_pairs(arm: ArmAnswers) -> dict[str, float]:
+    """How often each pair is the closest; empty without a detector."""
+    total = sum(arm.closest_pairs.values())
+    return {pair: count / total for pair, count in arm.closest_pairs.items()}

@@ -48,8 +48,8 @@ def _make_table(run: RunAnswers) -> Table:
             for arm in run.arms
         ),
         caption="What a solve costs",
-        note="Over all solves, also those that did not reach their target. The time is a solve's own wall time, while "
-        "all threads are busy.",
+        note="Over all solves, also those that did not reach their target. The time is a solve's wall time while all "
+        "threads are busy; very short searches share a call, and its time evenly.",
     )
 
 
@@ -72,7 +72,7 @@ def _draw(run: RunAnswers) -> list[Figure]:
         ]
         if len(np.unique(np.concatenate([np.empty(0), *(sample.values for sample in samples)]))) < 2:
             continue  # a curve of one value says nothing that the table does not
-        figure = plot_cdf(samples, x=Axis(label=label, unit=unit, log=is_wide(samples)), y="solves")
+        figure = plot_cdf(samples, x=Axis(label=label, unit=unit, log=is_wide(samples), whole=not unit), y="solves")
         figures.append(
             Figure(
                 image=to_svg(figure),

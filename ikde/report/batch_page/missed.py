@@ -23,7 +23,7 @@ def make_missed(run: RunAnswers) -> Section | None:
     columns = [
         Column("target"),
         Column("name", align="left"),
-        Column("x, y, z", "m", align="left"),
+        Column("x, y, z", "m"),
         Column("arm", align="left"),
         Column("missed"),
         Column("why", align="left"),

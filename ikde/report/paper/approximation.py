@@ -47,6 +47,7 @@ def _make_volumes(exact: Mapping[str, Any], name: str) -> Table:
             Column("ours", "mm³", group="volume of the spheres", mark="ours"),
             Column("printed", "%", group="degree", mark="published"),
             Column("ours", "%", group="degree", mark="ours"),
+            Column("count and radii are", align="left"),
         ),
         rows=tuple(_make_row(row, row[name]) for row in exact["components"]),
         caption=f"Table 2: the {name} approximation",
@@ -64,6 +65,7 @@ def _make_row(part: Mapping[str, Any], cell: Mapping[str, Any]) -> tuple[str | C
         f"{cell['volume_mm3']['ours']:.4e}",
         Cell(degree, "off") if cell["misprint"] else degree,
         fixed(cell["degree_pct"]["ours"], 2),
+        ", ".join(cell["provenance"]),
     )
 
 
@@ -91,8 +93,14 @@ def _make_home(exact: Mapping[str, Any]) -> Table:
             for row in exact["home"]
         ),
         caption="Section 5.3.1: the home configuration",
-        note="One sphere a component is too coarse to be of use: it calls home a collision.",
+        note=f"With one sphere a component home {_say_home(exact, 'single')}, with several "
+        f"{' and '.join(_say_home(exact, name) for name in NAMES)}.",
     )
+
+
+def _say_home(exact: Mapping[str, Any], detector: str) -> str:
+    row = next(row for row in exact["home"] if row["detector"] == detector)
+    return "collides" if row["collides"] else "is free"
 
 
 def _draw(data: Mapping[str, Any], robot: Robot) -> Gallery:

@@ -16,8 +16,9 @@ READINGS = {
 }
 
 
-def make_sensitivity(data: Data, printed: Data) -> Section:
-    """Every variation's four rates, and which come closest. `printed`: Table 4's rates, by target and detector."""
+def make_sensitivity(data: Data) -> Section:
+    """Every variation's four rates, and which come closest."""
+    printed = data["exact"]["printed"]
     return Section(
         "Table 4: what it hangs on",
         (
@@ -53,7 +54,17 @@ def _make_closest(data: Data) -> Table:
             (describe_change(row), row["reading"], fixed(row["farthest_points"], 1)) for row in data["exact"]["closest"]
         ),
         caption="The settings that come closest to the print",
+        note=f"A rate's interval is up to ±{fixed(_widest(data), 1)} points wide, and all rows share their random "
+        "streams: "
+        "settings that differ by less cannot be told apart.",
     )
+
+
+def _widest(data: Data) -> float:
+    """Half the widest interval of the closest settings' rates."""
+    closest = {(row["group"], row["value"], row["reading"]) for row in data["exact"]["closest"]}
+    rows = [row for row in data["exact"]["rows"] if (row["group"], row["value"], row["reading"]) in closest]
+    return max(0.5 * (cell["interval_pct"][1] - cell["interval_pct"][0]) for row in rows for cell in row["cells"])
 
 
 def _make_table(data: Data, printed: Data, reading: str) -> Table:

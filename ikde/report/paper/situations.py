@@ -120,12 +120,16 @@ def _chart(situation: Data) -> Figure:
         Event(label=f"{d['detector']} detects, {d['detected_s']:.2f} s", x=d["detected_s"], line=d["detector"])
         for d in found
     ]
-    contact_s = situation["simulator"]["t_s"]
+    contact, printed_deg = situation["simulator"], situation["simulator"]["angle_deg"]["printed"]
+    events.append(Event(label=f"contact in V-REP, {contact['t_s']:.2f} s", x=contact["t_s"]))
+    if contact["misprint"]:
+        label = f"its printed angle, {printed_deg:g} deg, {contact['angle_at_s']:.2f} s"
+        events.append(Event(label=label, x=contact["angle_at_s"]))
     figure = plot_lines(
         [Line(label=name, x=curve["t_s"], y=values) for name, values in curve["clearance_mm"].items()],
         x=Axis(label="time", unit="s"),
         y=Axis(label="clearance", unit="mm"),
-        events=[*events, Event(label=f"contact in V-REP, {contact_s:.2f} s", x=contact_s)],
+        events=events,
         level=(0.0, "touching"),
     )
     name = f"{FIGURES[situation['situation']]}, Situation {situation['situation']}"

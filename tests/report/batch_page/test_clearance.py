@@ -29,6 +29,11 @@ def test_the_least_clearance_and_the_largest_error_are_shown(section, answers):
     ]
 
 
+def test_clearance_is_explained_where_it_is_shown(section, answers):
+    assert "spheres" in tables(section)[0].note
+    assert tables(make_clearance(replace(answers, arms=answers.arms[:1])))[0].note == ""
+
+
 def test_what_has_no_error_is_not_shown(section):
     """Targets without an orientation."""
     assert {column.group for column in tables(section)[0].columns} == {"", "clearance", "position error"}
@@ -55,7 +60,7 @@ def test_closest_pairs_are_shares_of_the_reached(answers, monkeypatch):
     assert shares == sorted(shares, reverse=True)
     pairs = answers.arms[1].closest_pairs
     assert sum(shares) == pytest.approx(100.0, abs=0.1 * len(pairs))
-    assert set(column(table, "closest in: free [%]")) == {"0.0"}
+    assert set(column(table, "closest in: free [%]")) == {"–"}  # it has no detector, so no pair
     assert " – " in table.rows[0][0]
     monkeypatch.setattr(clearance, "MOST_PAIRS", 1)
     table = tables(make_clearance(answers))[1]

@@ -6,8 +6,7 @@ from ikde.report.paper.sensitivity import make_sensitivity
 
 def test_rows_and_forests(results):
     data = results["sections"]["sensitivity"]
-    printed = {t["target"]: t["printed"] for t in results["sections"]["rejection"]["exact"]["targets"]}
-    section = make_sensitivity(data, printed)
+    section = make_sensitivity(data)
     closest, *readings = [block for block in section.blocks if isinstance(block, Table)]
     assert sum(len(table.rows) for table in readings) == len(data["exact"]["rows"])
     assert len(closest.rows) == 5

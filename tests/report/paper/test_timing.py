@@ -8,7 +8,11 @@ from ikde.report.paper.timing import make_timing
 
 def test_eight_columns_and_four_ratios(results):
     section = make_timing(results["sections"]["timing"])
-    times, ratios = [block for block in section.blocks if isinstance(block, Table)]
+    times, ratios, printed, ours = [block for block in section.blocks if isinstance(block, Table)]
+    assert len(printed.rows) == 13
+    assert printed.rows[0][1] == "682.0"
+    assert printed.rows[10][:2] == ("printed average", "631.1")
+    assert (len(ours.rows), len(ours.columns)) == (10, 9)
     assert [row[0] for row in times.rows] == ["Ta1", "Tb1", "Tc1", "Td1", "Ta2", "Tb2", "Tc2", "Td2"]
     assert times.rows[0][4] == "631.1"
     assert [row[3:5] for row in ratios.rows] == [("47", "40.4"), ("47", "37.7"), ("61", "66.6"), ("61", "67.9")]
