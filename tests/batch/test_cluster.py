@@ -105,11 +105,11 @@ def test_a_connection_that_breaks_is_one_line(batch, cluster, monkeypatch, call)
         raise OSError("Timed out trying to connect\nafter 30 s")
 
     monkeypatch.setattr(distributed.Client, call, refuse)
-    with open_cluster(cluster.scheduler_address) as solve:
-        with pytest.raises(
-            InputError, match=r"^dask: the cluster has gone away; [^\n]* \(Timed out trying to connect\)$"
-        ):
-            next(solve([make_task(batch, Part("careful", 0, 0, 5))]))
+    with (
+        open_cluster(cluster.scheduler_address) as solve,
+        pytest.raises(InputError, match=r"^dask: the cluster has gone away; [^\n]* \(Timed out trying to connect\)$"),
+    ):
+        next(solve([make_task(batch, Part("careful", 0, 0, 5))]))
 
 
 def test_a_worker_with_other_kernels_is_refused(batch):
