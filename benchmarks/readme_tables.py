@@ -71,6 +71,24 @@ def format_start(record: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def format_batch(record: dict[str, Any]) -> str:
+    """Runs of `ikde batch`, a row a run."""
+    lines = [
+        "`ikde batch`, whole processes; a *blink* searches next to nothing (population 6, one generation), so its time is "
+        "reading, grading by plain numpy, tabulating and writing; *de* is best/1 with 50 restarts, base within ±0.1 m:",
+        "",
+        "| run | targets | s | µs a target | of it search | peak MB | reached |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for cell in record["cells"]:
+        search = f"{cell['search_us_a_row']:.0f}" if "search_us_a_row" in cell else ""
+        lines.append(
+            f"| {cell['run']} | {cell['targets']:,} | {cell['wall_s']:.0f} | {cell['us_a_row']:.0f} | {search} | "
+            f"{cell['peak_memory_mb']:.0f} | {cell['reached']:,} |"
+        )
+    return "\n".join(lines)
+
+
 def make_block() -> str:
     """Everything between the README's markers."""
     search, kernels = load("paper_search"), load("kernel_times")
@@ -79,6 +97,7 @@ def make_block() -> str:
         f"{format_machine(search['machine'])}; {note}.",
         format_search(search),
         format_kernels(kernels),
+        format_batch(load("batch_scale")),
         format_start(load("start_up")),
     ]
     return "\n\n".join(parts) + "\n"

@@ -105,14 +105,15 @@ def _make_table(data: Data, reading: str) -> Table:
             Column("CN of SN", group="ours", mark="ours"),
             Column("rejected", "%", group="ours", mark="ours"),
             Column("SR", "%", group="ours", mark="ours"),
-            Column("the print's", group="inside the other's interval?", align="left"),
-            Column("ours", group="inside the other's interval?", align="left"),
+            Column("print in ours", align="left"),
+            Column("ours in print", align="left"),
         ),
         rows=tuple(
             _make_row(target, spheres, pairing[spheres]) for target in data["exact"]["targets"] for spheres in SPHERES
         ),
         caption=f"Table 4, {READING_NAMES[reading]}",
-        note="Rates with Wilson's 95 % interval; the print's allows for its own sample.",
+        note="Rates with Wilson's 95 % interval. The last two columns: whether the printed rate lies within our interval, "
+        "and ours within the print's, which allows for its own sample.",
     )
 
 
