@@ -74,7 +74,8 @@ def format_start(record: dict[str, Any]) -> str:
 def format_batch(record: dict[str, Any]) -> str:
     """Runs of `ikde batch`, a row a run."""
     lines = [
-        "`ikde batch`, whole processes; a *blink* searches next to nothing (population 6, one generation), so its time is "
+        "`ikde batch`, whole processes; a *blink* searches next to nothing (population 6, one generation), so its "
+        "time is "
         "reading, grading by plain numpy, tabulating and writing; *de* is best/1 with 50 restarts, base within ±0.1 m:",
         "",
         "| run | targets | s | µs a target | of it search | peak MB | reached |",

@@ -112,7 +112,8 @@ def _make_table(data: Data, reading: str) -> Table:
             _make_row(target, spheres, pairing[spheres]) for target in data["exact"]["targets"] for spheres in SPHERES
         ),
         caption=f"Table 4, {READING_NAMES[reading]}",
-        note="Rates with Wilson's 95 % interval. The last two columns: whether the printed rate lies within our interval, "
+        note="Rates with Wilson's 95 % interval. The last two columns: whether the printed rate lies within our "
+        "interval, "
         "and ours within the print's, which allows for its own sample.",
     )
 
