@@ -11,7 +11,6 @@ Every solution is graded by `verify`. Times are those of one solve on one core; 
 import argparse
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,19 +21,11 @@ from rich.progress import track
 from rich.table import Table
 
 import ikde
+from ikde.bench.plain_search import limit_base
 
 TARGETS_M = {"task 1": (0.8, 0.5, 1.0), "task 2": (0.54, -0.131, 0.974)}
 BASE_RANGE_M = 0.1
 RESULTS = Path(__file__).parent / "results" / "paper_search.json"
-
-
-def with_base_range(robot: ikde.Robot, half_width_m: float) -> ikde.Robot:
-    """The robot with its base held within +-half_width_m."""
-    joints = tuple(
-        replace(joint, lower=-half_width_m, upper=half_width_m) if joint.kind == "prismatic" else joint
-        for joint in robot.joints
-    )
-    return replace(robot, joints=joints)
 
 
 def run_cell(robot: ikde.Robot, target: ikde.Target, detector: str, seeds: int, label: str) -> dict[str, Any]:
@@ -70,7 +61,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=1000)
     seeds = parser.parse_args().seeds
-    robot = with_base_range(ikde.load_robot("qiao2021"), BASE_RANGE_M)
+    robot = limit_base(ikde.load_robot("qiao2021"), BASE_RANGE_M)
     table = Table("target", "detector", "solved", "attempts median / p95 / max", "ms median / p95 / max", "rejected")
     cells = {}
     for name, position in TARGETS_M.items():

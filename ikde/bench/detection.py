@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 from ikde.bench.approximation import APPROXIMATIONS
 from ikde.bench.budget import FULL, Budget
 from ikde.bench.misprints import Data
+from ikde.bench.plain_search import make_detector
 from ikde.kernels.arrays import Floats
 from ikde.kernels.clearance import judge_centres
 from ikde.kernels.surface import judge_surfaces
@@ -34,7 +34,7 @@ def compute_detection(robot: Robot, budget: Budget = FULL) -> Data:
         budget: how many random configurations.
     """
     Q = draw_configurations(robot, budget.verdicts)
-    detectors = {(name, pairs): _detector(robot, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS}
+    detectors = {(name, pairs): make_detector(robot, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS}
     verdicts = {key: check_centres_many(robot, Q, detector) for key, detector in detectors.items()}
     few = Q[: budget.surface_verdicts]
     return {
@@ -84,12 +84,8 @@ def count_pairs(robot: Robot, detector: Detector) -> Data:
     sizes = dict.fromkeys(robot.components(detector.spheres), 0)
     for row in robot.approximations[detector.spheres]:
         sizes[row.component] += row.count
-    pairs = robot.pair_lists[detector.pairs]
+    pairs = robot.pairs(detector)
     return {"component_pairs": len(pairs), "sphere_pairs": sum(sizes[a] * sizes[b] for a, b in pairs)}
-
-
-def _detector(robot: Robot, name: str, pairs: str) -> Detector:
-    return replace(robot.detectors[name], pairs=pairs)
 
 
 def _name(key: tuple[str, str]) -> Data:
@@ -99,16 +95,23 @@ def _name(key: tuple[str, str]) -> Data:
 # ---- verdicts that differ
 
 
+def compare_pairs(robot: Robot, one: str, other: str) -> tuple[list[list[str]], list[list[str]]]:
+    """Pairs that only list `one` looks at, and those that only the `other` does."""
+    here, there = ({frozenset(pair): list(pair) for pair in robot.pair_lists[name]} for name in (one, other))
+    only_here = [pair for key, pair in here.items() if key not in there]
+    return only_here, [pair for key, pair in there.items() if key not in here]
+
+
 def _compare_lists(robot: Robot, verdicts: Mapping[tuple[str, str], Bools], name: str, pairs: str) -> Data:
     """Another list against Formula 22 as meant, with the same spheres."""
     ours, theirs = verdicts[name, PAIR_LISTS[0]], verdicts[name, pairs]
-    here, there = ({frozenset(pair) for pair in robot.pair_lists[key]} for key in (pairs, PAIR_LISTS[0]))
+    missing, added = compare_pairs(robot, PAIR_LISTS[0], pairs)
     return {
         "approximation": name,
         "pairs": pairs,
         "against": PAIR_LISTS[0],
-        "pairs_added": [list(pair) for pair in robot.pair_lists[pairs] if frozenset(pair) not in there],
-        "pairs_missing": [list(pair) for pair in robot.pair_lists[PAIR_LISTS[0]] if frozenset(pair) not in here],
+        "pairs_added": added,
+        "pairs_missing": missing,
         "only_this_collides": int((theirs & ~ours).sum()),
         "only_the_other_collides": int((ours & ~theirs).sum()),
         "configurations": len(ours),

@@ -12,12 +12,12 @@ from datetime import UTC, datetime
 from typing import Any, Protocol
 
 from ikde.batch.machine import describe_machine, describe_versions
-from ikde.bench.approximation import compute_approximation
+from ikde.bench.approximation import APPROXIMATIONS, compute_approximation
 from ikde.bench.budget import FULL, Budget
 from ikde.bench.detection import compute_detection
 from ikde.bench.kinematics import compute_kinematics
 from ikde.bench.misprints import Data, compute_misprints
-from ikde.bench.rejection import READINGS, SPHERES, compute_rejection, compute_waiting
+from ikde.bench.rejection import READINGS, compute_rejection, compute_waiting
 from ikde.bench.sensitivity import compute_sensitivity, list_variations
 from ikde.bench.situations import compute_situations
 from ikde.bench.solutions import compute_solutions
@@ -68,7 +68,7 @@ class Sources:
 def count_solves(sources: Sources, budget: Budget) -> int:
     """Solves that a report makes, which is what takes its time."""
     targets = len(sources.published["targets_mm"])
-    cells = len(READINGS) * len(SPHERES)
+    cells = len(READINGS) * len(APPROXIMATIONS)
     return targets * (budget.solves + cells * budget.waits + len(list_variations()) * budget.variation_solves)
 
 

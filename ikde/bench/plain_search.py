@@ -61,16 +61,24 @@ def apply_setup(robot: Robot, setup: Setup) -> Robot:
     """The robot with a setup's joint ranges."""
     offsets = convention_offsets(robot, "classical") if setup.limits == "classical" else np.zeros(len(robot.joints))
     turn = {"half_turn": np.pi, "full_turn": 2.0 * np.pi}.get(setup.limits)
+    near = limit_base(robot, setup.base_half_width_m)
     joints = []
-    for joint, offset in zip(robot.joints, offsets, strict=True):
+    for joint, offset in zip(near.joints, offsets, strict=True):
         if joint.kind == "prismatic":
-            half_width = setup.base_half_width_m
-            joints.append(replace(joint, lower=-half_width, upper=half_width))
+            joints.append(joint)
         elif turn is not None:
             joints.append(replace(joint, lower=-turn, upper=turn))
         else:
             joints.append(replace(joint, lower=joint.lower - offset, upper=joint.upper - offset))
-    return replace(robot, joints=tuple(joints))
+    return replace(near, joints=tuple(joints))
+
+
+def limit_base(robot: Robot, reach_m: float) -> Robot:
+    """The robot with its slides kept within +-`reach_m`: the paper prints no range, its solutions lie within 61 mm."""
+    kept = [
+        replace(joint, lower=-reach_m, upper=reach_m) if joint.kind == "prismatic" else joint for joint in robot.joints
+    ]
+    return replace(robot, joints=tuple(kept))
 
 
 def make_setup_problem(robot: Robot, setup: Setup, detector: Detector | str = "none") -> Problem:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from ikde.batch.statistics import Z_95, Rate, compute_spread
+from ikde.bench.approximation import APPROXIMATIONS as SPHERES
 from ikde.bench.budget import FULL, Budget
-from ikde.bench.detection import check_centres_many
+from ikde.bench.detection import PAIR_LISTS, check_centres_many, compare_pairs
 from ikde.bench.misprints import Data
 from ikde.bench.plain_search import (
     SEED,
@@ -27,8 +28,6 @@ from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
 from ikde.solver.rows import Rows, solve_rows
 
-SPHERES = ("typical", "improved")
-PAIR_LISTS = ("formula_22", "formula_22_printed", "non_adjacent")
 Pairing = dict[str, str]
 READINGS: dict[str, Pairing] = {
     "equal": {"typical": "formula_22", "improved": "formula_22"},
@@ -56,6 +55,7 @@ def compute_rejection(
         advance: called with the number of finished solves.
     """
     setup, targets = Setup(), read_targets(published)
+    dropped, added = compare_pairs(robot, *READINGS["unequal"].values())
     solutions = {
         name: solve_plainly(robot, setup, target, budget.solves, first_stream=k * budget.solves, advance=advance)
         for k, (name, target) in enumerate(targets.items())
@@ -85,18 +85,9 @@ def compute_rejection(
             "source": "[Qiao2021, Table 4]",
             "seed": SEED,
             "readings": READINGS,
-            "lists": _compare_lists(robot, *READINGS["unequal"].values()),
+            "lists": {"dropped": dropped, "added": added},
             **describe_setup(setup),
         },
-    }
-
-
-def _compare_lists(robot: Robot, first: str, second: str) -> Data:
-    """Pairs that only one of two lists looks at."""
-    one, other = ({frozenset(pair): list(pair) for pair in robot.pair_lists[name]} for name in (first, second))
-    return {
-        "dropped": [pair for key, pair in one.items() if key not in other],
-        "added": [pair for key, pair in other.items() if key not in one],
     }
 
 

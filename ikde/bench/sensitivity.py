@@ -8,10 +8,12 @@ from typing import Any, get_args
 import numpy as np
 
 from ikde.batch.statistics import Rate
+from ikde.bench.approximation import APPROXIMATIONS as SPHERES
 from ikde.bench.budget import FULL, Budget
+from ikde.bench.detection import PAIR_LISTS
 from ikde.bench.misprints import Data
 from ikde.bench.plain_search import SEED, Advance, Setup, collides, make_detector, read_targets, solve_plainly
-from ikde.bench.rejection import PAIR_LISTS, READINGS, SPHERES, describe_setup, rate_data, read_print
+from ikde.bench.rejection import READINGS, describe_setup, rate_data, read_print
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.model.surface import M_STEPS, N_STEPS

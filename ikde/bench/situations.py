@@ -95,7 +95,7 @@ def _compute_detection(robot: Robot, sweep: Sweep, entry: Data, detector: str) -
         "detected_s": found.detected_s,
         "onset_deg": sweep.angle(found.onset_s),
         "onset_s": found.onset_s,
-        "pair": list(robot.pair_lists[look.pairs][seen.closest_pair[1]]),
+        "pair": list(robot.pairs(look)[seen.closest_pair[1]]),
         "clearance_mm": dict(
             zip(("step_before", "detected", "contact"), (1e3 * seen.clearance_m).tolist(), strict=True)
         ),

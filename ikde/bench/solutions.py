@@ -1,7 +1,6 @@
 """Table 5 and Figure 8: the published solutions graded again, and solutions of our own."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -9,6 +8,7 @@ import numpy as np
 
 from ikde.bench.approximation import APPROXIMATIONS
 from ikde.bench.misprints import Data, meant
+from ikde.bench.plain_search import limit_base
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
@@ -52,14 +52,6 @@ def compute_solutions(robot: Robot, published: Mapping[str, Any]) -> Data:
             "colliding": "searched with no detector: the first stream whose solution the typical detector rejects",
         },
     }
-
-
-def limit_base(robot: Robot, reach_m: float) -> Robot:
-    """The robot with its slides kept within +-`reach_m`: the paper prints no range, its solutions lie within 61 mm."""
-    kept = [
-        replace(joint, lower=-reach_m, upper=reach_m) if joint.kind == "prismatic" else joint for joint in robot.joints
-    ]
-    return replace(robot, joints=tuple(kept))
 
 
 def read_row(robot: Robot, row: Mapping[str, Any]) -> Floats:

@@ -77,7 +77,7 @@ def read_sweeps(published: Mapping[str, Any]) -> tuple[Sweep, ...]:
 
 def compute_clearance(robot: Robot, detector: Detector, Q: Floats) -> Floats:
     """Clearance beyond the safe distance [K] in m, by plain numpy."""
-    gaps = compute_gaps(robot, detector.spheres, robot.pair_lists[detector.pairs], Q)
+    gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q)
     return gaps.min(axis=1) - detector.safe_distance_m
 
 

@@ -74,7 +74,7 @@ def check_surface(
     compute_centres(packed, T_world_body, centres)
     compute_surface_from_centres(packed, centres, asked.directions, points)
     gap, pair = compute_surface_gap(packed, points, asked.covering_angle)
-    return SurfaceCheck(collision=gap <= asked.limit, gap_m=gap, pair=robot.pair_lists[asked.detector.pairs][pair])
+    return SurfaceCheck(collision=gap <= asked.limit, gap_m=gap, pair=robot.pairs(asked.detector)[pair])
 
 
 def check_surface_many(
@@ -104,7 +104,7 @@ def _read_question(robot: Robot, detector: str | Detector | None, rule: Rule, m_
     if m_steps < 3 or n_steps < 2:
         raise InputError(f"expected at least 3 x 2 steps, got {m_steps} x {n_steps}", ("m_steps",))
     chosen = robot.detector(detector)
-    if chosen is None or not robot.pair_lists[chosen.pairs]:
+    if chosen is None or not robot.pairs(chosen):
         raise InputError("expected a detector with pairs", ("detector",))
     covers = rule == "eq. 20"
     return _Question(

@@ -109,8 +109,8 @@ def _make_differences(data: Data) -> Table:
             (
                 row["approximation"],
                 LIST_NAMES[row["pairs"]],
-                _name_pairs(row["pairs_added"]),
-                _name_pairs(row["pairs_missing"]),
+                name_pairs(row["pairs_added"]),
+                name_pairs(row["pairs_missing"]),
                 f"{row['only_this_collides']:,}",
                 f"{row['only_the_other_collides']:,}",
             )
@@ -121,7 +121,8 @@ def _make_differences(data: Data) -> Table:
     )
 
 
-def _name_pairs(pairs: list[list[str]]) -> str:
+def name_pairs(pairs: list[list[str]]) -> str:
+    """`(G, L1), (G, L2)`; a dash of none."""
     return ", ".join(f"({a}, {b})" for a, b in pairs) or "–"
 
 

@@ -8,6 +8,7 @@ from ikde.plot.images import to_svg
 from ikde.plot.style import Axis
 from ikde.report.numbers import fixed, rate, significant, spread
 from ikde.report.page import Cell, Column, Figure, Section, Table, Text
+from ikde.report.paper.detection import name_pairs
 
 SPHERES = ("typical", "improved")
 READING_NAMES = {
@@ -260,7 +261,7 @@ def _make_gain(data: Data) -> Table:
         caption="What the improved detector's gain is made of, with unequal pairs",
         note="From the typical spheres over all non-adjacent pairs to the improved ones over Formula 22 as printed, "
         "which "
-        f"drops {_name_pairs(lists['dropped'])} and adds {_name_pairs(lists['added'])}. Spheres and pairs interact, so "
+        f"drops {name_pairs(lists['dropped'])} and adds {name_pairs(lists['added'])}. Spheres and pairs interact, so "
         "what each brings depends on which is changed first. With 95 % intervals: paired for ours; the print's two "
         "rates "
         "are taken as independent samples.",
@@ -282,10 +283,6 @@ def _gain_row(target: Data, order: Data) -> tuple[str, ...]:
 def _gain(gain: Data) -> str:
     low, high = gain["interval_points"]
     return f"{fixed(gain['points'], 1)} ({fixed(low, 1)} to {fixed(high, 1)})"
-
-
-def _name_pairs(pairs: list[list[str]]) -> str:
-    return ", ".join(f"({a}, {b})" for a, b in pairs)
 
 
 def _make_times(data: Data) -> Table:
