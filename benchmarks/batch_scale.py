@@ -3,7 +3,7 @@
     python benchmarks/batch_scale.py                  # half a million, a million, and 20,000 with `de`: some minutes
     python benchmarks/batch_scale.py --targets 20000  # smaller
 
-Each run is a process of its own (`ikde batch`, position targets, 1,000 solves a part, all columns).
+Each run is a process of its own (`ikde batch`, position targets, all columns).
 The blinks have populations of 6 and one generation, so that nearly all of their time is the runner's: reading targets,
 grading, tabulating, writing. The bare search of the same lanes is timed apart and taken off. Writes
 benchmarks/results/batch_scale.json.

@@ -90,6 +90,53 @@ def format_batch(record: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+PEER_TABLES = (("pose", "hard pose"), ("position", "hard position"), ("paper task 1", "paper task 2"))
+
+
+def format_peers(record: dict[str, Any]) -> str:
+    """Other solvers beside ikde, a row a solver, quickest first; two cases a table."""
+    options = record["options"]
+    position, orientation = options["tolerance"]
+    lines = [
+        f"ikde beside other solvers, interleaved, one core each, tolerances {position:g} m and {orientation:g} rad, "
+        "limits and self-collision inside success, every answer graded by plain numpy; ms over all targets asked, "
+        f"median / p95 / p99 / max ({options['limit']:g} s at most). How each is used: "
+        "[benchmarks/peers](benchmarks/peers/README.md).",
+    ]
+    for names in PEER_TABLES:
+        cases = [name for name in names if name in record["cases"]]
+        if cases:
+            lines += ["", f"| solver | {' | '.join(cases)} |", f"|---|{'---|' * len(cases)}"]
+            lines += [
+                f"| {peer} | {' | '.join(format_peer(record['cases'][case].get(peer, {})) for case in cases)} |"
+                for peer in order_peers(record["cases"][cases[0]])
+            ]
+    if record["missing"]:
+        lines += ["", f"Not installed: {', '.join(record['missing'])}."]
+    return "\n".join(lines)
+
+
+def order_peers(rows: dict[str, Any]) -> list[str]:
+    """Names by median time; those that could not be used are left out."""
+    used = [name for name, row in rows.items() if "ms" in row]
+    return sorted(used, key=lambda name: rows[name]["ms"]["median"])
+
+
+def format_peer(row: dict[str, Any]) -> str:
+    """One cell: how many were solved of how many, and the times."""
+    if "ms" not in row:
+        return "-"
+    times = " / ".join(format_ms(row["ms"][key]) for key in ("median", "p95", "p99", "max"))
+    share = f"{row['solved'] / row['asked']:.2%}".replace(".00", "")
+    return f"{share} of {row['asked']:,}: {times}"
+
+
+def format_ms(value: float) -> str:
+    """Two digits, no exponent."""
+    rounded = float(f"{value:.2g}")
+    return f"{rounded:,.0f}" if rounded >= 10.0 else f"{rounded:g}" if rounded >= 1e-3 else f"{rounded:.4f}"
+
+
 def make_block() -> str:
     """Everything between the README's markers."""
     search, kernels = load("paper_search"), load("kernel_times")
@@ -101,6 +148,8 @@ def make_block() -> str:
         format_batch(load("batch_scale")),
         format_start(load("start_up")),
     ]
+    if (RESULTS / "peers.json").exists():
+        parts.append(format_peers(load("peers")))
     return "\n\n".join(parts) + "\n"
 
 

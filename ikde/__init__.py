@@ -22,21 +22,24 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
         VerificationError as VerificationError,
     )
     from ikde.io.batch_file import load_batch as load_batch
+    from ikde.io.mjcf import format_mjcf as format_mjcf
     from ikde.io.robots import load_robot as load_robot
     from ikde.io.robots import robot_names as robot_names
+    from ikde.io.urdf import format_urdf as format_urdf
     from ikde.model.convention import from_convention as from_convention
     from ikde.model.convention import to_convention as to_convention
     from ikde.model.robot import Detector as Detector
     from ikde.model.robot import Robot as Robot
     from ikde.model.target import Target as Target
+    from ikde.model.target import Targets as Targets
     from ikde.solver.check import CheckResult as CheckResult
     from ikde.solver.check import check as check
+    from ikde.solver.distinct import solve_distinct as solve_distinct
     from ikde.solver.forward import forward as forward
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
     from ikde.solver.settings import SolveSettings as SolveSettings
     from ikde.solver.solve import solve as solve
-    from ikde.solver.solve import solve_distinct as solve_distinct
     from ikde.solver.solve import solve_many as solve_many
     from ikde.solver.surface import check_surface as check_surface
     from ikde.solver.verify import Verification as Verification
@@ -50,15 +53,18 @@ _HOME = {
     "read_batch": "ikde.batch.read",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
+    "format_urdf": "ikde.io.urdf",
+    "format_mjcf": "ikde.io.mjcf",
     "Robot": "ikde.model.robot",
     "Detector": "ikde.model.robot",
     "Target": "ikde.model.target",
+    "Targets": "ikde.model.target",
     "SolveSettings": "ikde.solver.settings",
     "SolveResult": "ikde.solver.result",
     "StopReason": "ikde.solver.result",
     "solve": "ikde.solver.solve",
     "solve_many": "ikde.solver.solve",
-    "solve_distinct": "ikde.solver.solve",
+    "solve_distinct": "ikde.solver.distinct",
     "forward": "ikde.solver.forward",
     "check": "ikde.solver.check",
     "check_surface": "ikde.solver.surface",

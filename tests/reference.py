@@ -325,3 +325,226 @@ def evolve(problem, target, stream):
         if not in_place:
             best = min(range(population), key=lambda i: scores[i])
     return x, scores, best, False, evaluations
+
+
+# ---- damped least squares
+
+
+def compute_turn(T_world_tool, target):
+    """(axis * 2 sin(angle / 2), its size): from scipy's rotation vector; for axes z_tool x z_target, sin(angle)."""
+    if target.kind == "position":
+        return np.zeros(3), 0.0
+    if target.kind == "axis":
+        a, b = T_world_tool[:3, 2], target.R_world_tool[:, 2]
+        turn = np.cross(a, b)
+        return turn, np.linalg.norm(turn) if a @ b >= 0.0 else 2.0 - np.linalg.norm(turn)
+    rotation = Rotation.from_matrix(target.R_world_tool @ T_world_tool[:3, :3].T).as_rotvec()
+    angle = np.linalg.norm(rotation)
+    half = max(np.cos(angle / 2.0), 1e-2)  # near half a turn the sine fades, and the error counts as 2
+    turn = rotation * (np.sin(angle) / half / angle if angle > 0.0 else 1.0)
+    return turn, np.linalg.norm(turn) if half > 1e-2 else 2.0
+
+
+def take_step(robot, target, lower, upper, descent, q):
+    """(q after one damped step, position error, orientation error before it); `descent`: `DescentArrays`."""
+    T_world_tool = compute_frames(robot, q)[robot.tool]
+    turn, orientation = compute_turn(T_world_tool, target)
+    away = target.p_world_tool - T_world_tool[:3, 3]
+    position = np.linalg.norm(away)
+    if position <= descent.position_tolerance and orientation <= descent.orientation_tolerance:
+        return q, position, orientation
+    J = compute_jacobian(robot, q)
+    error = np.concatenate([away, descent.rotation_length * turn])
+    if target.kind == "position":
+        J, error = J[:3], error[:3]
+    else:
+        z = T_world_tool[:3, 2]
+        across = np.eye(3) - np.outer(z, z) if target.kind == "axis" else np.eye(3)
+        J[3:] = descent.rotation_length * across @ J[3:]
+    pull = J.T @ error
+    held = ((q >= upper - 1e-12) & (pull >= 0.0)) | ((q <= lower + 1e-12) & (pull <= 0.0))
+    J = np.where(held, 0.0, J)
+    damping = descent.damping * error @ error + descent.least_damping
+    dq = J.T @ np.linalg.solve(J @ J.T + damping * np.eye(len(J)), error)
+    dq *= min(1.0, descent.largest_step / max(np.abs(dq).max(), 1e-300))
+    return np.clip(q + dq, lower, upper), position, orientation
+
+
+# ---- UR-type arms
+
+
+def denavit_hartenberg(angle, d, a, alpha):
+    """Rz(angle) Tz(d) Tx(a) Rx(alpha) [4, 4]."""
+    turn = make_transform(Rotation.from_euler("z", angle).as_matrix(), [0.0, 0.0, d])
+    return turn @ make_transform(Rotation.from_euler("x", alpha).as_matrix(), [a, 0.0, 0.0])
+
+
+def solve_ur_arm(arm, T_carrier_tool):
+    """All (theta1 .. theta6) of a UR-type arm by products of matrices and arc cosines [Hawkins2013], with a1 and a4."""
+    quarter = np.pi / 2
+    T06 = np.linalg.inv(arm.T_carrier_base) @ T_carrier_tool @ np.linalg.inv(arm.T_wrist_tool)
+    (px, py), solutions = T06[:2, 3], []
+    for shoulder in (1.0, -1.0):
+        angle_1 = np.arctan2(py, px) + shoulder * np.arccos(arm.d4 / np.hypot(px, py)) + quarter
+        z1 = np.array([np.sin(angle_1), -np.cos(angle_1), 0.0])
+        for wrist in (1.0, -1.0):
+            angle_5 = wrist * np.arccos(T06[:3, 2] @ z1)
+            angle_6 = np.arctan2(-T06[:3, 1] @ z1 / np.sin(angle_5), T06[:3, 0] @ z1 / np.sin(angle_5))
+            T45, T56 = (
+                denavit_hartenberg(angle_5, arm.d5, 0.0, -quarter),
+                denavit_hartenberg(angle_6, 0.0, 0.0, 0.0),
+            )
+            T01 = denavit_hartenberg(angle_1, 0.0, arm.a1, quarter)
+            T14 = np.linalg.inv(T01) @ T06 @ np.linalg.inv(T45 @ T56)
+            x, y, _ = (T14 @ np.linalg.inv(denavit_hartenberg(0.0, arm.d4, arm.a4, quarter)))[:3, 3]
+            cosine = (x * x + y * y - arm.a2**2 - arm.a3**2) / (2.0 * arm.a2 * arm.a3)
+            if abs(cosine) > 1.0:
+                continue
+            for elbow in (1.0, -1.0):
+                angle_3 = elbow * np.arccos(cosine)
+                angle_2 = np.arctan2(y, x) - np.arctan2(arm.a3 * np.sin(angle_3), arm.a2 + arm.a3 * np.cos(angle_3))
+                T13 = denavit_hartenberg(angle_2, 0.0, arm.a2, 0.0) @ denavit_hartenberg(angle_3, 0.0, arm.a3, 0.0)
+                T34 = np.linalg.inv(T13) @ T14
+                solutions.append([angle_1, angle_2, angle_3, np.arctan2(T34[1, 0], T34[0, 0]), angle_5, angle_6])
+    return np.reshape(solutions, (-1, 6))
+
+
+# ---- success-history adaptation
+
+
+def draw_cauchy(stream):
+    """A standard Cauchy number by its quantile function."""
+    return np.tan(np.pi * (stream.uniform() - 0.5))
+
+
+def draw_normal(stream):
+    """Twelve uniform numbers less 6."""
+    return sum(stream.uniform() for _ in range(12)) - 6.0
+
+
+def draw_weight(stream, mean):
+    """F [Tanabe2014, eq. 2]."""
+    weight = 0.0
+    while weight <= 0.0:
+        weight = mean + 0.1 * draw_cauchy(stream)
+    return min(weight, 1.0)
+
+
+def draw_crossover(stream, mean):
+    """CR [Tanabe2014, eq. 1]; None is the terminal value."""
+    return 0.0 if mean is None else float(np.clip(mean + 0.1 * draw_normal(stream), 0.0, 1.0))
+
+
+def lehmer_mean(values, gains):
+    """sum(w v^2) / sum(w v) with w = gain / sum of gains [Tanabe2014, eq. 7]."""
+    values, w = np.array(values), np.array(gains) / np.sum(gains)
+    return np.sum(w * values**2) / np.sum(w * values) if np.sum(w * values) > 0.0 else 0.0
+
+
+class History:
+    """The memory of F and CR [Tanabe2014, algorithm 1]; `weighted` for jSO's rules [Brest2017]."""
+
+    def __init__(self, memetic):
+        self.weighted = memetic.is_weighted
+        self.weight = [memetic.first_weight] * memetic.memory
+        self.crossover = [memetic.first_crossover] * memetic.memory
+        if self.weighted:
+            self.weight[-1] = self.crossover[-1] = 0.9
+        self.place, self.wins, self.archive = 0, [], []
+
+    def update(self):
+        """Write the next place from the wins (F, CR, gain) of a generation."""
+        wins, self.wins = self.wins, []
+        if not wins:
+            return
+        weights, crossovers, gains = zip(*wins, strict=True)
+        old, new = self.weight[self.place], lehmer_mean(weights, gains)
+        self.weight[self.place] = (old + new) / 2 if self.weighted else new
+        old, new = self.crossover[self.place], lehmer_mean(crossovers, gains)
+        if old is None or max(crossovers) == 0.0:
+            self.crossover[self.place] = None
+        else:
+            self.crossover[self.place] = (old + new) / 2 if self.weighted else new
+        self.place = (self.place + 1) % (len(self.weight) - self.weighted)
+
+    def put(self, stream, member, capacity):
+        """Into the archive; into a full one in place of a random member."""
+        if len(self.archive) < capacity:
+            self.archive.append(member)
+        elif capacity:
+            self.archive[stream.index(capacity)] = member
+
+    def trim(self, stream, capacity):
+        """Random members leave; the last one takes the place of each."""
+        while len(self.archive) > capacity:
+            place = stream.index(len(self.archive))
+            self.archive[place] = self.archive[-1]
+            self.archive.pop()
+
+
+def make_pbest_trial(problem, memetic, stream, x, ranked, history, i, progress):
+    """(trial, F, CR) for member i: current-to-pbest/1 with archive [Tanabe2014, eq. 3], jSO's rules [Brest2017]."""
+    place = stream.index(memetic.memory)
+    crossover = draw_crossover(stream, history.crossover[place])
+    weight = draw_weight(stream, history.weight[place])
+    pull = weight
+    if memetic.is_weighted:
+        crossover = max(crossover, 0.7 if progress < 0.25 else 0.6 if progress < 0.5 else 0.0)
+        weight = min(weight, 0.7) if progress < 0.6 else weight
+        pull = weight * (0.7 if progress < 0.2 else 0.8 if progress < 0.4 else 1.2)
+    share = memetic.first_share + (memetic.last_share - memetic.first_share) * progress
+    best = ranked[stream.index(max(round(share * len(x)), 2))]
+    everybody = [*x, *history.archive]
+    r1 = r2 = i
+    while r1 == i:
+        r1 = stream.index(len(x))
+    while r2 in (i, r1):
+        r2 = stream.index(len(everybody))
+    forced = stream.index(x.shape[1])
+    donor = x[i] + pull * (x[best] - x[i]) + weight * (x[r1] - everybody[r2])
+    trial, repair = x[i].copy(), problem.settings.bounds
+    for k in range(len(trial)):
+        if k == forced or stream.uniform() < crossover:
+            trial[k] = repair_bound(repair, stream, donor[k], x[i, k], problem.lower[k], problem.upper[k])
+    return trial, weight, crossover
+
+
+def evolve_memetic(problem, target, stream, memetic):
+    """Without polishing: (population, scores (depth, cost), best member, met?, evaluations, history)."""
+    history, count, spent = History(memetic), memetic.first_population, 0
+    x, scores = np.zeros((count, len(problem.lower))), []
+    for i in range(count):
+        x[i] = problem.lower + np.array([stream.uniform() for _ in x[i]]) * (problem.upper - problem.lower)
+        score, meets = compute_score(problem, target, x[i])
+        scores.append(score)
+        spent += 1
+        if meets:
+            return x, scores, i, True, spent, history
+    while spent < memetic.evaluations:
+        ranked, progress = sorted(range(count), key=lambda i: scores[i]), spent / memetic.evaluations
+        next_x, next_scores = x.copy(), list(scores)
+        for i in range(min(count, memetic.evaluations - spent)):
+            trial, weight, crossover = make_pbest_trial(problem, memetic, stream, x, ranked, history, i, progress)
+            score, meets = compute_score(problem, target, trial)
+            spent += 1
+            if score > scores[i]:
+                continue
+            if meets:
+                x[i], scores[i] = trial, score
+                return x, scores, i, True, spent, history
+            next_x[i], next_scores[i] = trial, score
+            gain = scores[i][0] - score[0] if scores[i][0] != score[0] else scores[i][1] - score[1]
+            if gain > 0.0:
+                history.wins.append((weight, crossover, gain))
+                history.put(stream, x[i].copy(), int(memetic.archive_share * count))
+        x, scores = next_x, next_scores
+        history.update()
+        first, last = memetic.first_population, memetic.last_population
+        planned = round(first + (last - first) * spent / memetic.evaluations)
+        while count > planned:
+            worst = max(range(count), key=lambda i: scores[i])
+            x[worst], scores[worst] = x[count - 1], scores[count - 1]
+            count -= 1
+            x, scores = x[:count], scores[:count]
+        history.trim(stream, int(memetic.archive_share * count))
+    return x, scores, min(range(count), key=lambda i: scores[i]), False, spent, history

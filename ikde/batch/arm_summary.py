@@ -143,21 +143,22 @@ class ArmTally:
         missed = solutions.filter(pa.array(~solutions["reached"].to_numpy()))
         targets, first, counts = np.unique(missed["target"].to_numpy(), return_index=True, return_counts=True)
         self._missed.append(targets)
-        for target, index, count in zip(targets.tolist(), first.tolist(), counts.tolist(), strict=True):
-            if target in self._listed:
-                known = self._listed[target]
-                self._listed[target] = replace(known, missed=known.missed + count)
-            elif len(self._listed) < MOST_LISTED:
-                row = missed.slice(index, 1).to_pylist()[0]
-                self._listed[target] = Unreached(
-                    arm=row["arm"],
-                    target=target,
-                    name=row.get("target_name"),
-                    repeat=row["repeat"],
-                    missed=count,
-                    stop_reason=row["stop_reason"],
-                    reason=row.get("reason"),
-                )
+        # A listed target may go on in this part; of those that are new, as many as there is room for.
+        known = np.isin(targets, list(self._listed))
+        for target, count in zip(targets[known].tolist(), counts[known].tolist(), strict=True):
+            self._listed[target] = replace(self._listed[target], missed=self._listed[target].missed + count)
+        new = np.flatnonzero(~known)[: MOST_LISTED - len(self._listed)]
+        rows = missed.take(pa.array(first[new])).to_pylist() if new.size else []
+        for row, count in zip(rows, counts[new].tolist(), strict=True):
+            self._listed[row["target"]] = Unreached(
+                arm=row["arm"],
+                target=row["target"],
+                name=row.get("target_name"),
+                repeat=row["repeat"],
+                missed=count,
+                stop_reason=row["stop_reason"],
+                reason=row.get("reason"),
+            )
 
 
 def _join(pieces: list[np.ndarray]) -> np.ndarray:

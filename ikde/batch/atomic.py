@@ -1,7 +1,9 @@
 """Files that are either whole or not there: written under a hidden name, synced, renamed."""
 
 import os
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,18 +13,34 @@ def write_atomically(path: Path, data: Any) -> None:
 
     Whoever is killed in between leaves at most a hidden file behind, which the next call writes over.
     """
-    temporary = temporary_path(path)
+    write_together({path: data})
+    sync_folder(path.parent)
+
+
+def write_together(files: Mapping[Path, Any]) -> None:
+    """Write bytes to several files and give them their names in this order, when all contents are on the disk.
+
+    Raises:
+        OSError: with the path that is to blame; then no name is new, or only those before it.
+    """
+    opened: dict[Path, int] = {}
     try:
-        with temporary.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-        sync_folder(path.parent)
+        for path, data in files.items():
+            with _blame(path):
+                opened[path] = os.open(temporary_path(path), os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
+                _write(opened[path], data)
+        _sync_together(opened)
+        for path in files:
+            with _blame(path):
+                temporary_path(path).replace(path)
     except OSError:
-        with suppress(OSError):
-            temporary.unlink()
+        for path in files:
+            with suppress(OSError):
+                temporary_path(path).unlink()
         raise
+    finally:
+        for descriptor in opened.values():
+            os.close(descriptor)
 
 
 def temporary_path(path: Path) -> Path:
@@ -43,3 +61,28 @@ def remove_temporaries(folder: Path) -> None:
     """Delete what a killed process left half-written."""
     for leftover in folder.glob(".*.tmp"):
         leftover.unlink()
+
+
+def _write(descriptor: int, data: Any) -> None:
+    """All of it: one call may write less."""
+    rest = memoryview(data)
+    while rest:
+        rest = rest[os.write(descriptor, rest) :]
+
+
+def _sync_together(opened: Mapping[Path, int]) -> None:
+    """Wait until the contents of files are on the disk: side by side, so that the disk is waited for once."""
+    with ThreadPoolExecutor(len(opened)) as pool:
+        waiting = {path: pool.submit(os.fsync, descriptor) for path, descriptor in opened.items()}
+        for path, synced in waiting.items():
+            with _blame(path):
+                synced.result()
+
+
+@contextmanager
+def _blame(path: Path) -> Iterator[None]:
+    """Name the file that an `OSError` is about."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from None

@@ -17,7 +17,7 @@ from ikde.errors import InputError
 from ikde.kernels.jit import CACHE_FOLDER
 from ikde.solver.search import usable_cores
 
-Solve = Callable[[Iterable[Task]], Generator[Answer]]
+SolveTasks = Callable[[Iterable[Task]], Generator[Answer]]
 SILENT = logging.CRITICAL + 1
 DEAF_TO_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"  # for workers that start later
 TASKS_A_THREAD = 3  # in flight: enough that no worker waits, few enough that memory stays flat
@@ -31,7 +31,7 @@ SETTINGS = {
 
 
 @contextmanager
-def open_cluster(address: str, workers: int | None = None) -> Iterator[Solve]:
+def open_cluster(address: str, workers: int | None = None) -> Iterator[SolveTasks]:
     """Reach the cluster at `address`, or start a `"local"` one of so many processes; what it gives solves tasks there.
 
     Answers come in any order.

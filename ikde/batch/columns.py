@@ -1,7 +1,7 @@
 """From finished searches to the columns of a part."""
 
 import socket
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,12 +10,13 @@ import pyarrow as pa
 from ikde.kernels.arrays import Ints
 from ikde.model.robot import Detector
 from ikde.model.rotation import quat_wxyz_from_rotation
+from ikde.model.target import KINDS, POSITION
 from ikde.solver.figures import Clearances, Figures, compute_clearances
-from ikde.solver.result import StopReason
+from ikde.solver.result import STOP_REASONS
 from ikde.solver.rows import Rows
 
 Columns = dict[str, Any]
-STOP_REASONS = [str(reason) for reason in StopReason]
+WORDS = [str(reason) for reason in STOP_REASONS]
 
 
 def make_solutions(
@@ -24,7 +25,7 @@ def make_solutions(
     *,
     numbers: Ints,
     repeats: int,
-    names: Sequence[str] | None,
+    names: pa.Array | Sequence[str] | None,
     groups: Sequence[str],
     graders: Sequence[Detector],
 ) -> pa.Table:
@@ -56,7 +57,7 @@ def make_timing(arm: str, rows: Rows, *, numbers: Ints, repeats: int) -> pa.Tabl
     return pa.table(columns)
 
 
-def _identity(arm: str, numbers: Ints, repeats: int, names: Sequence[str] | None) -> Columns:
+def _identity(arm: str, numbers: Ints, repeats: int, names: pa.Array | Sequence[str] | None) -> Columns:
     columns: Columns = {"arm": _word(arm, len(numbers)), "target": pa.array(numbers // repeats)}
     if names is not None:
         columns["target_name"] = _words(names)
@@ -65,11 +66,10 @@ def _identity(arm: str, numbers: Ints, repeats: int, names: Sequence[str] | None
 
 
 def _verdict(rows: Rows) -> Columns:
-    reasons = [STOP_REASONS.index(story.stop_reason) for story in rows.explanations]
     return {
         "reached": pa.array(rows.reached),
         "verified": pa.array(rows.verified),
-        "stop_reason": _coded(np.array(reasons), STOP_REASONS),
+        "stop_reason": _coded(rows.stop_reasons, WORDS),
     }
 
 
@@ -78,11 +78,11 @@ def _joints(rows: Rows) -> Columns:
 
 
 def _errors(rows: Rows) -> Columns:
-    return {name: pa.array(getattr(rows.figures, name)) for name in ("position_error_m", "orientation_error_rad")}
+    return {name: pa.array(getattr(rows, name)) for name in ("position_error_m", "orientation_error_rad")}
 
 
 def _clearance(rows: Rows) -> Columns:
-    return _closest(rows, rows.figures, rows.problem.detector)
+    return _closest(rows, rows.graded.figures, rows.problem.detector)
 
 
 def _cost(rows: Rows) -> Columns:
@@ -95,22 +95,43 @@ def _cost(rows: Rows) -> Columns:
 
 def _reason(rows: Rows) -> Columns:
     """Why not, and what would help; null where the target was reached."""
-    failures = [None if reached else story for reached, story in zip(rows.reached, rows.explanations, strict=True)]
-    return {
-        "reason": _words(story and story.reason for story in failures),
-        "hint": _words(story and story.hint for story in failures),
-    }
+    missed, stories = np.flatnonzero(~rows.reached), rows.graded.explanations
+    told = np.full(len(rows), -1)
+    told[missed], reasons = _reasons(rows, missed)
+    looked_into = sorted(stories)
+    hints, helped = _words_and_codes([stories[row].hint for row in looked_into])
+    hinted = np.full(len(rows), -1)
+    hinted[looked_into] = helped
+    return {"reason": _coded(told, reasons), "hint": _coded(hinted, hints)}
+
+
+def _reasons(rows: Rows, missed: Ints) -> tuple[Ints, list[str]]:
+    """The reasons of rows that were missed, as codes and words: one is put into words for all that tell the same."""
+    stories, found = rows.graded.explanations, rows.found
+    own = np.array([row if row in stories else -1 for row in missed.tolist()] if stories else np.full(len(missed), -1))
+    facts = (own, rows.stop_reasons[missed], found.engine[missed], rows.attempts[missed], rows.rejected[missed])
+    _, first, which = np.unique(
+        np.column_stack([*facts, found.excess_m[missed]]), axis=0, return_index=True, return_inverse=True
+    )
+    words, codes = _words_and_codes([rows.reason(int(missed[row])) for row in first])
+    return np.array(codes, dtype=np.int64)[which.ravel()], words
+
+
+def _words_and_codes(words: Sequence[str | None]) -> tuple[list[str], list[int]]:
+    """Different words in the order in which they come, and the index of each; -1 for None."""
+    known: dict[str, int] = {}
+    codes = [-1 if word is None else known.setdefault(word, len(known)) for word in words]
+    return list(known), codes
 
 
 def _target(rows: Rows) -> Columns:
     """What was asked for. Of an axis target only the quaternion's z axis counts; a position target has none."""
-    positions = np.array([target.p_world_tool for target in rows.targets])
-    quats = quat_wxyz_from_rotation(np.array([target.R_world_tool for target in rows.targets]))
-    free = np.array([target.kind == "position" for target in rows.targets])
+    targets = rows.targets
+    quats = quat_wxyz_from_rotation(targets.R_world_tool)
     return (
-        {"target_kind": _words(target.kind for target in rows.targets)}
-        | {f"target_{axis}_m": pa.array(positions[:, k]) for k, axis in enumerate("xyz")}
-        | {f"target_q{axis}": pa.array(quats[:, k], mask=free) for k, axis in enumerate("wxyz")}
+        {"target_kind": _coded(targets.kind, KINDS)}
+        | {f"target_{axis}_m": pa.array(targets.p_world_tool[:, k]) for k, axis in enumerate("xyz")}
+        | {f"target_q{axis}": pa.array(quats[:, k], mask=targets.kind == POSITION) for k, axis in enumerate("wxyz")}
     )
 
 
@@ -154,5 +175,5 @@ def _coded(codes: Ints, words: Sequence[str]) -> pa.Array:
     return pa.DictionaryArray.from_arrays(indices, pa.array(words, pa.string()))
 
 
-def _words(words: Iterable[str | None]) -> pa.Array:
+def _words(words: pa.Array | Sequence[str]) -> pa.Array:
     return pa.array(words, pa.string()).dictionary_encode()

@@ -2,8 +2,9 @@
 
 import fcntl
 import os
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ikde.batch.atomic import remove_temporaries, sync_folder, temporary_path
@@ -16,11 +17,12 @@ from ikde.batch.manifest import (
     read_manifest,
     write_manifest,
 )
-from ikde.batch.parts import SOLUTIONS, TIMING
+from ikde.batch.parts import GO_ON, SOLUTIONS, TIMING
 from ikde.batch.plan import Batch
 from ikde.errors import FileError
 
 LOCK = ".lock"
+SYNC_SECONDS = 1.0
 
 
 @contextmanager
@@ -42,6 +44,38 @@ def claim_folder(folder: Path, batch: Batch, *, overwrite: bool) -> Iterator[Non
         except OSError as error:
             raise FileError(folder, f"cannot be used: {error.strerror}") from None
         yield
+
+
+@contextmanager
+def keep_names(folder: Path) -> Iterator[Callable[[], None]]:
+    """What is called after every part that is written: names get onto the disk once a second, and at the end.
+
+    Raises:
+        FileError: if they cannot.
+    """
+    last = time.monotonic()
+
+    def keep() -> None:
+        nonlocal last
+        if time.monotonic() - last >= SYNC_SECONDS:
+            _sync_names(folder)
+            last = time.monotonic()
+
+    try:
+        yield keep
+    except BaseException:
+        with suppress(FileError):
+            _sync_names(folder)
+        raise
+    _sync_names(folder)
+
+
+def _sync_names(folder: Path) -> None:
+    for kind in (TIMING, SOLUTIONS):
+        try:
+            sync_folder(folder / kind)
+        except OSError as error:
+            raise FileError(folder / kind, f"cannot be written: {error.strerror}; {GO_ON}") from None
 
 
 def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:

@@ -13,7 +13,7 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.sampling import MOST_DRAWS, sample_ball, sample_box, sample_poses
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.robot import Detector, Robot
-from ikde.model.target import Target
+from ikde.model.target import POSE, Targets
 
 
 def make_grid(start: Floats, to: Floats, counts: tuple[int, int, int], orientation: Orientation) -> PointSource:
@@ -64,14 +64,14 @@ class ReachableSource:
     seed: int
     names: None = None
 
-    def read(self, first: int, last: int) -> list[Target]:
+    def read(self, first: int, last: int) -> Targets:
         """Targets first .. last - 1; raises `InputError` if the robot is never free."""
-        poses = self.sample(first, min(last, self.count))
+        T = self.sample(first, min(last, self.count))
         if self.goal == "position":
-            return [Target(T[:, 3]) for T in poses]
+            return Targets(T[:, :, 3])
         if self.goal == "axis":
-            return [Target(T[:, 3], axis_world_tool=T[:, 2]) for T in poses]
-        return [Target(T[:, 3], R_world_tool=T[:, :3]) for T in poses]
+            return Targets(T[:, :, 3], axis_world_tool=T[:, :, 2])
+        return Targets.packed(np.full(len(T), POSE, dtype=np.int64), T)
 
     def sample(self, first: int, last: int) -> Floats:
         """Poses T_world_tool [last - first, 3, 4]."""

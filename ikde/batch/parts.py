@@ -8,7 +8,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ikde.batch.atomic import write_atomically
+from ikde.batch.atomic import write_together
 from ikde.errors import FileError
 
 SOLUTIONS, TIMING = "solutions", "timing"
@@ -43,19 +43,30 @@ def list_parts(arms: Sequence[str], solves: int, chunk: int) -> Iterator[Part]:
             yield Part(arm, number, first, min(first + chunk, solves))
 
 
-def write_part(folder: Path, part: Part, solutions: pa.Table, timing: pa.Table, *, recipe: str) -> None:
-    """Write both files of a part; the solutions come last, so that where they are, all is there.
+@dataclass(frozen=True, slots=True)
+class SealedPart:
+    """A part as the bytes of its two files."""
 
-    Both carry the hash of the recipe, and the timing carries a seal on the solutions, byte by byte.
-    """
+    part: Part
+    solutions: pa.Buffer
+    timing: pa.Buffer
+
+
+def seal_part(part: Part, solutions: pa.Table, timing: pa.Table, *, recipe: str) -> SealedPart:
+    """Both files carry the hash of the recipe, and the timing carries a seal on the solutions, byte by byte."""
     answers = serialize(solutions.replace_schema_metadata({RECIPE: recipe}))
     timing = timing.replace_schema_metadata({RECIPE: recipe, SEAL: _seal(answers, timing)})
-    for kind, data in ((TIMING, serialize(timing)), (SOLUTIONS, answers)):
-        path = part.path(folder, kind)
-        try:
-            write_atomically(path, data)
-        except OSError as error:
-            raise FileError(path, f"cannot be written: {error.strerror}; {GO_ON}") from None
+    return SealedPart(part, answers, serialize(timing))
+
+
+def write_part(folder: Path, sealed: SealedPart) -> None:
+    """Write both files of a part; the solutions come last, so that where they are, all is there."""
+    files = {sealed.part.path(folder, TIMING): sealed.timing, sealed.part.path(folder, SOLUTIONS): sealed.solutions}
+    try:
+        write_together(files)
+    except OSError as error:
+        path = Path(error.filename)
+        raise FileError(path, f"cannot be written: {error.strerror}; {GO_ON}") from None
 
 
 def serialize(table: pa.Table) -> pa.Buffer:
@@ -66,8 +77,7 @@ def serialize(table: pa.Table) -> pa.Buffer:
         table,
         sink,
         version="2.6",
-        compression="zstd",
-        compression_level=3,
+        compression="snappy",  # twice as fast as zstd in all, and 7 % larger: most of a row is random digits
         row_group_size=2**20,
         write_page_checksum=True,
         use_dictionary=words,  # type: ignore[arg-type]
@@ -95,4 +105,7 @@ def is_finished(folder: Path, part: Part, recipe: str) -> bool:
 def _seal(answers: pa.Buffer | bytes, timing: pa.Table) -> str:
     """Digest of all that the checksums of Parquet's pages leave out: the solutions' file, the timing's columns."""
     columns = [f"{field.name}: {field.type}" for field in timing.schema]
-    return sha256(b"\n".join([bytes(answers), *(column.encode() for column in columns)])).hexdigest()
+    hasher = sha256(answers)
+    for column in columns:
+        hasher.update(f"\n{column}".encode())
+    return hasher.hexdigest()

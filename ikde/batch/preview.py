@@ -10,6 +10,7 @@ from ikde.batch.options import check_options
 from ikde.batch.parts import Part, serialize
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.task import Answer, Task, solve_task
+from ikde.model.target import Targets
 from ikde.solver.search import usable_cores
 
 SAMPLE_SECONDS = 2.0  # of all arms together, about
@@ -109,7 +110,7 @@ def _take_sample(batch: Batch, arm: Arm, size: int) -> Task:
     return Task(
         part=Part(arm.name, 0, 0, size),
         arm=arm,
-        targets=[batch.source.read(target, target + 1)[0] for target in chosen],
+        targets=Targets.of([batch.source.read(target, target + 1)[0] for target in chosen]),
         names=tuple(names[target] for target in chosen) if names else None,
         repeats=1,
         seed=batch.seed,

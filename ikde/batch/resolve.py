@@ -14,6 +14,7 @@ from ikde.kernels.jit import CACHE_FOLDER
 from ikde.model.robot import Detector, Robot
 
 MOST_SOLVES = 10**9  # of an arm
+LEAST_CHUNK, MOST_CHUNK = 1000, 10_000
 
 
 def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None) -> Batch:
@@ -38,7 +39,7 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
     asked: dict[str, Any] = {
         "repeats": spec.repeats,
         "seed": spec.seed,
-        "chunk": spec.chunk,
+        "chunk": spec.chunk or choose_chunk(source.count * spec.repeats),
         "explain": spec.explain,
         "columns": tuple(group for group in COLUMN_GROUPS if group in spec.output.columns),
     }
@@ -55,6 +56,11 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
     return Batch(
         name=name, robot=robot, arms=arms, source=source, graders=graders, recipe=as_plain(recipe), file=file, **asked
     )
+
+
+def choose_chunk(solves: int) -> int:
+    """Solves a part: a hundredth of an arm's; a part costs 10 ms beside its solves, and a kill costs some parts."""
+    return min(max(solves // 100, LEAST_CHUNK), MOST_CHUNK)
 
 
 def _make_graders(spec: BatchSpec, robot: Robot) -> tuple[Detector, ...]:

@@ -1,19 +1,22 @@
 """Run a batch: part after part into a folder, stopped at any moment, gone on with by the same call."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
-from ikde.batch.cluster import Solve, open_cluster
-from ikde.batch.folder import claim_folder
+from ikde.batch.cluster import SolveTasks, open_cluster
+from ikde.batch.folder import claim_folder, keep_names
+from ikde.batch.local import solve_parts
 from ikde.batch.options import check_options
-from ikde.batch.parts import Part, is_finished, list_parts, write_part
+from ikde.batch.parts import Part, SealedPart, is_finished, list_parts, seal_part, write_part
 from ikde.batch.plan import Batch
 from ikde.batch.summary import RunSummary, summarise
-from ikde.batch.task import make_task, solve_task
+from ikde.batch.task import make_task
 from ikde.errors import InputError
+
+Solve = Callable[[Batch, Sequence[Part]], Generator[SealedPart]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,9 +77,10 @@ def run_batch(
         missing = [part for part in parts if not is_finished(folder, part, batch.hash)]
         now, tell = _start(parts, missing), progress or (lambda now: None)
         tell(now)
-        with closing(solve(make_task(batch, part) for part in missing)) as answers:
+        with keep_names(folder) as keep, closing(solve(batch, missing)) as answers:
             for answer in answers:
-                write_part(folder, answer.part, answer.solutions, answer.timing, recipe=batch.hash)
+                write_part(folder, answer)
+                keep()
                 now = now.after(answer.part)
                 tell(now)
     return summarise(folder)
@@ -97,9 +101,15 @@ def _start(parts: list[Part], missing: list[Part]) -> Progress:
 def _open(
     threads: int | None, dask: str | None, workers: int | None, announce_compile: Callable[[], None] | None
 ) -> Iterator[Solve]:
-    """What solves tasks, here or on a cluster: reached, or found out of reach, before a folder is made."""
+    """What solves parts, here or on a cluster: reached, or found out of reach, before a folder is made."""
     if dask is None:
-        yield lambda tasks: (solve_task(task, threads, announce_compile) for task in tasks)
+        yield lambda batch, parts: solve_parts(batch, parts, threads, announce_compile)
     else:
         with open_cluster(dask, workers) as solve:
-            yield solve
+            yield lambda batch, parts: _solve_remotely(solve, batch, parts)
+
+
+def _solve_remotely(solve: SolveTasks, batch: Batch, parts: Sequence[Part]) -> Generator[SealedPart]:
+    with closing(solve(make_task(batch, part) for part in parts)) as answers:
+        for answer in answers:
+            yield seal_part(answer.part, answer.solutions, answer.timing, recipe=batch.hash)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import rotation_from_quat_wxyz, rotation_from_rpy
-from ikde.model.target import Target
+from ikde.model.target import KINDS, POSE, Target, Targets
 
 OrientationKind = Literal["axis", "rpy", "quat_wxyz"]
 Orientation = Mapping[str, Floats]
@@ -28,7 +28,7 @@ class TargetSource(Protocol):
         """One name a target, or None."""
         ...
 
-    def read(self, first: int, last: int) -> list[Target]:
+    def read(self, first: int, last: int) -> Targets:
         """Targets first .. last - 1, the same however they are cut; raises `InputError` if they cannot be had."""
         ...
 
@@ -37,7 +37,7 @@ class TargetSource(Protocol):
 class ListSource:
     """Targets held in memory."""
 
-    targets: Sequence[Target]
+    targets: Targets | Sequence[Target]
     names: tuple[str, ...] | None = None
 
     @property
@@ -45,9 +45,9 @@ class ListSource:
         """Number of targets."""
         return len(self.targets)
 
-    def read(self, first: int, last: int) -> list[Target]:
+    def read(self, first: int, last: int) -> Targets:
         """Targets first .. last - 1."""
-        return list(self.targets[first:last])
+        return Targets.of(self.targets[first:last])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,13 +66,15 @@ class TableSource:
         """Number of targets."""
         return len(self.positions)
 
-    def read(self, first: int, last: int) -> list[Target]:
+    def read(self, first: int, last: int) -> Targets:
         """Targets first .. last - 1."""
         positions = self.positions[first:last]
         if self.kind is None or self.orientations is None:
-            return [Target(p) for p in positions]
-        turns = self.orientations[first:last]
-        return [Target(p, **make_orientation(self.kind, o)) for p, o in zip(positions, turns, strict=True)]
+            return Targets(positions)
+        orientations = make_orientation(self.kind, self.orientations[first:last])
+        if "R_world_tool" in orientations:
+            return join_poses(POSE, positions, orientations["R_world_tool"])
+        return Targets(positions, **orientations)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -85,13 +87,14 @@ class PointSource:
     orientation: Orientation = field(default_factory=dict)
     names: None = None
 
-    def read(self, first: int, last: int) -> list[Target]:
+    def read(self, first: int, last: int) -> Targets:
         """Targets first .. last - 1."""
-        return [Target(p, **self.orientation) for p in self.make_points(first, min(last, self.count))]
+        one, points = Target((0.0, 0.0, 0.0), **self.orientation), self.make_points(first, min(last, self.count))
+        return join_poses(KINDS.index(one.kind), points, one.R_world_tool)
 
 
 def make_orientation(kind: OrientationKind, values: Floats) -> dict[str, Floats]:
-    """What `Target` takes, from an axis [3], roll, pitch, yaw [3] in rad, or a quaternion [4].
+    """What `Target` and `Targets` take, from axes [..., 3], roll, pitch, yaw [..., 3] in rad, or quaternions [..., 4].
 
     Raises:
         InputError: for a quaternion of length 0.
@@ -100,3 +103,11 @@ def make_orientation(kind: OrientationKind, values: Floats) -> dict[str, Floats]
         return {"axis_world_tool": np.asarray(values)}
     rotate = rotation_from_rpy if kind == "rpy" else rotation_from_quat_wxyz
     return {"R_world_tool": rotate(np.asarray(values))}
+
+
+def join_poses(kind: int, p_world_tool: Floats, R_world_tool: Floats) -> Targets:
+    """Targets of one kind from positions [T, 3] and rotations [T, 3, 3] or [3, 3] that are known to be right."""
+    T_world_tool = np.empty((len(p_world_tool), 3, 4))
+    T_world_tool[:, :, :3] = R_world_tool
+    T_world_tool[:, :, 3] = p_world_tool
+    return Targets.packed(np.full(len(p_world_tool), kind, dtype=np.int64), T_world_tool)

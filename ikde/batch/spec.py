@@ -273,8 +273,9 @@ class BatchSpec(Entry):
     """How often each target is solved, each time with its own random stream."""
     seed: Annotated[int, Field(strict=True, ge=0, le=2**64 - 1)] = 0
     """Same seed, same answers."""
-    chunk: Annotated[int, Field(strict=True, ge=1, le=10**6)] = 1000
-    """Solves in one file of the results: what a kill can cost at most."""
+    chunk: Annotated[int, Field(strict=True, ge=1, le=10**6)] | None = None
+    """Solves in one file of the results: a kill costs at most a file a thread and one more (default: a hundredth of an
+    arm's solves, 1000 to 10000)."""
     explain: bool = True
     """Whether to find out why a target was not reached."""
     output: OutputEntry = OutputEntry()

@@ -26,7 +26,7 @@ from ikde.batch.spec import (
 from ikde.batch.table_targets import read_targets
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
 from ikde.solver.problem import Problem
 
 Recipe = dict[str, Any]
@@ -92,7 +92,7 @@ def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
             targets.append(Target(position, **_read_orientation(entry, units)))
     named = any(entry.name for entry in entries)
     names = tuple(entry.name or f"target {index}" for index, entry in enumerate(entries)) if named else None
-    return ListSource(targets=targets, names=names)
+    return ListSource(targets=Targets.of(targets), names=names)
 
 
 def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> ReachableSource:

@@ -10,7 +10,7 @@ from ikde.batch.columns import make_solutions, make_timing
 from ikde.batch.parts import Part
 from ikde.batch.plan import Arm, Batch
 from ikde.model.robot import Detector
-from ikde.model.target import Target
+from ikde.model.target import Targets
 from ikde.solver.rows import solve_rows
 
 
@@ -20,7 +20,7 @@ class Task:
 
     part: Part
     arm: Arm
-    targets: list[Target]
+    targets: Targets
     """Each once, the first being that of the first solve."""
     names: tuple[str, ...] | None
     """A name a target, if they have names."""
@@ -59,14 +59,15 @@ def make_task(batch: Batch, part: Part) -> Task:
 def solve_task(task: Task, threads: int | None = None, announce_compile: Callable[[], None] | None = None) -> Answer:
     """Solve, grade and tabulate one part; the solutions are the same bits wherever this runs."""
     numbers = np.arange(task.part.first, task.part.last)
-    local = (numbers // task.repeats - numbers[0] // task.repeats).tolist()
+    local = numbers // task.repeats - numbers[0] // task.repeats
     rows = solve_rows(
         task.arm.problem,
-        [task.targets[index] for index in local],
+        task.targets.take(local),
         seed=task.seed,
         first_stream=task.part.first,
         threads=threads,
         probe=task.explain,
+        verify="sample",
         announce_compile=announce_compile,
     )
     solutions = make_solutions(
@@ -74,7 +75,7 @@ def solve_task(task: Task, threads: int | None = None, announce_compile: Callabl
         rows,
         numbers=numbers,
         repeats=task.repeats,
-        names=[task.names[index] for index in local] if task.names else None,
+        names=pa.array(task.names, pa.string()).take(pa.array(local)) if task.names else None,
         groups=task.groups,
         graders=task.graders,
     )

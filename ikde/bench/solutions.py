@@ -14,11 +14,12 @@ from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.check import check
+from ikde.solver.distinct import solve_distinct
 from ikde.solver.forward import forward
 from ikde.solver.joints import joints_outside, read_joints
 from ikde.solver.result import SolveResult
 from ikde.solver.settings import SolveSettings
-from ikde.solver.solve import solve, solve_distinct
+from ikde.solver.solve import solve
 
 SETTINGS = SolveSettings.for_method("de")
 SEED, SOLUTIONS, BASE_M = 1, 3, 0.1
@@ -109,7 +110,7 @@ def describe_verdict(typical: bool, improved: bool) -> str:
 
 def _solve_target(robot: Robot, name: str, target_mm: list[float]) -> list[Data]:
     target = Target(np.array(target_mm) / 1e3)
-    free = solve_distinct(robot, target, SOLUTIONS, SETTINGS, seed=SEED, detector="typical")
+    free = solve_distinct(robot, target, SOLUTIONS, SETTINGS, rank="found", seed=SEED, detector="typical")
     rows = [_describe(robot, name, f"s{k + 1}", target_mm, result) for k, result in enumerate(free)]
     return [*rows, _describe(robot, name, "f1", target_mm, find_colliding(robot, target))]
 

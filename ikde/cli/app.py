@@ -20,6 +20,7 @@ from ikde.cli.robots import robots
 from ikde.cli.schema import schema
 from ikde.cli.solve import solve
 from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread
+from ikde.cli.warmup import warmup
 from ikde.errors import InputError
 
 # Click's UsageError, wherever typer keeps it: newer ones carry a copy of click of their own.
@@ -53,7 +54,7 @@ def root(
     """
 
 
-for command in (solve, fk, check, batch, report, schema, doctor):
+for command in (solve, fk, check, batch, report, schema, warmup, doctor):
     app.command()(command)
 app.add_typer(robots, name="robots")
 app.add_typer(bench, name="bench")

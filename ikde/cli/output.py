@@ -37,7 +37,7 @@ def working(text: str) -> AbstractContextManager[Any]:
     return Console(stderr=True).status(text)
 
 
-def announce_compile(takes: str = "about 15 s") -> None:
+def announce_compile(takes: str = "10 s to a minute") -> None:
     """Said once, when kernels must be compiled before the first solve."""
     from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
 

@@ -1,12 +1,15 @@
-"""`ikde robots`: list, show, validate."""
+"""`ikde robots`: list, show, validate, export."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
+from ikde.cli.options import AnglesOption, AngleUnit, DetectorOption, JsonOption, LengthUnit, UnitOption
 from ikde.cli.output import print_json, print_result, use_color
+
+if TYPE_CHECKING:
+    from ikde.model.robot import Robot
 
 robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 
@@ -36,18 +39,33 @@ def show(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
     unit: UnitOption = LengthUnit.mm,
     angles: AnglesOption = AngleUnit.deg,
+    kernels: Annotated[bool, typer.Option("--kernels", help="Print the kernels written for it instead.")] = False,
+    kind: Annotated[str, typer.Option(help="Of which targets: position, axis or pose.")] = "pose",
+    detector: DetectorOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Show a robot: joints, frames, detectors, and where its numbers come from."""
+    """Show a robot: joints, frames, detectors, and where its numbers come from; or the kernels written for it."""
     from ikde.io.robots import load_robot
     from ikde.report.robot import format_robot, robot_json
     from ikde.report.units import Units
 
     model = load_robot(name)
-    if as_json:
+    if kernels:
+        print_result(_format_kernels(model, detector, kind))
+    elif as_json:
         print_json(robot_json(model))
     else:
         print_result(format_robot(model, Units(unit, angles), color=use_color()))
+
+
+def _format_kernels(model: "Robot", detector: str | None, kind: str) -> str:
+    from ikde.errors import InputError
+    from ikde.model.generate.assemble import format_module
+    from ikde.model.generate.module import KINDS
+
+    if kind not in KINDS:
+        raise InputError(f"expected one of {', '.join(KINDS)}, got {kind!r}", ("kind",))
+    return format_module(model, model.detector(detector), kind)
 
 
 @robots.command("validate")
@@ -65,3 +83,30 @@ def validate(
         print_result(
             f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames"
         )
+
+
+@robots.command("export")
+def export(
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
+    urdf: Annotated[bool, typer.Option("--urdf", help="Write URDF.")] = False,
+    mjcf: Annotated[bool, typer.Option("--mjcf", help="Write MJCF, MuJoCo's format.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Where it goes (default: printed).")] = None,
+    detector: DetectorOption = None,
+) -> None:
+    """Write a robot for other programs: frames, joints, limits, and the detector's spheres as collision shapes.
+
+    Example: ikde robots export qiao2021 --urdf --out qiao2021.urdf
+    """
+    from ikde.errors import InputError
+    from ikde.io.mjcf import format_mjcf
+    from ikde.io.robots import load_robot
+    from ikde.io.urdf import format_urdf
+    from ikde.io.xml_file import write_xml
+
+    if urdf == mjcf:
+        raise InputError(f"expected one of --urdf and --mjcf, got {'both' if urdf else 'none'}")
+    text = (format_urdf if urdf else format_mjcf)(load_robot(name), detector=detector)
+    if out is None:
+        print_result(text)
+    else:
+        write_xml(out, text)

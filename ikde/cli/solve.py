@@ -78,8 +78,15 @@ def solve(
     ] = None,
     seed: Annotated[int, typer.Option(help="Same seed, same answer.", rich_help_panel=SEARCH)] = 0,
     count: Annotated[int, typer.Option(metavar="K", help="Distinct solutions to find.", rich_help_panel=SEARCH)] = 1,
+    rank: Annotated[
+        str, typer.Option(help="Order of several: motion (least first), clearance, found.", rich_help_panel=SEARCH)
+    ] = "motion",
     method: Annotated[
-        str, typer.Option(help="auto: ikde's choice; de: the paper's search.", rich_help_panel=SEARCH)
+        str,
+        typer.Option(
+            help="auto (ikde's choice), lm (least squares), analytic (closed form), memetic, de (the paper's).",
+            rich_help_panel=SEARCH,
+        ),
     ] = "auto",
     collision: Annotated[
         str | None,
@@ -116,8 +123,8 @@ def solve(
     from ikde.model.convention import convention_offsets
     from ikde.report.solve import format_solve, solve_json
     from ikde.report.units import Units
+    from ikde.solver.distinct import solve_distinct
     from ikde.solver.settings import SolveSettings
-    from ikde.solver.solve import solve_distinct
 
     model = load_robot(robot)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
@@ -147,6 +154,7 @@ def solve(
             target,
             count,
             settings,
+            rank=rank,  # type: ignore[arg-type]
             seed=seed,
             detector=judge,
             near=start,

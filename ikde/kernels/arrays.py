@@ -70,3 +70,64 @@ class SearchArrays(NamedTuple):
     repair: int  # index into `mutation.REPAIRS`
     in_place: bool  # a better trial replaces its parent at once, not at the end of the generation
     collision_rule: int  # one of `evolution.IGNORE`, `REJECT`, `FEASIBILITY`
+
+
+class DescentArrays(NamedTuple):
+    """What the damped least-squares steps of `kernels/damped.py` are told."""
+
+    damping: float = 0.1  # lambda = damping * |error|^2 + least_damping
+    least_damping: float = 1e-6  # m^2
+    rotation_length: float = 0.5  # m/rad: what a radian counts beside a metre
+    largest_step: float = 0.8  # m or rad, of any joint
+    position_tolerance: float = 0.0  # m: no step is taken within both
+    orientation_tolerance: float = 0.0  # rad
+    most_steps: int = 12  # of one attempt of the engine `lm`
+    patience: int = 5  # steps after which an attempt must be on its way
+    hopeless: float = 0.3  # m: an error this large says that it is not
+
+
+class SeedArrays(NamedTuple):
+    """Where the engine `lm` starts: K configurations that are free of collision, and where the tool is in each."""
+
+    q: Floats  # [K, N] m or rad; none: starts are drawn uniformly
+    T_world_tool: Floats  # [12, K] the transform [3, 4] row by row
+    base: Ints  # [3] coordinates of a base that drives in the plane and turns, at zero in the pool; -1: there is none
+    lowest: float  # m, height of the lowest tool: with a base, the pool is sorted by height
+    bins_per_metre: float
+    height_start: Ints  # [bins + 1] the first configuration of each bin of heights
+    rotation_length: float  # m/rad: what a radian counts beside a metre
+    first_box: float  # as in `SearchArrays`: below 1 the starts are drawn about ranges[2]
+
+
+class ClosedFormArrays(NamedTuple):
+    """A UR-type arm for `kernels/closed_form.py`: angles theta = sign * q + offset; `model.closed_form` finds it."""
+
+    coordinates: Indices  # [6] coordinate of q of each joint
+    transforms: Floats  # [2, 3, 4] T_base_carrier and T_tool_wrist, m
+    lengths: Floats  # [8] a1, a2, a3, a4, d4, d5 in m, a2^2 + a3^2 in m^2, 1 / (2 a2 a3) in 1/m^2
+    angles: Floats  # [2, 6] sign, and offset in rad
+
+
+class MemeticArrays(NamedTuple):
+    """What `kernels/memetic.py` is told beyond the ranges, tolerances, repair and collision rule of `SearchArrays`."""
+
+    evaluations: int = 10_000  # budget of one attempt; a damped step counts N + 1
+    first_population: int = 60  # at least 4
+    last_population: int = 8  # at least 4
+    memory: int = 5  # H, places in the memory of F and CR
+    first_weight: float = 0.5  # F remembered at the start
+    first_crossover: float = 0.8  # CR remembered at the start
+    first_share: float = 0.25  # p: a trial is pulled to one of the best p of the population, at the start
+    last_share: float = 0.125  # p at the end
+    archive_share: float = 1.0  # members of the archive for each of the population
+    is_weighted: bool = True  # jSO's rules for F and CR
+    polish_share: float = 0.8  # of the evaluations that damped steps may take; 0: none
+    polish_steps: int = 30  # at most, of one member
+    patience: int = 2  # steps in a row without progress before a member is given up
+    margin: float = 1e-5  # m: pairs nearer than the safe distance and this are pushed apart
+
+
+# Columns of what every search counts, `out_counts` [COUNTS]: 1 if reached; populations or starts; poses looked at;
+# attempts that met the target but collided, or left the ranges.
+REACHED, ATTEMPTS, EVALUATIONS, COLLIDING, OUTSIDE = range(5)
+COUNTS = 5

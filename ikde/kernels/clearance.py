@@ -47,8 +47,8 @@ def pair_collides(detector, centres, a, b):
 
 
 @inline_kernel
-def collides(detector, bounds, centres):
-    """True at the first pair of components within the safe distance.
+def find_colliding_pair(detector, bounds, centres):
+    """Index of the first pair of components within the safe distance, or -1.
 
     From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all.
     """
@@ -60,8 +60,14 @@ def collides(detector, bounds, centres):
         if not is_touched(detector, centres, a, bounds[b, 0], bounds[b, 1], bounds[b, 2], reach):
             continue
         if pair_collides(detector, centres, a, b):
-            return True
-    return False
+            return np.int64(pair)
+    return np.int64(-1)
+
+
+@inline_kernel
+def collides(detector, bounds, centres):
+    """True if any pair of components is within the safe distance."""
+    return find_colliding_pair(detector, bounds, centres) >= 0
 
 
 @kernel

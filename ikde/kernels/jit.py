@@ -9,7 +9,10 @@ Three facts shape this file:
 
 import hashlib
 import os
+import stat
+import tempfile
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,16 +34,32 @@ def cache_folder() -> Path:
     return base / digest.hexdigest()[:12]
 
 
-def _is_writable(folder: Path) -> bool:
+def find_writable(wanted: Path) -> tuple[Path, bool]:
+    """The folder itself if files can be made in it, else one of this user's for temporary files, with one warning.
+
+    Returns the folder, and whether it can be written: if not, every process compiles for itself.
+    """
+    if _is_ours(wanted):
+        return wanted, True
+    spare = Path(tempfile.gettempdir()) / f"ikde-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
+    usable = _is_ours(spare) and _is_ours(spare / wanted.name)
+    instead = f"{spare} is used instead" if usable else "every process compiles for itself"
+    warnings.warn(f"the cache folder {wanted.parent} cannot be written: {instead}", RuntimeWarning, stacklevel=2)
+    return spare / wanted.name, usable
+
+
+def _is_ours(folder: Path) -> bool:
+    """True if this user can make files in the folder, which is made first, and others cannot: code is run from it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        state = folder.stat()
     except OSError:
         return False
-    return os.access(folder, os.W_OK)
+    others = hasattr(os, "getuid") and (state.st_uid != os.getuid() or bool(state.st_mode & stat.S_IWOTH))
+    return os.access(folder, os.W_OK | os.X_OK) and not others
 
 
-CACHE_FOLDER = cache_folder()
-CACHE_IS_WRITABLE = _is_writable(CACHE_FOLDER)
+CACHE_FOLDER, CACHE_IS_WRITABLE = find_writable(cache_folder())
 
 
 @contextmanager
@@ -59,13 +78,23 @@ def kernel(function: F) -> F:
         return numba.njit(cache=CACHE_IS_WRITABLE, error_model="numpy", nogil=True)(function)  # type: ignore[return-value]
 
 
+def leaf_kernel(function: F) -> F:
+    """Like `kernel`, for what allocates nothing: numba then counts no references to the arrays that it is given.
+
+    Counting them costs atomic instructions at every branch: a seed took 0.60 us with them and 0.23 us without.
+    """
+    with _our_cache_folder():
+        options = {"cache": CACHE_IS_WRITABLE, "error_model": "numpy", "nogil": True, "_nrt": False}
+        return numba.njit(**options)(function)  # type: ignore[return-value]
+
+
 def inline_kernel(function: F) -> F:
-    """Like `kernel`, but pasted into its callers: passing the packed arrays costs more than most kernels do.
+    """Like `leaf_kernel`, but pasted into its callers: passing the packed arrays costs more than most kernels do.
 
     Measured on qiao2021: 0.97 against 4.6 us for one trial of the differential evolution.
     """
     with _our_cache_folder():
-        options = {"cache": CACHE_IS_WRITABLE, "error_model": "numpy", "forceinline": True}
+        options = {"cache": CACHE_IS_WRITABLE, "error_model": "numpy", "forceinline": True, "_nrt": False}
         return numba.njit(**options)(function)  # type: ignore[return-value]
 
 

@@ -2,14 +2,11 @@
 
 import numpy as np
 
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, OUTSIDE, REACHED
 from ikde.kernels.clearance import count_colliding_pairs
 from ikde.kernels.evolution import IGNORE, compute_cost, compute_depth, evolve, make_workspace
 from ikde.kernels.jit import kernel
 from ikde.kernels.rng import seed_stream
-
-# Columns of `out_counts`.
-REACHED, ATTEMPTS, EVALUATIONS, COLLIDING, OUTSIDE = range(5)
-COUNTS = 5
 
 
 @kernel

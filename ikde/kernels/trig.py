@@ -17,6 +17,7 @@ HALF_PI_MIDDLE = 6.077100506303966e-11
 HALF_PI_LOW = 2.0222662487959506e-21
 TAN_PI_8 = 0.41421356237309503
 QUARTER_PI = 0.7853981633974483
+HALF_PI = 1.5707963267948966
 
 
 @inline_kernel
@@ -40,6 +41,16 @@ def sin_cos(x):
 
 
 @inline_kernel
+def arc_tangent(t):
+    """Return atan t in rad for |t| <= tan(pi/8)."""
+    u = t * t
+    p = 0.058577595134478064 + u * (-0.050834174416831635 + u * (0.039173098905525394 - u * 0.019105354603627347))
+    p = -0.09090904439932149 + u * (0.07692179990512704 + u * (-0.06664466498253459 + u * p))
+    p = 0.19999999999995316 + u * (-0.1428571428462392 + u * (0.11111111011843135 + u * p))
+    return t + t * u * (-0.3333333333333333 + u * p)
+
+
+@inline_kernel
 def angle_from_sides(opposite, adjacent):
     """Return atan2(opposite, adjacent) in [0, pi] rad, for opposite >= 0."""
     if opposite == 0.0 and adjacent == 0.0:
@@ -51,11 +62,23 @@ def angle_from_sides(opposite, adjacent):
     if t > TAN_PI_8:
         t = (t - 1.0) / (t + 1.0)
         shift = QUARTER_PI
-    u = t * t
-    p = 0.058577595134478064 + u * (-0.050834174416831635 + u * (0.039173098905525394 - u * 0.019105354603627347))
-    p = -0.09090904439932149 + u * (0.07692179990512704 + u * (-0.06664466498253459 + u * p))
-    p = 0.19999999999995316 + u * (-0.1428571428462392 + u * (0.11111111011843135 + u * p))
-    angle = shift + (t + t * u * (-0.3333333333333333 + u * p))
+    angle = shift + arc_tangent(t)
     if flip:
-        angle = math.pi / 2 - angle
+        angle = HALF_PI - angle
     return math.pi - angle if adjacent < 0.0 else angle
+
+
+@inline_kernel
+def full_angle(opposite, adjacent):
+    """Return atan2(opposite, adjacent) in [-pi, pi] rad: one division, and selections instead of branches."""
+    a, b = abs(opposite), abs(adjacent)
+    steep = a > b
+    low, high = (b, a) if steep else (a, b)
+    shifted = low > TAN_PI_8 * high
+    top = low - high if shifted else low
+    bottom = low + high if shifted else high
+    t = top / (bottom if bottom != 0.0 else 1.0)
+    angle = (QUARTER_PI if shifted else 0.0) + arc_tangent(t)
+    angle = HALF_PI - angle if steep else angle
+    angle = math.pi - angle if adjacent < 0.0 else angle
+    return math.copysign(angle, opposite)

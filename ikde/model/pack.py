@@ -10,10 +10,8 @@ from ikde.kernels.arrays import DetectorArrays, Floats, Indices, Ints, RobotArra
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.rotation import rotation_with_z
 from ikde.model.spheres import bounding_sphere, expand_rows
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
 from ikde.model.tree import Body, build_tree, transform
-
-KINDS = {"position": 0, "axis": 1, "pose": 2}
 
 
 @lru_cache(maxsize=64)
@@ -78,14 +76,10 @@ def frame_names(robot: Robot) -> list[str]:
     return [WORLD, *(frame.name for frame in robot.frames if frame.name != robot.tool), robot.tool]
 
 
-def pack_targets(targets: Sequence[Target]) -> TargetArrays:
-    """Pack targets, one row each."""
-    rotations = np.reshape([target.R_world_tool for target in targets], (-1, 3, 3))
-    positions = np.reshape([target.p_world_tool for target in targets], (-1, 3))
-    return TargetArrays(
-        kind=_ints([KINDS[target.kind] for target in targets]),
-        T_world_tool=_floats(np.concatenate([rotations, positions[:, :, None]], axis=2)),
-    )
+def pack_targets(targets: Targets | Sequence[Target]) -> TargetArrays:
+    """The targets' own arrays; a sequence of `Target` is turned into such first."""
+    targets = Targets.of(targets)
+    return TargetArrays(kind=targets.kind, T_world_tool=targets.T_world_tool)
 
 
 def _body_row(robot: Robot, body: Body, carries_tool: bool) -> tuple[int, int, bool, bool]:

@@ -66,6 +66,14 @@ def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Flo
     return np.maximum(0.0, outside - runs[0].slack - slack - beyond)
 
 
+def arm_length_m(robot: Robot) -> float:
+    """Length of the chain from the first joint that turns to the tool, stretched, in m; slides at zero."""
+    chain, p_body_tool = _chain_to_tool(robot)
+    first = next((i for i, body in enumerate(chain) if _is_revolute(robot, body)), len(chain))
+    offsets = [body.T_parent_body[:3, 3] for body in chain[first + 1 :]]
+    return float(sum(np.linalg.norm(offset) for offset in [*offsets, p_body_tool]))
+
+
 def _length(vectors: Floats) -> Floats:
     return np.linalg.norm(vectors, axis=-1)
 

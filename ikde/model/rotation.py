@@ -1,6 +1,7 @@
 """Rotation matrices: made from what users write, checked, and compared. Plain numpy, radians."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
@@ -8,33 +9,38 @@ from ikde.kernels.arrays import Floats
 TOLERANCE = 1e-6  # how far R R^T may be from the identity before it is no rotation
 
 
-def rotation_about(axis: Floats, angle_rad: float) -> Floats:
-    """Rotation matrix about a unit `axis` [3] (Rodrigues)."""
+def rotation_about(axis: Floats, angle_rad: ArrayLike) -> Floats:
+    """Rotation matrices [..., 3, 3] about a unit `axis` [3] by angles [...] (Rodrigues)."""
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle_rad) * K + (1.0 - np.cos(angle_rad)) * (K @ K)
+    angle = np.asarray(angle_rad, dtype=float)[..., None, None]
+    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
 
 
 def rotation_from_rpy(rpy_rad: Floats) -> Floats:
-    """Rotation from roll, pitch, yaw about the fixed x, y, z axes, as URDF defines them: Rz(yaw) Ry(pitch) Rx(roll)."""
-    roll, pitch, yaw = rpy_rad
+    """Rotations [..., 3, 3] from roll, pitch, yaw [..., 3] about the fixed x, y, z axes, as URDF defines them:
+    Rz(yaw) Ry(pitch) Rx(roll)."""
+    roll, pitch, yaw = np.moveaxis(np.asarray(rpy_rad, dtype=float), -1, 0)
     x, y, z = np.eye(3)
     return snap(rotation_about(z, yaw) @ rotation_about(y, pitch) @ rotation_about(x, roll))
 
 
 def rotation_from_quat_wxyz(quat_wxyz: Floats) -> Floats:
-    """Rotation from a quaternion, w first; it is normalised. Raises `InputError` for a zero quaternion."""
-    norm = float(np.linalg.norm(quat_wxyz))
-    if not norm > 1e-12:
+    """Rotations [..., 3, 3] from quaternions [..., 4], w first; they are normalised.
+
+    Raises `InputError` for a zero quaternion.
+    """
+    w, x, y, z = np.moveaxis(np.asarray(quat_wxyz, dtype=float), -1, 0)
+    norm = np.sqrt(w * w + x * x + y * y + z * z)
+    if not np.all(norm > 1e-12):
         raise InputError("a quaternion of length 0 is no rotation; expected w x y z with a non-zero length")
-    w, x, y, z = np.asarray(quat_wxyz) / norm
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    w, x, y, z = w / norm, x / norm, y / norm, z / norm
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 def quat_wxyz_from_rotation(R: Floats) -> Floats:
@@ -59,12 +65,21 @@ def quat_wxyz_from_rotation(R: Floats) -> Floats:
 
 
 def rotation_with_z(axis: Floats) -> Floats:
-    """Some rotation whose z axis is the unit vector `axis`; exact for coordinate axes, the identity for z itself."""
+    """Some rotations [..., 3, 3] whose z axes are the unit vectors `axis` [..., 3].
+
+    Exact for coordinate axes, the identity for z itself.
+    """
     axis = np.asarray(axis, dtype=float)
-    helper = np.eye(3)[(int(np.argmax(np.abs(axis))) + 2) % 3]
+    helper = np.eye(3)[(np.argmax(np.abs(axis), axis=-1) + 2) % 3]
     x = np.cross(helper, axis)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(axis, x), axis])
+    x = x / length(x)[..., None]
+    return np.stack([x, np.cross(axis, x), axis], axis=-1)
+
+
+def length(vectors: Floats) -> Floats:
+    """Lengths [...] of vectors [..., 3]: element by element, so that a vector's bits do not hang on its neighbours."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    return np.sqrt(x * x + y * y + z * z)
 
 
 def snap(R: Floats) -> Floats:
@@ -77,8 +92,14 @@ def check_rotation(R: Floats) -> None:
     """Raise `InputError` unless `R` is a rotation matrix [3, 3]."""
     if R.shape != (3, 3) or not np.all(np.isfinite(R)):
         raise InputError(f"a rotation matrix is 3 x 3 finite numbers, got shape {R.shape}")
-    if np.abs(R @ R.T - np.eye(3)).max() > TOLERANCE or np.linalg.det(R) < 0:
+    if not are_rotations(R):
         raise InputError("not a rotation matrix: R R^T must be the identity and det R = +1")
+
+
+def are_rotations(R: Floats) -> NDArray[np.bool_]:
+    """Whether finite matrices [..., 3, 3] are rotations [...]."""
+    skew = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(-1, -2))
+    return (skew <= TOLERANCE) & (np.linalg.det(R) >= 0.0)
 
 
 def rotation_angle(R: Floats) -> Floats:

@@ -18,6 +18,14 @@ def significant(value: float, digits: int = 3) -> str:
     return f"{rounded:,.{max(0, digits - 1 - exponent)}f}"
 
 
+def seconds(value_s: float) -> str:
+    """`23 µs`, `1.4 ms` or `2.1 s`."""
+    for factor, unit in ((1e6, "µs"), (1e3, "ms")):
+        if value_s * factor < 999.5:
+            return f"{significant(value_s * factor)} {unit}"
+    return f"{value_s:.1f} s"
+
+
 def percent(value_pct: float) -> str:
     """`73.0 %`."""
     return f"{fixed(value_pct, 1)} %"

@@ -7,8 +7,10 @@ import numpy as np
 
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
+from ikde.report.numbers import seconds
 from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
+from ikde.solver.families import family
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
@@ -32,6 +34,7 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "self_collision": result.self_collision,
         "outside_limits": list(result.verification.outside_limits),
         "method": result.method,
+        "family": family(robot, result.q),
         "settings": asdict(result.settings),
         "detector": result.detector,
         "seed": result.seed,
@@ -53,7 +56,8 @@ def format_solve(
     lines = [f"[{style}]{mark}[/]: {plain(result.reason)}"]
     if result.hint:
         lines.append(f"[yellow]what would help[/]: {plain(result.hint)}")
-    return render(*lines, _joint_table(robot, result, units, convention), _figure_table(result, units), color=color)
+    tables = _joint_table(robot, result, units, convention), _figure_table(robot, result, units)
+    return render(*lines, *tables, color=color)
 
 
 def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: str | None) -> Any:
@@ -77,7 +81,21 @@ def _bar(value: float, lower: float, upper: float) -> str:
     return "─" * at + "●" + "─" * (BAR - 1 - at)
 
 
-def _figure_table(result: SolveResult, units: Units) -> Any:
+ENGINE_TEXTS = {
+    "lm": "lm: damped least squares from collision-free seeds",
+    "analytic": "analytic: closed form of a UR-type arm",
+    "memetic": "memetic: adaptive differential evolution, polished",
+}
+
+
+def describe_engine(result: SolveResult) -> str:
+    """The engine that answered, and of the paper's its knobs."""
+    told = result.settings
+    own = f"{result.method} {told.strategy}, population {told.population}, {told.collision}"
+    return ENGINE_TEXTS.get(result.method, own)
+
+
+def _figure_table(robot: Robot, result: SolveResult, units: Units) -> Any:
     table = make_table("graded by separate code", "")
     table.add_row("position error", units.format_error(result.position_error_m))
     asked = result.target.kind != "position"
@@ -92,12 +110,14 @@ def _figure_table(result: SolveResult, units: Units) -> Any:
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
     table.add_row(
         "cost",
-        f"{result.solve_seconds * 1e3:.1f} ms, {result.evaluations} evaluations in "
+        f"{seconds(result.solve_seconds)}, {result.evaluations} evaluations in "
         f"{result.attempts} attempt{'s' if result.attempts != 1 else ''}{rejected}",
     )
     if result.compile_seconds:
         table.add_row("compiled first", f"{result.compile_seconds:.1f} s")
-    search = result.settings
-    table.add_row("engine", f"{result.method} {search.strategy}, population {search.population}, {search.collision}")
+    table.add_row("engine", describe_engine(result))
+    held = family(robot, result.q)
+    if held:
+        table.add_row("family", f"{held} (shoulder, elbow, wrist)")
     table.add_row("repeat with", f"the same command, seed {result.seed}: the same bits")
     return table

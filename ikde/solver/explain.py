@@ -5,18 +5,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
-from ikde.kernels.lanes import COLLIDING, REACHED
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
 from ikde.model.reach import reach_excess_m
+from ikde.model.robot import Pairs
 from ikde.model.target import Target
+from ikde.solver.engines.found import Found
+from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
-from ikde.solver.result import StopReason
-from ikde.solver.search import Found, search
+from ikde.solver.result import STOP_REASONS, StopReason
+from ikde.solver.search import search
 from ikde.solver.verify import Verification
 
-PROBE_ATTEMPTS = 24
+PROBE_ATTEMPTS = {True: 24, False: 2}  # of the DE, of other engines
+COUNTED = 64  # attempts whose collisions are counted pair by pair
 WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
+
+_OUT_OF_REACH, _SELF_COLLISION, _BUDGET = map(
+    STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.SELF_COLLISION, StopReason.BUDGET)
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,23 +36,25 @@ class Explanation:
     blocking_pairs: Mapping[tuple[str, str], int]
 
 
-def count_blocking_pairs(problem: Problem, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
+def count_blocking_pairs(pairs: Pairs, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
     """Pairs that blocked, with how often, most often first."""
-    pairs = problem.robot.pairs(problem.detector)
     blocking = {pairs[k]: int(pair_counts[k]) for k in np.flatnonzero(pair_counts)}
     return dict(sorted(blocking.items(), key=lambda item: -item[1]))
 
 
-def explain_from_counts(problem: Problem, found: Found) -> Explanation:
-    """What the counts of the search alone tell, at no cost."""
-    colliding, blocking = int(found.counts[0, COLLIDING]), count_blocking_pairs(problem, found.pair_counts[0])
-    if found.excess_m[0] > 0.0:
-        reason, stop = _out_of_reach(float(found.excess_m[0])), StopReason.OUT_OF_REACH
-    elif colliding:
-        reason, stop = f"only colliding solutions found, {colliding} of them", StopReason.SELF_COLLISION
-    else:
-        reason, stop = f"{problem.settings.restarts} attempts spent", StopReason.BUDGET
-    return Explanation(stop_reason=stop, reason=reason, hint=None, blocking_pairs=blocking)
+def stop_from_counts(found: Found) -> Ints:
+    """What the counts of the search alone tell, at no cost: index [T] into `STOP_REASONS` of rows not reached."""
+    colliding = np.where(found.counts[:, COLLIDING] > 0, _SELF_COLLISION, _BUDGET)
+    return np.where(found.excess_m > 0.0, _OUT_OF_REACH, colliding)
+
+
+def reason_from_counts(stop: StopReason, excess_m: float, attempts: int, colliding: int) -> str:
+    """One line that says it."""
+    if stop is StopReason.OUT_OF_REACH:
+        return _out_of_reach(excess_m)
+    if stop is StopReason.SELF_COLLISION:
+        return f"only colliding solutions found, {colliding} of them"
+    return f"{attempts} attempt{'s' if attempts != 1 else ''} spent"
 
 
 def explain(problem: Problem, target: Target, found: Found, graded: Verification, seed: int) -> Explanation:
@@ -53,13 +62,15 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
     if found.excess_m[0] > 0.0:
         reason, hint = _out_of_reach(float(found.excess_m[0])), _reach_hint(problem, target)
         return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
-    colliding = int(found.counts[0, COLLIDING])
-    blocking = count_blocking_pairs(problem, found.pair_counts[0])
-    if colliding == 0 and problem.detector is not None:
+    colliding, pairs = int(found.counts[0, COLLIDING]), problem.robot.pairs(problem.detector)
+    blocking = count_blocking_pairs(pairs, found.pair_counts[0])
+    if colliding > 0 and not problem.settings.evolves:
+        colliding, blocking = _count_pairs(problem, target, seed)
+    if colliding == 0 and problem.detector is not None and problem.settings.evolves:
         probe = _probe(problem.with_settings(collision="reject"), target, seed)
-        colliding, blocking = int(probe.counts[0, COLLIDING]), count_blocking_pairs(problem, probe.pair_counts[0])
+        colliding, blocking = int(probe.counts[0, COLLIDING]), count_blocking_pairs(pairs, probe.pair_counts[0])
         if probe.counts[0, REACHED]:
-            return _spent(problem, graded, "more restarts: a search that only tests the best (reject) found a solution")
+            return _spent(found, graded, "more restarts: a search that only tests the best (reject) found a solution")
     remedy = _try_remedies(problem, target, seed)
     if colliding > 0:
         worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])
@@ -76,15 +87,15 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
             hint=remedy,
             blocking_pairs={},
         )
-    return _spent(problem, graded, _tolerance_hint(problem, graded))
+    return _spent(found, graded, _tolerance_hint(problem, graded))
 
 
 def _out_of_reach(excess_m: float) -> str:
     return f"out of reach: at least {excess_m:.3f} m beyond the stretched arm at the nearest base position"
 
 
-def _spent(problem: Problem, graded: Verification, hint: str | None) -> Explanation:
-    attempts = problem.settings.restarts
+def _spent(found: Found, graded: Verification, hint: str | None) -> Explanation:
+    attempts = int(found.counts[0, ATTEMPTS])
     reason = f"{attempts} attempt{'s' if attempts != 1 else ''} spent; {_best(graded)}"
     return Explanation(stop_reason=StopReason.BUDGET, reason=reason, hint=hint, blocking_pairs={})
 
@@ -94,7 +105,20 @@ def _best(graded: Verification) -> str:
 
 
 def _probe(problem: Problem, target: Target, seed: int) -> Found:
-    return search(problem, [target], seed=seed, streams=[0], attempts=PROBE_ATTEMPTS)
+    brief = problem.with_settings(restarts=PROBE_ATTEMPTS[problem.settings.evolves])
+    return search(brief, [target], seed=seed, streams=[0])
+
+
+def _count_pairs(problem: Problem, target: Target, seed: int) -> tuple[int, dict[tuple[str, str], int]]:
+    """How many of some attempts met the target in collision, and how often each pair was to blame."""
+    found = search(problem, [target] * COUNTED, seed=seed, streams=range(COUNTED), attempts=1)
+    met = found.q[(found.score[:, 0] == 0.0) & (found.counts[:, REACHED] == 0)]
+    detector = problem.detector
+    if detector is None or not len(met):
+        return 0, {}
+    pairs = problem.robot.pairs(detector)
+    gaps = compute_gaps(problem.robot, detector.spheres, pairs, met)
+    return len(met), count_blocking_pairs(pairs, (gaps <= detector.safe_distance_m).sum(axis=0))
 
 
 def _widened(problem: Problem) -> tuple[Floats, Floats]:

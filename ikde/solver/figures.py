@@ -4,7 +4,8 @@ The kernels' bits are the same on every machine, which numpy's are not: so these
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import lru_cache
 
 import numpy as np
 
@@ -13,9 +14,10 @@ from ikde.kernels import figures as kernels
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.robot import Detector, Robot
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_gaps
-from ikde.solver.verify import Verdicts
+from ikde.solver.settings import SolveSettings
+from ikde.solver.verify import Bools, Verdicts
 
 AGREEMENT = 1e-11  # m, rad: kernels and plain numpy must agree to this; for a target beyond 1 m relative to it
 
@@ -28,6 +30,11 @@ class Figures:
     orientation_error_rad: Floats  # [T]
     clearance_m: Floats  # [T]; inf without pairs
     closest_pair: Ints  # [T] index into the detector's pairs; -1 without
+    accepted: Bools  # [T] within both tolerances, inside all limits, free of self-collision
+
+    def take(self, rows: Ints) -> "Figures":
+        """The figures of these rows."""
+        return Figures(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,16 +46,38 @@ class Clearances:
     collides: np.ndarray  # [K]
 
 
-def compute_figures(robot: Robot, detector: Detector | None, targets: Sequence[Target], Q: Floats) -> Figures:
-    """Figures of configurations `Q` [T, N] in the robot's own convention, a target each."""
-    figures, pairs = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64)
-    packed = (pack_robot(robot), pack_detector(robot, detector), pack_targets(targets))
-    kernels.compute_figures(*packed, np.ascontiguousarray(Q), figures, pairs)
+def compute_figures(
+    robot: Robot,
+    detector: Detector | None,
+    targets: Targets | Sequence[Target],
+    Q: Floats,
+    settings: SolveSettings | None = None,
+) -> Figures:
+    """Figures of configurations `Q` [T, N] in the robot's own convention, a target each.
+
+    Without `settings` there are no tolerances.
+    """
+    figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
+    packed = (pack_robot(robot), pack_detector(robot, detector), pack_targets(targets), pack_terms(robot, settings))
+    kernels.compute_figures(*packed, np.ascontiguousarray(Q), figures, pairs, accepted)
     return Figures(
         position_error_m=figures[:, kernels.POSITION_ERROR],
         orientation_error_rad=figures[:, kernels.ORIENTATION_ERROR],
         clearance_m=figures[:, kernels.CLEARANCE],
         closest_pair=pairs,
+        accepted=accepted,
+    )
+
+
+@lru_cache(maxsize=64)
+def pack_terms(robot: Robot, settings: SolveSettings | None) -> kernels.Terms:
+    """Limits and tolerances for the grader; without settings there are no tolerances."""
+    limits = np.array([robot.lower, robot.upper])
+    limits.setflags(write=False)
+    return kernels.Terms(
+        limits=limits,
+        position_tolerance=float(settings.position_tolerance_m) if settings else np.inf,
+        orientation_tolerance=float(settings.orientation_tolerance_rad) if settings else np.inf,
     )
 
 
@@ -58,7 +87,7 @@ def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearance
     Raises:
         VerificationError: if kernels and plain numpy disagree by more than 1e-11 m: a bug.
     """
-    figures = compute_figures(robot, detector, [Target((0.0, 0.0, 0.0))] * len(Q), Q)
+    figures = compute_figures(robot, detector, Targets(np.zeros((len(Q), 3))), Q)
     plain = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q).min(axis=1, initial=np.inf)
     gap = float(_difference(figures.clearance_m, plain).max(initial=0.0))
     if not gap <= AGREEMENT:
@@ -70,14 +99,14 @@ def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearance
     )
 
 
-def compute_disagreement(targets: Sequence[Target], figures: Figures, verdicts: Verdicts) -> Floats:
+def compute_disagreement(targets: Targets | Sequence[Target], figures: Figures, verdicts: Verdicts) -> Floats:
     """Largest gap [T] between the kernels' figures and plain numpy's in m or rad; beyond 1 m relative to the target."""
     gaps = [
         _difference(figures.position_error_m, verdicts.position_error_m),
         _difference(figures.orientation_error_rad, verdicts.orientation_error_rad),
         _difference(figures.clearance_m, verdicts.clearance_m),
     ]
-    farthest = np.array([np.abs(target.p_world_tool).max() for target in targets])
+    farthest = np.abs(Targets.of(targets).p_world_tool).max(axis=1)
     return np.max(gaps, axis=0) / np.maximum(1.0, farthest)
 
 

@@ -1,66 +1,124 @@
-"""Grade and explain what the kernels found: the verdict is plain numpy's alone, on exactly the returned q."""
+"""Grade and explain what the kernels found, on exactly the returned q.
 
-from collections.abc import Sequence
+The figures and the verdict of every row are those of a grader that shares no code with what searches; plain numpy
+grades again, every row or a sample, and must agree to 1e-11.
+"""
+
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 
-from ikde.errors import VerificationError
-from ikde.model.target import Target
-from ikde.solver.explain import Explanation, count_blocking_pairs, explain, explain_from_counts
+from ikde.errors import InputError, VerificationError
+from ikde.kernels.arrays import Floats, Ints
+from ikde.model.target import Targets
+from ikde.solver.engines.found import Found
+from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, compute_figures
 from ikde.solver.problem import Problem
-from ikde.solver.result import StopReason
-from ikde.solver.search import Found
+from ikde.solver.result import STOP_REASONS, StopReason
 from ikde.solver.verify import Bools, Verdicts, verify_many
+
+Verify = Literal["all", "sample", "none"]
+SAMPLE = 64  # one stream in so many, wherever a batch is cut
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Graded:
-    """Both grades of T rows, whether they agree, and the story of each row."""
+    """The grades of T rows, whether they agree, and why rows ended."""
 
     figures: Figures
-    verdicts: Verdicts
-    verified: Bools  # [T]
-    explanations: tuple[Explanation, ...]
+    verdicts: Verdicts | None
+    """Plain numpy's, of the rows that it graded, if any."""
+    place: Ints
+    """[T] where a row stands in `verdicts`; -1 if plain numpy has not graded it."""
+    verified: Bools
+    """[T] False where plain numpy disagrees."""
+    reached: Bools
+    """[T] accepted by all who graded it, and verified."""
+    stop_reasons: Ints
+    """[T] index into `STOP_REASONS`."""
+    explanations: Mapping[int, Explanation]
+    """Row -> why, of rows that were looked into; counts tell of the others."""
 
 
-def grade(problem: Problem, targets: Sequence[Target], found: Found, *, seed: int, strict: bool, probe: bool) -> Graded:
+def grade(
+    problem: Problem,
+    targets: Targets,
+    found: Found,
+    *,
+    seed: int,
+    first_stream: int = 0,
+    strict: bool,
+    probe: bool,
+    verify: Verify = "all",
+) -> Graded:
     """Grade every row of `found`.
 
-    `strict` raises `VerificationError` where kernels and plain numpy disagree; else the row is marked. `probe` lets the
-    explanation of a failure make short searches.
+    Args:
+        problem: robot, detector, settings and ranges.
+        targets: one a row.
+        found: the rows.
+        seed: of the probes.
+        first_stream: stream of the first row.
+        strict: raise `VerificationError` where the graders disagree; else the row is marked.
+        probe: look into failures by short searches. Plain numpy grades them first.
+        verify: which rows plain numpy grades: `"all"`, one stream in 64, or those that are looked into.
     """
-    figures = compute_figures(problem.robot, problem.detector, targets, found.q)
-    verdicts = verify_many(problem.robot, targets, found.q, problem.settings, problem.detector)
-    gaps = compute_disagreement(targets, figures, verdicts)
-    verified = gaps <= AGREEMENT  # False for NaN
-    if strict and not verified.all():
-        worst = int(np.argmin(verified))
-        raise VerificationError(f"kernels and verify disagree by {gaps[worst]:.3g} on q = {found.q[worst].tolist()}")
-    stories = []
-    for row, target in enumerate(targets):
-        if not verified[row]:
-            stories.append(_unverified(float(gaps[row])))
-        elif verdicts.accepted[row]:
-            stories.append(_reached(problem, found.row(row)))
-        elif probe:
-            stories.append(explain(problem, target, found.row(row), verdicts.row(row), seed))
-        else:
-            stories.append(explain_from_counts(problem, found.row(row)))
-    return Graded(figures=figures, verdicts=verdicts, verified=verified, explanations=tuple(stories))
+    figures = compute_figures(problem.robot, problem.detector, targets, found.q, problem.settings)
+    streams = np.arange(first_stream, first_stream + len(targets))
+    rows = np.flatnonzero(_choose(verify, streams) | (~figures.accepted if probe else False))
+    verified, reached = np.ones(len(targets), dtype=bool), figures.accepted
+    verdicts, explanations = None, {}
+    place = np.full(len(targets), -1)
+    if rows.size:
+        asked, Q = targets.take(rows), found.q[rows]
+        verdicts = verify_many(problem.robot, asked, Q, problem.settings, problem.detector)
+        gaps = compute_disagreement(asked, figures.take(rows), verdicts)
+        if strict:
+            _refuse(gaps, Q)
+        place[rows] = np.arange(len(rows))
+        verified[rows] = gaps <= AGREEMENT  # False for NaN
+        reached = figures.accepted & verified
+        reached[rows] &= verdicts.accepted
+        explanations = {int(row): _unverified(float(gaps[place[row]])) for row in np.flatnonzero(~verified)}
+        if probe:
+            for row in np.flatnonzero(verified & ~reached).tolist():
+                graded = verdicts.row(int(place[row]))
+                explanations[row] = explain(problem, targets[row], found.row(row), graded, seed)
+    return Graded(
+        figures=figures,
+        verdicts=verdicts,
+        place=place,
+        verified=verified,
+        reached=reached,
+        stop_reasons=_stop_reasons(found, reached, explanations),
+        explanations=explanations,
+    )
+
+
+def _choose(verify: Verify, streams: Ints) -> Bools:
+    """Which rows plain numpy grades [T]: the sample hangs on the streams, not on where a batch is cut."""
+    if verify not in get_args(Verify):
+        raise InputError(f"expected one of {', '.join(get_args(Verify))}, got {verify!r}", ("verify",))
+    return {"all": streams >= 0, "sample": streams % SAMPLE == 0, "none": streams < 0}[verify]
+
+
+def _refuse(gaps: Floats, Q: Floats) -> None:
+    agree = gaps <= AGREEMENT
+    if not agree.all():
+        worst = int(np.argmin(agree))
+        raise VerificationError(f"kernels and verify disagree by {gaps[worst]:.3g} on q = {Q[worst].tolist()}")
+
+
+def _stop_reasons(found: Found, reached: Bools, explanations: Mapping[int, Explanation]) -> Ints:
+    codes = np.where(reached, STOP_REASONS.index(StopReason.REACHED), stop_from_counts(found))
+    for row, story in explanations.items():
+        codes[row] = STOP_REASONS.index(story.stop_reason)
+    return codes
 
 
 def _unverified(gap: float) -> Explanation:
     reason = f"kernels and verify disagree by {gap:.3g}: a bug, please report it"
     return Explanation(stop_reason=StopReason.UNVERIFIED, reason=reason, hint=None, blocking_pairs={})
-
-
-def _reached(problem: Problem, found: Found) -> Explanation:
-    free = "free of self-collision" if problem.detector else "self-collision not looked at"
-    return Explanation(
-        stop_reason=StopReason.REACHED,
-        reason=f"within tolerance, inside the limits, {free}",
-        hint=None,
-        blocking_pairs=count_blocking_pairs(problem, found.pair_counts[0]),
-    )

@@ -83,18 +83,24 @@ def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[s
     return {name: float(resolved[robot.joint_names.index(name)]) for name in values}
 
 
+def shrink_tolerances(settings: SolveSettings) -> tuple[float, float]:
+    """Tolerances in m and rad, a hair smaller, so that rounding cannot turn `verify`'s verdict."""
+    position, orientation = settings.position_tolerance_m, settings.orientation_tolerance_rad
+    return position - min(ROUNDING, 0.5 * position), orientation - min(ROUNDING, 0.5 * orientation)
+
+
 def pack_search(problem: Problem) -> SearchArrays:
     """The search's arrays for the kernels."""
     settings = problem.settings
     rule = IGNORE if problem.detector is None else {"reject": REJECT, "feasibility": FEASIBILITY}[settings.collision]
     near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
-    position, orientation = settings.position_tolerance_m, settings.orientation_tolerance_rad
+    position, orientation = shrink_tolerances(settings)
     return SearchArrays(
         ranges=np.array([problem.lower, problem.upper, near]),
         first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
         start_share=float(settings.start_share),
-        position_tolerance=position - min(ROUNDING, 0.5 * position),
-        orientation_tolerance=orientation - min(ROUNDING, 0.5 * orientation),
+        position_tolerance=position,
+        orientation_tolerance=orientation,
         population=int(settings.population),
         generations=int(settings.generations),
         strategy=STRATEGIES.index(settings.strategy),

@@ -1,10 +1,12 @@
 """What a solve gives back: joint values, their graded figures, what it cost, and the reason it stopped."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 from ikde.kernels.arrays import Floats
+from ikde.model.robot import Detector
 from ikde.model.target import Target
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Verification
@@ -26,9 +28,12 @@ class StopReason(StrEnum):
     """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+STOP_REASONS = tuple(StopReason)  # in the order of their numbers in `Rows.stop_reasons`
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SolveResult:
-    """One configuration and everything known about it. The figures are `verify`'s, on exactly this `q`."""
+    """One configuration and everything known about it. The figures are graded on exactly this `q`."""
 
     reached: bool
     stop_reason: StopReason
@@ -40,9 +45,19 @@ class SolveResult:
     """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
     joint_names: tuple[str, ...]
     target: Target
-    verification: Verification
+    position_error_m: float
+    """Distance of the tool from the target, m."""
+    orientation_error_rad: float
+    """Rotation-vector norm between tool and target, rad."""
+    clearance_m: float | None
+    """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
+    closest_pair: tuple[str, str] | None
+    """The two components that the clearance lies between."""
+    self_collision: bool
+    """True if the clearance is not above the safe distance."""
     verified: bool
-    """Kernels and `verify` agree on this `q` to 1e-11 (a larger gap raises, or in bulk is recorded here)."""
+    """False if `verify` was asked about this `q` and does not agree with the figures to 1e-11: a bug, which raises, or
+    in bulk is recorded here."""
     method: str
     """The engine that answered."""
     settings: SolveSettings
@@ -61,28 +76,16 @@ class SolveResult:
     solve_seconds: float
     """Wall time of this search, without compilation; in bulk, very short searches share a call and its time evenly."""
     compile_seconds: float
+    verify: Callable[[], Verification] = field(repr=False)
+    """Grades this `q` by plain numpy."""
 
-    @property
-    def position_error_m(self) -> float:
-        """Distance of the tool from the target, m."""
-        return self.verification.position_error_m
+    @cached_property
+    def verification(self) -> Verification:
+        """The grade of plain numpy, on exactly this `q`; of a result in bulk it may be computed only now."""
+        return self.verify()
 
-    @property
-    def orientation_error_rad(self) -> float:
-        """Rotation-vector norm between tool and target, rad."""
-        return self.verification.orientation_error_rad
 
-    @property
-    def clearance_m(self) -> float | None:
-        """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
-        return self.verification.clearance_m
-
-    @property
-    def closest_pair(self) -> tuple[str, str] | None:
-        """The two components that the clearance lies between."""
-        return self.verification.closest_pair
-
-    @property
-    def self_collision(self) -> bool:
-        """True if the clearance is not above the safe distance."""
-        return self.verification.self_collision
+def reached_reason(detector: Detector | None) -> str:
+    """One line for a target that was reached."""
+    free = "free of self-collision" if detector else "self-collision not looked at"
+    return f"within tolerance, inside the limits, {free}"

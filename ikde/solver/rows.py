@@ -1,37 +1,31 @@
-"""Many solves at once, a row each: searched on all cores, graded by plain numpy, explained."""
+"""Many solves at once, a row each: searched on all cores, graded, explained."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.kernels.jit import compile_clock
-from ikde.kernels.lanes import ATTEMPTS, COLLIDING, EVALUATIONS
-from ikde.model.target import Target
-from ikde.solver.explain import Explanation
-from ikde.solver.figures import Figures
-from ikde.solver.grade import grade
+from ikde.model.target import Target, Targets
+from ikde.solver.engines.found import ENGINES, Found
+from ikde.solver.explain import Explanation, count_blocking_pairs, reason_from_counts
+from ikde.solver.grade import Graded, Verify, grade
 from ikde.solver.problem import Problem
-from ikde.solver.result import SolveResult, StopReason
-from ikde.solver.search import Found, search
-from ikde.solver.verify import Bools, Verdicts
+from ikde.solver.result import STOP_REASONS, SolveResult, StopReason, reached_reason
+from ikde.solver.search import search
+from ikde.solver.verify import Bools, Verification, verify_many
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rows:
-    """Finished searches: row k belongs to target k. `row(k)` gives it as a `SolveResult`."""
+    """Finished searches, a sequence of `SolveResult`: row k belongs to target k. Its columns are arrays."""
 
     problem: Problem
-    targets: Sequence[Target]
+    targets: Targets
     seed: int
     first_stream: int
     found: Found
-    figures: Figures
-    """The kernels': the same bits on every machine."""
-    verdicts: Verdicts
-    """Plain numpy's: the judge."""
-    verified: Bools
-    """[T] both agree to 1e-11."""
-    explanations: tuple[Explanation, ...]
+    graded: Graded
     compile_seconds: float
 
     @property
@@ -41,8 +35,38 @@ class Rows:
 
     @property
     def reached(self) -> Bools:
-        """Within tolerance, inside the limits, free of collision, and verified [T]."""
-        return self.verdicts.accepted & self.verified
+        """Within tolerance, inside the limits, free of collision, and nobody disagrees [T]."""
+        return self.graded.reached
+
+    @property
+    def verified(self) -> Bools:
+        """False where plain numpy was asked and does not agree to 1e-11 [T]."""
+        return self.graded.verified
+
+    @property
+    def stop_reasons(self) -> Ints:
+        """Why each search ended [T]: index into `solver.result.STOP_REASONS`."""
+        return self.graded.stop_reasons
+
+    @property
+    def position_error_m(self) -> Floats:
+        """Distance of the tool from its target [T], m."""
+        return self.graded.figures.position_error_m
+
+    @property
+    def orientation_error_rad(self) -> Floats:
+        """Rotation-vector norm between tool and target [T], rad."""
+        return self.graded.figures.orientation_error_rad
+
+    @property
+    def clearance_m(self) -> Floats:
+        """Smallest distance - R_i - R_j over the detector's pairs [T], m; inf without a pair."""
+        return self.graded.figures.clearance_m
+
+    @property
+    def closest_pair(self) -> Ints:
+        """Index of the pair that the clearance lies between [T], into `robot.pairs(detector)`; -1 without a pair."""
+        return self.graded.figures.closest_pair
 
     @property
     def attempts(self) -> Ints:
@@ -59,12 +83,59 @@ class Rows:
         """Attempts that met the pose but collided [T]."""
         return self.found.counts[:, COLLIDING]
 
+    @property
+    def engines(self) -> Ints:
+        """Who answered [T]: index into `solver.search.ENGINES`."""
+        return self.found.engine
+
     def __len__(self) -> int:
         return len(self.targets)
 
+    def __iter__(self) -> Iterator[SolveResult]:
+        return (self[index] for index in range(len(self)))
+
+    def __getitem__(self, index: int) -> SolveResult:
+        count = len(self)
+        if not -count <= index < count:
+            raise IndexError(f"row {index} of {count}")
+        return self.row(index % count)
+
+    def reason(self, index: int) -> str:
+        """One line: what happened in this row."""
+        if index in self.graded.explanations:
+            return self.graded.explanations[index].reason
+        stop = STOP_REASONS[self.stop_reasons[index]]
+        if stop is StopReason.REACHED:
+            return reached_reason(self.problem.detector)
+        excess_m = float(self.found.excess_m[index])
+        return reason_from_counts(stop, excess_m, int(self.attempts[index]), int(self.rejected[index]))
+
+    def explanation(self, index: int) -> Explanation:
+        """Why, and what would help: of a row that was not looked into what its counts tell, made now."""
+        if index in self.graded.explanations:
+            return self.graded.explanations[index]
+        return Explanation(
+            stop_reason=STOP_REASONS[self.stop_reasons[index]],
+            reason=self.reason(index),
+            hint=None,
+            blocking_pairs=count_blocking_pairs(
+                self.problem.robot.pairs(self.problem.detector), self.found.pair_counts[index]
+            ),
+        )
+
+    def verification(self, index: int) -> Verification:
+        """The grade of plain numpy; if it has not graded this row, it does so now."""
+        graded, problem = self.graded, self.problem
+        if graded.verdicts is not None and graded.place[index] >= 0:
+            return graded.verdicts.row(int(graded.place[index]))
+        rows = slice(index, index + 1)
+        return verify_many(problem.robot, self.targets[rows], self.q[rows], problem.settings, problem.detector).row(0)
+
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
-        problem, story = self.problem, self.explanations[index]
+        problem, story, figures = self.problem, self.explanation(index), self.graded.figures
+        pairs, closest = problem.robot.pairs(problem.detector), int(figures.closest_pair[index])
+        clearance_m = float(figures.clearance_m[index])
         q = self.q[index].copy()
         q.setflags(write=False)
         return SolveResult(
@@ -75,9 +146,13 @@ class Rows:
             q=q,
             joint_names=problem.robot.joint_names,
             target=self.targets[index],
-            verification=self.verdicts.row(index),
+            position_error_m=float(figures.position_error_m[index]),
+            orientation_error_rad=float(figures.orientation_error_rad[index]),
+            clearance_m=clearance_m if closest >= 0 else None,
+            closest_pair=pairs[closest] if closest >= 0 else None,
+            self_collision=problem.detector is not None and clearance_m <= problem.detector.safe_distance_m,
             verified=bool(self.verified[index]),
-            method="de",
+            method=ENGINES[self.engines[index]],
             settings=problem.settings,
             detector=problem.detector.name if problem.detector else "none",
             seed=self.seed,
@@ -88,12 +163,13 @@ class Rows:
             blocking_pairs=story.blocking_pairs,
             solve_seconds=float(self.found.seconds[index]),
             compile_seconds=self.compile_seconds,
+            verify=partial(self.verification, index),
         )
 
 
 def solve_rows(
     problem: Problem,
-    targets: Sequence[Target],
+    targets: Targets | Sequence[Target],
     *,
     seed: int,
     first_stream: int = 0,
@@ -101,6 +177,7 @@ def solve_rows(
     threads: int | None = None,
     probe: bool = True,
     strict: bool = False,
+    verify: Verify = "all",
     announce_compile: Callable[[], None] | None = None,
 ) -> Rows:
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
@@ -113,26 +190,35 @@ def solve_rows(
         first_attempt: where in its stream each search begins.
         threads: how many; None for all cores.
         probe: whether short searches find out why a target was not reached; else its counts alone tell, at no cost.
-        strict: raise where kernels and plain numpy disagree, instead of recording it.
+        strict: raise where the graders disagree, instead of recording it.
+        verify: which rows plain numpy grades too: `"all"`, `"sample"` (one stream in 64), or `"none"`; beyond those,
+            every unreached row that is probed.
         announce_compile: called once if kernels must be compiled first.
 
     Raises:
         VerificationError: with `strict`, for a disagreement of more than 1e-11: a bug.
     """
+    targets = Targets.of(targets)
     streams = range(first_stream, first_stream + len(targets))
     with compile_clock(announce_compile) as clock:
-        search(problem, targets[:1], seed=0, streams=[0], attempts=0)
+        search(problem, targets[:1], seed=0, streams=[0][: len(targets)], attempts=0)
         found = search(problem, targets, seed=seed, streams=streams, first_attempt=first_attempt, threads=threads)
-        graded = grade(problem, targets, found, seed=seed, strict=strict, probe=probe)
+        graded = grade(
+            problem,
+            targets,
+            found,
+            seed=seed,
+            first_stream=first_stream,
+            strict=strict,
+            probe=probe,
+            verify=verify,
+        )
     return Rows(
         problem=problem,
         targets=targets,
         seed=seed,
         first_stream=first_stream,
         found=found,
-        figures=graded.figures,
-        verdicts=graded.verdicts,
-        verified=graded.verified,
-        explanations=graded.explanations,
+        graded=graded,
         compile_seconds=clock.seconds,
     )

@@ -1,46 +1,33 @@
-"""From targets to the best configuration of each: the one place that calls the search kernels."""
+"""From targets to the best configuration of each: engine after engine, on all cores, until a target is reached."""
 
 import os
 import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ikde.kernels.arrays import Floats, Ints
-from ikde.kernels.lanes import COUNTS, REACHED, solve_lanes
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.kernels.arrays import REACHED, Ints
+from ikde.kernels.pose_error import POSE
+from ikde.model.closed_form import find_ur_arm
 from ikde.model.reach import reach_excess_m
-from ikde.model.target import Target
-from ikde.solver.problem import ROUNDING, Problem, pack_search
+from ikde.model.robot import Robot
+from ikde.model.target import Target, Targets
+from ikde.solver.engines.engine import Engine, Question
+from ikde.solver.engines.found import ENGINES, Found, make_found
+from ikde.solver.problem import Problem
+from ikde.solver.settings import SolveSettings
+from ikde.solver.stopping import get_brake
 
-ATTEMPTS_PER_CALL = 16  # Python hears Ctrl-C between calls
-EVALUATIONS_PER_CALL = 20_000  # some 20 ms: searches that are shorter share a call, up to
-LANES_PER_CALL = 64
-OUT_OF_REACH_ATTEMPTS = 4
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Found:
-    """What the kernels found, a row a target."""
-
-    q: Floats  # [T, N]
-    counts: Ints  # [T, COUNTS]
-    pair_counts: Ints  # [T, P]
-    excess_m: Floats  # [T] how far out of reach each target provably is, beyond the tolerance; 0 if nobody knows
-    seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
-
-    def row(self, index: int) -> "Found":
-        """One target's share."""
-        rows = slice(index, index + 1)
-        return Found(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+FIRST_ATTEMPTS = 300  # of `lm` under `auto`, before `memetic` takes over
+FEW = {"de": 4, "lm": 64, "analytic": 64, "memetic": 1}  # attempts after which who is unreached is asked for proof
 
 
 def search(
     problem: Problem,
-    targets: Sequence[Target],
+    targets: Targets | Sequence[Target],
     *,
     seed: int,
     streams: Sequence[int],
@@ -51,63 +38,116 @@ def search(
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
     `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach;
-    0 searches nothing and only compiles or loads the kernel.
+    0 searches nothing and only compiles or loads the first engine's kernel.
 
     The answer for a target hangs on (seed, stream, attempt) only: not on the other targets, the number of threads, or
     how the attempts are cut into calls.
     """
-    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
-    detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)
-    settings, packed, count = pack_search(problem), pack_targets(targets), len(targets)
-    q, score = np.zeros((count, len(problem.robot.joints))), np.full((count, 2), np.inf)
-    counts = np.zeros((count, COUNTS), dtype=np.int64)
-    pair_counts = np.zeros((count, detector.pairs.shape[0]), dtype=np.int64)
-    excess, seconds = _excess_m(problem, targets), np.zeros(count)
-    last = first_attempt + (_budgets(problem, excess) if attempts is None else np.full(count, attempts))
-    lane_streams, stop = np.array(streams, dtype=np.int64), threading.Event()
-
-    def run(lanes: range) -> None:
-        rows = slice(lanes.start, lanes.stop)
-        started = time.perf_counter()
-        # One call at least: with no attempts to make it is empty, and compiles or loads the kernel.
-        for begin in range(first_attempt, max(int(last[rows].max()), first_attempt + 1), ATTEMPTS_PER_CALL):
-            if stop.is_set() or counts[rows, REACHED].all():
-                break
-            where, block = np.array([lanes.start, lanes.stop]), np.array([begin, begin + ATTEMPTS_PER_CALL])
-            with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-                solve_lanes(
-                    *(robot, detector, packed, where, settings, np.uint64(seed), lane_streams, block, last),
-                    *(q, score, counts, pair_counts),
-                )
-        seconds[rows] = (time.perf_counter() - started) / len(lanes)
-
-    _on_threads(run, _cut(count, _lanes_per_call(problem)), threads or usable_cores(), stop)
-    return Found(q=q, counts=counts, pair_counts=pair_counts, excess_m=excess, seconds=seconds)
+    targets = Targets.of(targets)
+    found = make_found(problem, len(targets))
+    question = Question(problem, targets, found, seed=seed, streams=streams)
+    for name, budget in _plan(problem, question, attempts):
+        rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0))
+        if not len(rows):
+            break
+        found.engine[rows] = ENGINES.index(name)
+        lanes = _Lanes(make_engine(name, question), found, threads or usable_cores())
+        few = min(FEW[name], budget)
+        lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
+        if attempts is None:
+            _prove(problem, targets, found)
+        lanes.run(first_attempt + few, first_attempt + np.full(len(targets), budget))
+    return found
 
 
-def _lanes_per_call(problem: Problem) -> int:
-    """How many lanes share a call: one, unless the search is very short."""
-    settings = problem.settings
-    evaluations = settings.population * (settings.generations + 1) * min(settings.restarts, ATTEMPTS_PER_CALL)
-    return int(np.clip(EVALUATIONS_PER_CALL // evaluations, 1, LANES_PER_CALL))
+def make_engine(name: str, question: Question) -> Engine:
+    """An engine by name; each brings its kernels along, so only the one that is needed is imported."""
+    if name == "lm":
+        from ikde.solver.engines.lm import DampedLeastSquares as Maker
+    elif name == "analytic":
+        from ikde.solver.engines.analytic import Analytic as Maker
+    elif name == "memetic":
+        from ikde.solver.engines.memetic import Memetic as Maker
+    else:
+        from ikde.solver.engines.de import DifferentialEvolution as Maker
+    return Maker(question)
 
 
-def _cut(count: int, size: int) -> list[range]:
-    """0 .. count - 1 in pieces of `size`."""
-    return [range(first, min(first + size, count)) for first in range(0, count, size)]
+def choose_engines(robot: Robot, settings: SolveSettings, *, only_poses: bool, inside: bool = True) -> list[str]:
+    """Engines in the order in which they try; the later ones take over what the first leaves.
+
+    `inside`: the joint ranges are within the limits, where the collision checks of `lm` and `analytic` hold.
+    """
+    if settings.evolves:
+        return ["de"]
+    if settings.method != "auto":
+        return [settings.method]
+    if not inside:
+        return ["memetic"]
+    is_closed = only_poses and find_ur_arm(robot) is not None and not _has_spare_joints(robot)
+    return [*(["analytic"] if is_closed else []), "lm", "memetic"]
 
 
-def _excess_m(problem: Problem, targets: Sequence[Target]) -> Floats:
-    """How far each target provably is out of reach, where that is more than the tolerance."""
-    positions = np.reshape([target.p_world_tool for target in targets], (-1, 3))
-    excess = reach_excess_m(problem.robot, positions, problem.lower, problem.upper)
-    return np.where(excess > problem.settings.position_tolerance_m, excess, 0.0)
+def _has_spare_joints(robot: Robot) -> bool:
+    """True if more than the six joints of an arm move the robot: then its closed form is not all there is."""
+    return len(robot.joints) > 6
 
 
-def _budgets(problem: Problem, excess_m: Floats) -> Ints:
-    """Attempts to make: a target that is proved out of reach only needs showing how close the tool can come."""
-    restarts = problem.settings.restarts
-    return np.where(excess_m > 0.0, min(OUT_OF_REACH_ATTEMPTS, restarts), restarts)
+def _plan(problem: Problem, question: Question, attempts: int | None) -> list[tuple[str, int]]:
+    """Engines, each with its attempts."""
+    robot, settings = problem.robot, problem.settings
+    inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
+    only_poses = bool((question.targets.kind == POSE).all())
+    names = choose_engines(robot, settings, only_poses=only_poses, inside=inside)
+    if attempts == 0:
+        return [(names[0], 0)]
+    budgets = {name: attempts or settings.budget(name) for name in names}
+    if len(names) > 1:
+        budgets["lm"] = attempts or FIRST_ATTEMPTS
+    if not _has_spare_joints(robot):
+        budgets["analytic"] = 1
+    return [(name, budgets[name]) for name in names]
+
+
+def _prove(problem: Problem, targets: Targets, found: Found) -> None:
+    """Find out which targets are out of reach, of those that are not reached."""
+    rows = np.flatnonzero(found.counts[:, REACHED] == 0)
+    if len(rows):
+        excess = reach_excess_m(problem.robot, targets.p_world_tool[rows], problem.lower, problem.upper)
+        found.excess_m[rows] = np.where(excess > problem.settings.position_tolerance_m, excess, 0.0)
+
+
+class _Lanes:
+    """One engine on all rows, piece by piece; it may go on where it stopped."""
+
+    def __init__(self, engine: Engine, found: Found, threads: int) -> None:
+        self._engine, self._found, self._threads = engine, found, threads
+        engine.prepare()
+
+    def run(self, first: int, last: Ints) -> None:
+        """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet."""
+        stop, brake, reached = threading.Event(), get_brake(), self._found.counts[:, REACHED]
+        open_rows = (reached == 0) & (self._found.excess_m == 0.0) & (last > first)
+        last = np.where(open_rows, last, first)
+        pieces = _cut(open_rows, self._engine.rows_per_call)
+
+        def run(rows: range) -> None:
+            inside = slice(rows.start, rows.stop)
+            started = time.perf_counter()
+            for begin in range(first, int(last[inside].max()), self._engine.attempts_per_call):
+                if stop.is_set() or reached[inside].all():
+                    break
+                brake()
+                self._engine.call(rows, begin, last)
+            self._found.seconds[inside] += (time.perf_counter() - started) / len(rows)
+
+        _on_threads(run, pieces, self._threads, stop)
+
+
+def _cut(open_rows: NDArray[np.bool_], size: int) -> list[range]:
+    """All rows in pieces of `size`, without pieces that hold no open row."""
+    firsts = np.unique(np.flatnonzero(open_rows) // size) * size
+    return [range(first, min(first + size, len(open_rows))) for first in firsts.tolist()]
 
 
 def usable_cores() -> int:
@@ -117,7 +157,7 @@ def usable_cores() -> int:
 
 def _on_threads(run: Callable[[range], None], pieces: Sequence[range], threads: int, stop: threading.Event) -> None:
     """Call `run` for every piece; the kernels let go of Python's lock, so plain threads use all cores."""
-    if len(pieces) == 1 or threads == 1:
+    if len(pieces) <= 1 or threads == 1:
         for piece in pieces:
             run(piece)
         return

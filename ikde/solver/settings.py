@@ -1,30 +1,43 @@
 """How to search: plain numbers with their defaults, checked once."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
 
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
 from ikde.kernels.mutation import LARGEST_DRAW, REPAIRS, STRATEGIES
 
-Method = Literal["auto", "de"]
+Method = Literal["auto", "lm", "analytic", "memetic", "de"]
 Collision = Literal["reject", "feasibility"]
 Update = Literal["generation", "in_place"]
 
-CHOICES = {"collision": get_args(Collision), "update": get_args(Update), "strategy": STRATEGIES, "bounds": REPAIRS}
+CHOICES = {
+    "method": get_args(Method),
+    "collision": get_args(Collision),
+    "update": get_args(Update),
+    "strategy": STRATEGIES,
+    "bounds": REPAIRS,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolveSettings:
-    """Tolerances, and the knobs of the differential evolution (DE).
+    """Method, tolerances, attempts, and the knobs of the differential evolution (DE).
 
     Raises:
         InputError: for a tolerance of 0, a population below 6, an unknown strategy, and so on.
     """
 
+    method: Method = "auto"
+    """The engine: `lm`, damped least squares from collision-free seeds; `analytic`, the closed form of a UR-type arm;
+    `memetic`, a DE that adapts itself and is polished; `de`, that of the papers. `auto` takes the fastest that fits and
+    falls back on `memetic`; if a knob of the DE is set, it takes `de`."""
     position_tolerance_m: float = 1e-5
     orientation_tolerance_rad: float = 1e-4
+    restarts: int | None = None
+    """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`)."""
     strategy: str = "rand/1"
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
     population: int = 50
@@ -37,8 +50,6 @@ class SolveSettings:
     """CR, the crossover rate, [0, 1] [Qiao2022]."""
     generations: int = 1000
     """G, generations of one attempt [Qiao2022]."""
-    restarts: int = 40
-    """Attempts, each from a new population, before the budget is spent."""
     bounds: str = "redraw"
     """What happens to a coordinate out of its range: drawn again uniformly, clipped, its parent's value, the midpoint
     between parent and bound, or none (then a solution out of range counts as not reached). The paper does not say."""
@@ -60,18 +71,36 @@ class SolveSettings:
         for name, least in (("population", LARGEST_DRAW + 1), ("generations", 1), ("restarts", 1)):
             value = getattr(self, name)
             whole = isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least
-            _require(bool(whole), name, f"a whole number of at least {least}", value)
+            unsaid = name == "restarts" and value is None
+            _require(bool(whole) or unsaid, name, f"a whole number of at least {least}", value)
         for name, choices in CHOICES.items():
             _require(getattr(self, name) in choices, name, f"one of {', '.join(choices)}", getattr(self, name))
 
-    @classmethod
-    def for_method(cls, method: str) -> "SolveSettings":
-        """Defaults of a method: `auto` is ikde's choice, `de` the paper's search at the paper's accuracy (5e-5 m)."""
-        if method == "auto":
-            return cls()
+    @staticmethod
+    @lru_cache
+    def for_method(method: str) -> "SolveSettings":
+        """Defaults of a method: 1e-5 m and 1e-4 rad; of `de` the paper's search at the paper's accuracy (5e-5 m)."""
+        if method not in get_args(Method):
+            known = ", ".join(get_args(Method))
+            raise InputError(
+                f"no method is called {method!r}{nearest(method, get_args(Method))}; it is one of {known}", ("method",)
+            )
         if method == "de":
-            return cls(position_tolerance_m=5e-5, collision="reject", update="generation", restarts=1000)
-        raise InputError(f"no method is called {method!r}; expected one of {', '.join(get_args(Method))}", ("method",))
+            return SolveSettings(
+                method="de", position_tolerance_m=5e-5, collision="reject", update="generation", restarts=1000
+            )
+        return SolveSettings(method=method)  # type: ignore[arg-type]
+
+    @property
+    def evolves(self) -> bool:
+        """True if the DE is asked for: by name, or by one of its knobs."""
+        return self.method == "de" or (
+            self.method == "auto" and any(getattr(self, k) != getattr(PLAIN, k) for k in KNOBS)
+        )
+
+    def budget(self, engine: str) -> int:
+        """Attempts of one engine before it gives up."""
+        return self.restarts or RESTARTS[engine]
 
     def with_changes(self, **changes: object) -> "SolveSettings":
         """A copy with some values changed; None leaves a value as it is."""
@@ -85,3 +114,23 @@ def _is_number(value: object) -> bool:
 def _require(condition: bool, name: str, expected: str, value: object) -> None:
     if not condition:
         raise InputError(f"expected {expected}, got {value!r}", ("settings", name))
+
+
+def check_seed(seed: int) -> int:
+    """Return the seed; raises `InputError` unless it is a whole number, 0 <= seed < 2^64."""
+    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or not 0 <= seed < 2**64:
+        raise InputError(f"expected a whole number from 0 to 2^64 - 1, got {seed!r}", ("seed",))
+    return int(seed)
+
+
+def choose_settings(settings: SolveSettings | None, method: str) -> SolveSettings:
+    """The settings, or the method's own; a wrong name is an error either way."""
+    own = SolveSettings.for_method(method)
+    if settings is None:
+        return own
+    return settings if method == "auto" else settings.with_changes(method=method)
+
+
+RESTARTS = {"de": 40, "lm": 1000, "analytic": 1000, "memetic": 20}
+KNOBS = ("strategy", "population", "start_share", "weight", "crossover", "generations", "bounds", "update", "collision")
+PLAIN = SolveSettings()

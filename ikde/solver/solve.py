@@ -1,20 +1,17 @@
-"""`solve`, `solve_many`, `solve_distinct`: search, grade, explain."""
+"""`solve` and `solve_many`: search, grade, explain."""
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
-
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
+from ikde.solver.grade import Verify
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, make_problem
+from ikde.solver.quick import find_quick
 from ikde.solver.result import SolveResult
-from ikde.solver.rows import solve_rows
-from ikde.solver.settings import SolveSettings
-
-TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
+from ikde.solver.rows import Rows, solve_rows
+from ikde.solver.settings import SolveSettings, check_seed, choose_settings
 
 
 def solve(
@@ -51,49 +48,21 @@ def solve(
         InputError: for what does not fit the robot.
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
-    problem = make_problem(robot, _choose(settings, method), detector=detector, near=near, freeze=freeze)
-    options = {"seed": check_seed(seed), "first_stream": stream, "announce_compile": announce_compile}
-    return solve_rows(problem, [target], strict=True, **options).row(0)
-
-
-def solve_distinct(
-    robot: Robot,
-    target: Target,
-    count: int,
-    settings: SolveSettings | None = None,
-    *,
-    seed: int = 0,
-    method: str = "auto",
-    detector: str | Detector | None = None,
-    near: JointValues | None = None,
-    freeze: Freeze | None = None,
-    announce_compile: Callable[[], None] | None = None,
-) -> list[SolveResult]:
-    """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
-
-    The first is that of `solve`. The list is shorter if a search fails, or after `count` times the settings' restarts;
-    unreached, it holds one result with the reason. Arguments as for `solve`.
-    """
-    if count < 1:
-        raise InputError(f"expected a whole number of at least 1, got {count}", ("count",))
-    chosen = _choose(settings, method)
+    check_seed(seed)
+    chosen = choose_settings(settings, method)
+    if near is None and freeze is None:
+        quick = find_quick(robot, chosen, robot.detector(detector), target.kind)
+        result = quick.solve(target, seed, stream, announce_compile) if quick else None
+        if result is not None:
+            return result
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
-    solutions: list[SolveResult] = []
-    attempt = 0
-    while len(solutions) < count and attempt < count * chosen.restarts:
-        options = {"seed": check_seed(seed), "first_attempt": attempt, "announce_compile": announce_compile}
-        result = solve_rows(problem, [target], strict=True, probe=not solutions, **options).row(0)
-        attempt += result.attempts
-        if not result.reached:
-            return solutions or [result]
-        if all(are_distinct(robot, result.q, other.q) for other in solutions):
-            solutions.append(result)
-    return solutions
+    options = {"seed": seed, "first_stream": stream, "announce_compile": announce_compile}
+    return solve_rows(problem, [target], strict=True, **options).row(0)
 
 
 def solve_many(
     robot: Robot,
-    targets: Sequence[Target],
+    targets: Targets | Sequence[Target],
     settings: SolveSettings | None = None,
     *,
     seed: int = 0,
@@ -103,47 +72,29 @@ def solve_many(
     freeze: Freeze | None = None,
     threads: int | None = None,
     explain_failures: bool = True,
+    verify: Verify = "sample",
     announce_compile: Callable[[], None] | None = None,
-) -> list[SolveResult]:
+) -> Rows:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
-    A disagreement between kernels and `verify` does not raise: that result is not reached and not `verified`.
-    Without `explain_failures` an unreached target is told from its counts alone, which costs nothing. Other arguments
+    `verify` says whose answers plain numpy grades as well: `"all"`, `"sample"` (one in 64, and every unreached one that
+    is explained), or `"none"`. A disagreement does not raise: that result is not reached and not `verified`. Without
+    `explain_failures` an unreached target is told from its counts alone, which costs nothing. Other arguments
     as for `solve`.
+
+    Returns:
+        A sequence of `SolveResult` whose columns are arrays: `q` [T, N], `reached` [T], `clearance_m` [T] and so on.
     """
     if threads is not None and threads < 1:
         raise InputError(f"expected a whole number of at least 1, got {threads}", ("threads",))
-    chosen = _choose(settings, method)
+    chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
-    if not targets:
-        return []
-    rows = solve_rows(
+    return solve_rows(
         problem,
         targets,
         seed=check_seed(seed),
         threads=threads,
         probe=explain_failures,
+        verify=verify,
         announce_compile=announce_compile,
     )
-    return [rows.row(index) for index in range(len(rows))]
-
-
-def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
-    """True if a revolute joint differs by more than 0.1 rad (around the circle) or the slides by more than 50 mm."""
-    difference = np.abs(q - other)
-    turns = difference[~robot.slides] % (2.0 * np.pi)
-    turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
-    return bool(np.any(turned) or np.linalg.norm(difference[robot.slides]) > SLIDE_APART_M)
-
-
-def check_seed(seed: int) -> int:
-    """Return the seed; raises `InputError` unless it is a whole number, 0 <= seed < 2^64."""
-    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or not 0 <= seed < 2**64:
-        raise InputError(f"expected a whole number from 0 to 2^64 - 1, got {seed!r}", ("seed",))
-    return int(seed)
-
-
-def _choose(settings: SolveSettings | None, method: str) -> SolveSettings:
-    """The settings, or the method's own; a wrong name is an error either way."""
-    own = SolveSettings.for_method(method)
-    return own if settings is None else settings

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
 from ikde.model.rotation import angle_between, rotation_angle
-from ikde.model.target import Target
+from ikde.model.target import AXIS, POSE, Target, Targets
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.settings import SolveSettings
@@ -102,12 +102,16 @@ def verify(
 
 
 def verify_many(
-    robot: Robot, targets: Sequence[Target], Q: Floats, settings: SolveSettings, detector: Detector | None
+    robot: Robot,
+    targets: Targets | Sequence[Target],
+    Q: Floats,
+    settings: SolveSettings,
+    detector: Detector | None,
 ) -> Verdicts:
     """Grade configurations `Q` [T, N] in the robot's own convention, a target each; as `verify`, in bulk."""
     T_world_tool = compute_frames(robot, Q)[robot.tool]
-    asked = np.array([target.p_world_tool for target in targets])
-    position = np.linalg.norm(T_world_tool[:, :3, 3] - asked, axis=1)
+    targets = Targets.of(targets)
+    position = np.linalg.norm(T_world_tool[:, :3, 3] - targets.p_world_tool, axis=1)
     orientation = compute_orientation_errors(targets, T_world_tool[:, :3, :3])
     gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q) if detector else np.empty((len(Q), 0))
     free = ~np.any(gaps <= (detector.safe_distance_m if detector else 0.0), axis=1)
@@ -125,10 +129,10 @@ def verify_many(
     )
 
 
-def compute_orientation_errors(targets: Sequence[Target], R_world_tool: Floats) -> Floats:
+def compute_orientation_errors(targets: Targets | Sequence[Target], R_world_tool: Floats) -> Floats:
     """Angles [T] in rad between the tool's orientations [T, 3, 3] and what each target asks of them."""
-    kinds = np.array([target.kind for target in targets])
-    asked = np.array([target.R_world_tool for target in targets])
+    targets = Targets.of(targets)
+    asked = targets.R_world_tool
     whole = rotation_angle(np.swapaxes(asked, 1, 2) @ R_world_tool)
     axes = angle_between(asked[:, :, 2], R_world_tool[:, :, 2])
-    return np.select([kinds == "pose", kinds == "axis"], [whole, axes], 0.0)
+    return np.select([targets.kind == POSE, targets.kind == AXIS], [whole, axes], 0.0)

@@ -113,4 +113,4 @@ def test_the_description_holds_what_the_answers_hang_on(qiao):
     assert (plain["near"]["q1"], plain["near"]["q_z"]) == (1.0, 0.5)
     assert (plain["ranges"]["d_x"], plain["ranges"]["d_y"]) == ([-1.0, 1.0], [-5.0, 5.0])
     assert plain["detector"]["spheres"] == "improved"
-    assert plain["settings"]["restarts"] == 40
+    assert (plain["method"], plain["settings"]["method"], plain["settings"]["population"]) == ("auto", "auto", 50)

@@ -1,8 +1,10 @@
 """Files that are whole or not there."""
 
+import os
+
 import pytest
 
-from ikde.batch.atomic import remove_temporaries, temporary_path, write_atomically
+from ikde.batch.atomic import remove_temporaries, temporary_path, write_atomically, write_together
 
 
 def test_a_file_is_written_and_written_over(tmp_path):
@@ -33,3 +35,48 @@ def test_leftovers_are_removed_and_nothing_else(tmp_path):
         path.touch()
     remove_temporaries(tmp_path)
     assert sorted(tmp_path.iterdir()) == sorted(keep)
+
+
+def test_files_get_their_names_together_and_in_order(tmp_path, monkeypatch):
+    paths, named = [tmp_path / name for name in "cab"], []
+    honest = type(tmp_path).replace
+
+    def watch(path, target):
+        named.append(target)
+        assert all(temporary_path(later).exists() for later in paths[len(named) - 1 :])
+        return honest(path, target)
+
+    monkeypatch.setattr(type(tmp_path), "replace", watch)
+    write_together({path: path.name.encode() * 100_000 for path in paths})
+    assert named == paths
+    assert [path.read_bytes() for path in paths] == [name * 100_000 for name in (b"c", b"a", b"b")]
+    assert sorted(tmp_path.iterdir()) == sorted(paths)
+
+
+@pytest.mark.parametrize("call", ["os.write", "os.fsync", "os.open"])
+@pytest.mark.parametrize("guilty", [0, 1])
+def test_the_file_that_fails_is_named_and_none_is_new(tmp_path, monkeypatch, call, guilty):
+    paths, honest, calls = [tmp_path / name for name in "ab"], getattr(os, call.split(".")[1]), []
+    paths[0].write_bytes(b"old")
+
+    def fail(first, *rest):
+        calls.append(first)
+        if call == "os.fsync" and os.fstat(first).st_size == 3 + guilty:
+            raise OSError(28, "No space left on device")
+        if call != "os.fsync" and len(calls) == guilty + 1:
+            raise OSError(28, "No space left on device")
+        return honest(first, *rest)
+
+    monkeypatch.setattr(call, fail)
+    with pytest.raises(OSError, match="No space left") as caught:
+        write_together({paths[0]: b"new", paths[1]: b"newer"[:4]})
+    monkeypatch.undo()
+    assert caught.value.filename == str(paths[guilty])
+    assert [(p, p.read_bytes()) for p in tmp_path.iterdir()] == [(paths[0], b"old")]
+
+
+def test_a_disk_that_takes_a_little_at_a_time_gets_it_all(tmp_path, monkeypatch):
+    honest = os.write
+    monkeypatch.setattr("os.write", lambda descriptor, data: honest(descriptor, data[:7]))
+    write_atomically(tmp_path / "a", b"0123456789" * 10)
+    assert (tmp_path / "a").read_bytes() == b"0123456789" * 10

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.batch.columns import GROUPS, STOP_REASONS, make_solutions, make_timing
+from ikde.batch.columns import GROUPS, WORDS, make_solutions, make_timing
 from ikde.model.rotation import rotation_from_quat_wxyz
 from ikde.solver.rows import solve_rows
 from tests.batch.small import FAR, ROBOT, make_arm
@@ -39,7 +39,7 @@ def test_the_verdict_is_that_of_the_rows(rows):
     assert table["reached"] == [True, True, True, False]
     assert table["verified"] == [True] * 4
     assert table["stop_reason"] == ["reached"] * 3 + ["out_of_reach"]
-    assert set(table["stop_reason"]) <= set(STOP_REASONS)
+    assert set(table["stop_reason"]) <= set(WORDS)
 
 
 def test_figures_are_those_of_the_rows_to_the_last_bit(rows):

@@ -6,8 +6,9 @@ import sys
 
 import pytest
 
+from ikde.batch import folder as module
 from ikde.batch.atomic import temporary_path
-from ikde.batch.folder import LOCK, claim_folder
+from ikde.batch.folder import LOCK, claim_folder, keep_names
 from ikde.batch.manifest import MANIFEST, read_manifest
 from ikde.errors import FileError
 from tests.batch.small import make_batch
@@ -134,3 +135,38 @@ def test_a_lock_dies_with_its_holder(tmp_path):
             claim(tmp_path)
         holder.kill()
     claim(tmp_path)
+
+
+def count_syncs(monkeypatch):
+    calls = []
+    monkeypatch.setattr(module, "sync_folder", calls.append)
+    return calls
+
+
+@pytest.mark.parametrize(("seconds", "syncs"), [(0.0, 4), (1e9, 1)])
+def test_names_are_synced_now_and_then_and_at_the_end(tmp_path, monkeypatch, seconds, syncs):
+    monkeypatch.setattr(module, "SYNC_SECONDS", seconds)
+    calls = count_syncs(monkeypatch)
+    with keep_names(tmp_path) as keep:
+        for _ in range(3):
+            keep()
+    assert calls == [tmp_path / "timing", tmp_path / "solutions"] * syncs
+
+
+def test_names_are_synced_even_if_a_run_is_stopped(tmp_path, monkeypatch):
+    calls = count_syncs(monkeypatch)
+    with pytest.raises(KeyboardInterrupt), keep_names(tmp_path):
+        raise KeyboardInterrupt
+    assert len(calls) == 2
+
+
+def keep_nothing(folder):
+    with keep_names(folder):
+        pass
+
+
+def test_names_that_cannot_be_synced_are_one_line(tmp_path):
+    with pytest.raises(FileError, match=r"timing: cannot be written: No such file.*run the same command"):
+        keep_nothing(tmp_path)
+    with pytest.raises(ZeroDivisionError), keep_names(tmp_path):  # what went wrong first is what is told
+        raise ZeroDivisionError

@@ -94,3 +94,19 @@ def test_what_is_wrong_is_named(qiao, keys, expected):
     with pytest.raises(InputError) as caught:
         make(qiao, **keys)
     assert str(caught.value).startswith(expected)
+
+
+@pytest.mark.parametrize(
+    ("count", "repeats", "asked", "chunk"),
+    [
+        (1, 1, None, 1000),
+        (100_000, 1, None, 1000),
+        (100_000, 3, None, 3000),
+        (10**6, 1, None, 10_000),
+        (10**6, 50, None, 10_000),
+        (10**6, 1, 77, 77),
+    ],
+)
+def test_a_part_is_a_hundredth_of_an_arm_within_reason(qiao, count, repeats, asked, chunk):
+    box = {"box": {"from": [0, 0, 0], "to": [1, 1, 1], "count": count}}
+    assert make(qiao, targets=box, repeats=repeats, chunk=asked).chunk == chunk

@@ -84,7 +84,7 @@ def test_a_part_with_a_flipped_bit_is_done_again(batch, whole, tmp_path, share):
 
 def test_a_finished_run_has_nothing_to_do(batch, tmp_path, monkeypatch):
     first = ikde.run_batch(batch, tmp_path)
-    monkeypatch.setattr("ikde.batch.run.solve_task", None)  # would be a bug if it were called
+    monkeypatch.setattr("ikde.batch.local.solve_task", None)  # would be a bug if it were called
     assert ikde.run_batch(batch, tmp_path) == first
 
 

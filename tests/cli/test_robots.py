@@ -93,3 +93,39 @@ def test_a_file_that_is_no_robot_is_refused(refuse, tmp_path, text):
 )
 def test_what_robots_refuses(refuse, command, words):
     assert words in refuse("robots", *command.split())
+
+
+@pytest.mark.parametrize(("option", "function"), [("--urdf", ikde.format_urdf), ("--mjcf", ikde.format_mjcf)])
+def test_a_robot_is_exported(cli, tmp_path, any_robot, option, function):
+    printed = cli("robots", "export", any_robot.name, option)
+    assert (printed.code, printed.err) == (0, "")
+    assert printed.out == function(any_robot)
+    path = tmp_path / "robot.xml"
+    written = cli("robots", "export", any_robot.name, option, "--detector", "none", "--out", path)
+    assert (written.code, written.out, written.err) == (0, "", "")
+    assert path.read_text(encoding="utf-8") == function(any_robot, detector="none")
+
+
+def test_a_robot_file_is_exported(cli, tmp_path):
+    path = tmp_path / "two.yaml"
+    path.write_text(GOOD)
+    assert cli("robots", "export", path, "--urdf").out == ikde.format_urdf(ikde.load_robot(path))
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("ur5", "expected one of --urdf and --mjcf, got none"),
+        ("ur5 --urdf --mjcf", "expected one of --urdf and --mjcf, got both"),
+        ("ur --urdf", "did you mean 'ur5'"),
+        ("nope.yaml --urdf", "no such file"),
+        ("--urdf", "Missing argument"),
+        ("ur5 --urdf --detector coarse", "no detector 'coarse'"),
+        ("ur5 --urdf --out .", "cannot be written"),
+        ("ur5 --mjcf --out missing/ur5.xml", "its folder does not exist"),
+        ("ur5 --urdf --out /dev/null", "no ordinary file"),
+        ("ur5 --urdf --out", "requires an argument"),
+    ],
+)
+def test_what_export_refuses(refuse, command, words):
+    assert words in refuse("robots", "export", *command.split())

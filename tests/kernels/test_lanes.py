@@ -3,17 +3,8 @@
 import numpy as np
 import pytest
 
-from ikde.kernels.lanes import (
-    ATTEMPTS,
-    COLLIDING,
-    COUNTS,
-    EVALUATIONS,
-    OUTSIDE,
-    REACHED,
-    is_inside,
-    set_box,
-    solve_lane,
-)
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, OUTSIDE, REACHED
+from ikde.kernels.lanes import is_inside, set_box, solve_lane
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import make_problem, pack_search

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from ikde.kernels.trig import angle_from_sides, sin_cos
+from ikde.kernels.trig import angle_from_sides, full_angle, sin_cos
 
 few = settings(derandomize=True, deadline=None, max_examples=300)
 needs_long_double = pytest.mark.skipif(np.finfo(np.longdouble).nmant < 63, reason="needs extended precision")
@@ -122,3 +122,36 @@ def test_the_angle_keeps_its_digits_near_zero_and_is_within_4e_16_near_pi(sign, 
     assert error.max() < 4e-16
     if sign > 0:
         assert (error / opposite).max() < 3e-16
+
+
+@numba.njit
+def full_angles_of_all(opposite, adjacent):
+    out = np.empty(opposite.size)
+    for k in range(out.size):
+        out[k] = full_angle(opposite[k], adjacent[k])
+    return out
+
+
+@pytest.mark.parametrize(("opposite", "adjacent"), [*SIDES, *((-opposite, adjacent) for opposite, adjacent in SIDES)])
+def test_the_full_angle_of_edge_cases_is_atan2s(opposite, adjacent):
+    assert full_angle(opposite, adjacent) == pytest.approx(math.atan2(opposite, adjacent), rel=3e-16, abs=3e-16)
+
+
+def test_the_full_angle_knows_its_side_of_zero():
+    assert full_angle(0.0, 0.0) == 0.0
+    assert full_angle(0.0, -1.0) == math.pi
+    assert full_angle(-0.0, -1.0) == -math.pi
+    assert full_angle(-2.0, 0.0) == -math.pi / 2
+
+
+@pytest.mark.parametrize("sides", [(math.nan, 1.0), (1.0, math.nan), (math.nan, math.nan)])
+def test_the_full_angle_of_no_sides_is_no_number(sides):
+    assert math.isnan(full_angle(*sides))
+
+
+@needs_long_double
+def test_the_full_angle_is_within_5e_16(rng):
+    angle, length = rng.uniform(-math.pi, math.pi, 200_000), 10.0 ** rng.uniform(-3, 3, 200_000)
+    opposite, adjacent = length * np.sin(angle), length * np.cos(angle)
+    exact = np.arctan2(opposite.astype(np.longdouble), adjacent.astype(np.longdouble))
+    assert np.abs(full_angles_of_all(opposite, adjacent) - exact).max() < 5e-16

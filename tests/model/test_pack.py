@@ -6,7 +6,7 @@ import pytest
 import ikde
 from ikde.kernels.arrays import BODY, FIRST, LAST, MOVES_TOOL, PARENT
 from ikde.model.pack import frame_names, pack_detector, pack_robot, pack_targets
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
 from tests.random_robots import random_robot
 
 ROBOTS = [ikde.load_robot("qiao2021"), *map(random_robot, range(6))]
@@ -113,3 +113,10 @@ def test_targets_keep_their_kind_and_pose():
     np.testing.assert_array_equal(packed.T_world_tool[:, :, 3], [[1, 2, 3], [4, 5, 6], [7, 8, 9]])
     np.testing.assert_array_equal(packed.T_world_tool[0, :, :3], R)
     np.testing.assert_array_equal(packed.T_world_tool[2, :, 2], [1, 0, 0])
+
+
+def test_targets_are_packed_already():
+    targets = Targets(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]))
+    packed = pack_targets(targets)
+    assert packed.kind is targets.kind
+    assert packed.T_world_tool is targets.T_world_tool

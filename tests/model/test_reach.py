@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ikde.model.reach import reach_excess_m
+from ikde.model.reach import arm_length_m, reach_excess_m
 from tests import reference
 from tests.random_robots import make_frame, make_robot, random_robot
 
@@ -195,3 +195,57 @@ def test_many_positions_are_one_after_the_other(any_robot, rng):
     assert reach_excess_m(any_robot, positions, any_robot.lower, any_robot.upper) == pytest.approx(
         one_by_one, abs=1e-12
     )
+
+
+# ---- the length of an arm
+
+
+@few
+@given(seed=st.integers(0, 10_000))
+def test_no_tool_gets_farther_from_the_first_turn_than_the_arm_is_long(seed):
+    """With all slides at zero, wherever what comes before the turn stands."""
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    turns = [frame for frame in robot.frames if frame.joint is not None and not robot.slides[index_of(robot, frame)]]
+    carrying = [frame for frame in turns if carries_tool(robot, frame)]
+    q = np.where(robot.slides, 0.0, rng.uniform(-np.pi, np.pi, len(robot.joints)))
+    frames = reference.compute_frames(robot, q)
+    p_tool = frames[robot.tool][:3, 3]
+    if carrying:
+        farthest = max(np.linalg.norm(p_tool - frames[frame.name][:3, 3]) for frame in carrying)
+        assert farthest <= arm_length_m(robot) + ROUNDING
+    assert np.linalg.norm(p_tool - lead_point(robot, frames)) <= arm_length_m(robot) + ROUNDING
+
+
+def index_of(robot, frame):
+    return robot.joint_names.index(frame.joint)
+
+
+def carries_tool(robot, frame):
+    parents = {each.name: each.parent for each in robot.frames}
+    name = robot.tool
+    while name not in ("world", frame.name):
+        name = parents[name]
+    return name == frame.name
+
+
+def lead_point(robot, frames):
+    """Where the arm begins: its first turn, or the tool itself if nothing turns."""
+    parents, name, first = {each.name: each for each in robot.frames}, robot.tool, robot.tool
+    while name != "world":
+        frame = parents[name]
+        if frame.joint is not None and not robot.slides[index_of(robot, frame)]:
+            first = name
+        name = frame.parent
+    return frames[first][:3, 3]
+
+
+def test_a_stretched_arm_is_as_long_as_its_links():
+    frames = [
+        make_frame("rail", "world", (3.0, 0, 0), joint="rail", axis=(1, 0, 0)),
+        make_frame("shoulder", "rail", (5.0, 0, 0), joint="shoulder", axis=(0, 0, 1)),
+        make_frame("elbow", "shoulder", (0, 0.4, 0.3), joint="elbow", axis=(0, 0, 1)),
+        make_frame("slide", "elbow", (0.2, 0, 0), joint="slide", axis=(1, 0, 0)),
+        make_frame("tool", "slide", (0, 0, 0.1)),
+    ]
+    kinds = {"rail": "prismatic", "shoulder": "revolute", "elbow": "revolute", "slide": "prismatic"}
+    assert arm_length_m(make_robot(kinds, frames)) == pytest.approx(0.5 + 0.2 + 0.1)

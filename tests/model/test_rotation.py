@@ -9,7 +9,9 @@ from scipy.spatial.transform import Rotation
 from ikde.errors import InputError
 from ikde.model.rotation import (
     angle_between,
+    are_rotations,
     check_rotation,
+    length,
     quat_wxyz_from_rotation,
     rotation_about,
     rotation_angle,
@@ -178,3 +180,20 @@ def test_a_quaternion_comes_back_from_its_rotation(axis, angle):
     assert abs(found[0] @ [w, x, y, z]) == pytest.approx(1.0, abs=1e-14)
     np.testing.assert_allclose(rotation_from_quat_wxyz(found[0]), rotation.as_matrix(), rtol=0, atol=1e-14)
     assert found[1].tolist() == [1.0, 0.0, 0.0, 0.0]
+
+
+def test_a_rotation_does_not_hang_on_its_neighbours(rng):
+    rpy, quats, axes = rng.uniform(-3, 3, (50, 3)), rng.normal(size=(50, 4)), rng.normal(size=(50, 3))
+    axes /= length(axes)[:, None]
+    for make, values in (
+        (rotation_from_rpy, rpy),
+        (rotation_from_quat_wxyz, quats),
+        (rotation_with_z, axes),
+        (length, axes),
+    ):
+        assert make(values).tobytes() == np.array([make(value) for value in values]).tobytes()
+
+
+def test_rotations_are_checked_row_by_row():
+    R = np.array([np.eye(3), 2.0 * np.eye(3), np.diag([1.0, 1.0, -1.0]), np.diag([1.0, -1.0, -1.0])])
+    assert are_rotations(R).tolist() == [True, False, False, True]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.lanes import ATTEMPTS, COLLIDING, COUNTS, REACHED
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.reach import reach_excess_m
 from ikde.solver.search import Found
 
@@ -144,7 +144,13 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monk
         counts = np.zeros((1, COUNTS), dtype=np.int64)
         counts[0, [REACHED, ATTEMPTS, COLLIDING]] = 1, 2, 1
         nothing, pair_counts = np.zeros(1), np.ones((1, 35), dtype=np.int64)
-        return Found(q=qiao.home[None], counts=counts, pair_counts=pair_counts, excess_m=nothing, seconds=nothing)
+        some = {
+            "score": np.zeros((1, 2)),
+            "excess_m": nothing,
+            "seconds": nothing,
+            "engine": np.zeros(1, dtype=np.int64),
+        }
+        return Found(q=qiao.home[None], counts=counts, pair_counts=pair_counts, **some)
 
     monkeypatch.setattr("ikde.solver.explain.search", probe)
     result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, generations=3))

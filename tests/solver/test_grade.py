@@ -7,7 +7,7 @@ import pytest
 
 import ikde
 from ikde.errors import VerificationError
-from ikde.kernels.lanes import COUNTS, REACHED
+from ikde.kernels.arrays import COUNTS, REACHED
 from ikde.solver import grade as module
 from ikde.solver.figures import AGREEMENT
 from ikde.solver.search import Found
@@ -21,9 +21,10 @@ def lie_about(monkeypatch, figure, by, only=None):
     """Let the kernels' figures be off; `only`: for this target alone."""
     honest = module.compute_figures
 
-    def lying(robot, detector, targets, Q):
-        figures = honest(robot, detector, targets, Q)
-        guilty = np.array([only is None or target is only for target in targets])
+    def lying(robot, detector, targets, Q, settings):
+        figures = honest(robot, detector, targets, Q, settings)
+        points = [tuple(target.p_world_tool) for target in targets]
+        guilty = np.array([only is None or point == tuple(only.p_world_tool) for point in points])
         return replace(figures, **{figure: getattr(figures, figure) + np.where(guilty, by, 0.0)})
 
     monkeypatch.setattr(module, "compute_figures", lying)
@@ -34,17 +35,17 @@ def lie_about(monkeypatch, figure, by, only=None):
 def test_a_lie_about_any_figure_raises(qiao, monkeypatch, figure, by):
     lie_about(monkeypatch, figure, by)
     with pytest.raises(VerificationError, match="kernels and verify disagree"):
-        ikde.solve(qiao, TARGETS[0], QUICK)
+        ikde.solve_distinct(qiao, TARGETS[0], 1, QUICK)
 
 
 def test_a_difference_below_the_agreement_is_no_lie(qiao, monkeypatch):
     lie_about(monkeypatch, "position_error_m", 0.5 * AGREEMENT)
-    assert ikde.solve(qiao, TARGETS[0], QUICK).verified
+    assert ikde.solve_distinct(qiao, TARGETS[0], 1, QUICK)[0].verified
 
 
 def test_in_bulk_a_lie_is_recorded_and_the_run_goes_on(qiao, monkeypatch):
     lie_about(monkeypatch, "position_error_m", 1e-6, only=TARGETS[1])
-    results = ikde.solve_many(qiao, TARGETS, QUICK)
+    results = ikde.solve_many(qiao, TARGETS, QUICK, verify="all")
     assert [result.verified for result in results] == [True, False, True]
     assert [result.reached for result in results] == [True, False, True]
     assert results[1].stop_reason != "reached"
@@ -63,7 +64,10 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
         q = np.tile(qiao.home, (len(targets), 1))
         nothing = np.zeros(len(targets))
         pair_counts = np.zeros((len(targets), 35), dtype=np.int64)
-        return Found(q=q, counts=counts, pair_counts=pair_counts, excess_m=nothing, seconds=nothing)
+        engine = np.zeros(len(targets), dtype=np.int64)
+        score = np.zeros((len(targets), 2))
+        some = {"score": score, "excess_m": nothing, "seconds": nothing, "engine": engine}
+        return Found(q=q, counts=counts, pair_counts=pair_counts, **some)
 
     monkeypatch.setattr("ikde.solver.rows.search", boast)
     result = ikde.solve(qiao, TARGETS[0], QUICK.with_changes(restarts=1, generations=3))

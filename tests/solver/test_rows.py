@@ -4,10 +4,15 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.errors import InputError
 from ikde.solver.problem import make_problem
+from ikde.solver.result import STOP_REASONS
 from ikde.solver.rows import solve_rows
+from ikde.solver.search import ENGINES
+from ikde.solver.verify import verify_many
 
 QUICK = ikde.SolveSettings(population=20, generations=200, restarts=3)
+SWIFT = ikde.SolveSettings(population=6, generations=1, restarts=1)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(6)]
 
 
@@ -28,12 +33,92 @@ def test_a_row_is_the_solve_of_its_stream(qiao, problem):
 
 def test_columns_and_rows_tell_the_same(problem):
     rows = solve_rows(problem, TARGETS, seed=7)
-    results = [rows.row(k) for k in range(len(rows))]
-    assert rows.reached.tolist() == [result.reached for result in results]
-    assert rows.attempts.tolist() == [result.attempts for result in results]
-    assert rows.rejected.tolist() == [result.rejected for result in results]
-    assert rows.figures.clearance_m == pytest.approx([result.clearance_m for result in results], abs=1e-11)
+    results, pairs = list(rows), problem.robot.pairs(problem.detector)
+    for name in ("reached", "verified", "attempts", "evaluations", "rejected"):
+        assert getattr(rows, name).tolist() == [getattr(result, name) for result in results]
+    for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
+        assert getattr(rows, name).tolist() == [getattr(result, name) for result in results]
+        checked = [getattr(result.verification, name) for result in results]
+        assert getattr(rows, name) == pytest.approx(checked, abs=1e-11)
+    assert [STOP_REASONS[k] for k in rows.stop_reasons] == [result.stop_reason for result in results]
+    assert [ENGINES[k] for k in rows.engines] == [result.method for result in results]
+    assert [pairs[k] for k in rows.closest_pair] == [result.closest_pair for result in results]
     assert np.all(rows.found.seconds > 0.0)
+
+
+def test_rows_are_a_sequence(problem):
+    rows = solve_rows(problem, TARGETS, seed=7)
+    assert len(rows) == len(list(rows)) == 6
+    assert rows[-1].q.tobytes() == rows[5].q.tobytes() == rows.q[5].tobytes()
+    assert [tuple(result.target.p_world_tool) for result in rows] == [tuple(t.p_world_tool) for t in TARGETS]
+    for outside in (6, -7):
+        with pytest.raises(IndexError, match=f"row {outside} of 6"):
+            rows[outside]
+
+
+def test_no_targets_are_no_rows(problem):
+    rows = solve_rows(problem, [], seed=7)
+    assert len(rows) == 0
+    assert (rows.q.shape, rows.reached.shape, rows.stop_reasons.shape) == ((0, 9), (0,), (0,))
+
+
+def test_targets_as_arrays_are_the_same_targets(problem):
+    arrays = ikde.Targets([target.p_world_tool for target in TARGETS])
+    assert solve_rows(problem, arrays, seed=7).q.tobytes() == solve_rows(problem, TARGETS, seed=7).q.tobytes()
+
+
+def watch_plain_numpy(monkeypatch):
+    """Sizes of the calls of `verify_many`."""
+    calls = []
+
+    def watched(robot, targets, Q, settings, detector):
+        calls.append(len(Q))
+        return verify_many(robot, targets, Q, settings, detector)
+
+    monkeypatch.setattr("ikde.solver.grade.verify_many", watched)
+    monkeypatch.setattr("ikde.solver.rows.verify_many", watched)
+    return calls
+
+
+@pytest.mark.parametrize(
+    ("verify", "first_stream", "graded"),
+    [("all", 0, 130), ("none", 0, 0), ("sample", 0, 3), ("sample", 1, 2), ("sample", 64, 3)],
+)
+def test_plain_numpy_grades_what_is_asked(qiao, monkeypatch, verify, first_stream, graded):
+    problem = make_problem(qiao, SWIFT, detector=None, near=None, freeze=None)
+    calls = watch_plain_numpy(monkeypatch)
+    rows = solve_rows(
+        problem, TARGETS[:1] * 130, seed=7, first_stream=first_stream, probe=False, verify=verify, threads=1
+    )
+    assert calls == [graded] * (graded > 0)
+    assert rows.verified.all()
+
+
+def test_a_row_that_is_looked_into_is_graded_whatever_is_asked(problem, monkeypatch):
+    calls = watch_plain_numpy(monkeypatch)
+    rows = solve_rows(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=7, verify="none")
+    unreached = np.flatnonzero(~rows.reached).tolist()
+    assert calls == [len(unreached)]
+    assert list(rows.graded.explanations) == unreached
+
+
+@pytest.mark.parametrize("verify", ["all", "sample", "none"])
+def test_a_grade_that_is_missing_is_made_when_it_is_looked_at(qiao, problem, monkeypatch, verify):
+    rows = solve_rows(problem, TARGETS[:2], seed=7, first_stream=1, verify=verify, probe=False)
+    calls = watch_plain_numpy(monkeypatch)
+    result = rows[1]
+    assert result.position_error_m >= 0.0
+    assert calls == []
+    assert result.verification is result.verification
+    assert calls == ([] if verify == "all" else [1])
+    expected = ikde.verify(qiao, TARGETS[1], result.q, settings=QUICK)
+    assert result.verification.closest_pair == expected.closest_pair
+    assert result.verification.clearance_m == pytest.approx(expected.clearance_m, abs=1e-14)
+
+
+def test_another_way_to_verify_is_refused(problem):
+    with pytest.raises(InputError, match="verify: expected one of all, sample, none, got 'some'"):
+        solve_rows(problem, TARGETS[:1], seed=7, verify="some")
 
 
 def test_without_probes_the_bound_still_proves_what_is_out_of_reach(problem):
@@ -41,3 +126,4 @@ def test_without_probes_the_bound_still_proves_what_is_out_of_reach(problem):
     assert rows.row(0).stop_reason == "out_of_reach"
     assert "m beyond the stretched arm" in rows.row(0).reason
     assert rows.row(1).stop_reason != "out_of_reach"
+    assert not rows.graded.explanations

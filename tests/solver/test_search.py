@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.lanes import ATTEMPTS, EVALUATIONS, REACHED
+from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED
 from ikde.solver import search as module
+from ikde.solver.engines import de
+from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.problem import make_problem
 from ikde.solver.search import search, usable_cores
 
@@ -41,8 +43,33 @@ def test_an_answer_hangs_on_its_stream_not_on_its_neighbours(problem):
 
 def test_cutting_attempts_into_calls_does_not_change_the_bits(problem, monkeypatch):
     whole = run(problem)
-    monkeypatch.setattr(module, "ATTEMPTS_PER_CALL", 1)
+    monkeypatch.setattr(DifferentialEvolution, "attempts_per_call", 1)
     assert bits(run(problem)) == bits(whole)
+
+
+def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao, monkeypatch):
+    asked, honest = [], module.reach_excess_m
+
+    def watched(robot, positions, lower, upper):
+        asked.append(len(positions))
+        return honest(robot, positions, lower, upper)
+
+    monkeypatch.setattr(module, "reach_excess_m", watched)
+    problem = make_problem(qiao, ikde.SolveSettings(method="de", restarts=9), detector=None, near=None, freeze=None)
+    found = search(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=1, streams=range(6))
+    assert asked == [1]
+    assert np.flatnonzero(found.excess_m).tolist() == [5]
+    assert found.counts[:, REACHED].tolist() == [1, 1, 1, 1, 1, 0]
+    assert found.counts[5, ATTEMPTS] == module.FEW["de"]
+
+
+def test_the_first_few_attempts_are_part_of_the_budget(qiao):
+    for restarts in (1, 3, 4, 5, 21):
+        settings = ikde.SolveSettings(population=6, generations=1, restarts=restarts)
+        problem = make_problem(qiao, settings, detector=None, near=None, freeze=None)
+        assert run(problem).counts[:, ATTEMPTS].tolist() == [restarts] * 5
+        whole, cut = run(problem, attempts=restarts), run(problem)
+        assert bits(whole) == bits(cut)
 
 
 @pytest.mark.parametrize("lanes", [1, 2, 3, 64])
@@ -53,15 +80,15 @@ def test_lanes_that_share_a_call_do_not_change_the_bits(qiao, monkeypatch, lanes
     problem = make_problem(qiao, settings, detector=None, near=None, freeze=None)
     whole = search(problem, targets, seed=7, streams=range(11))
     assert len(set(whole.counts[:, ATTEMPTS])) > 2
-    monkeypatch.setattr(module, "EVALUATIONS_PER_CALL", 10**9)
-    monkeypatch.setattr(module, "LANES_PER_CALL", lanes)
+    monkeypatch.setattr(de, "EVALUATIONS_PER_CALL", 10**9)
+    monkeypatch.setattr(de, "LANES_PER_CALL", lanes)
     assert bits(search(problem, targets, seed=7, streams=range(11))) == bits(whole)
 
 
 def test_short_searches_share_a_call_and_long_ones_do_not(qiao):
     def lanes(**changes):
         settings = ikde.SolveSettings.for_method("de").with_changes(**changes)
-        return module._lanes_per_call(make_problem(qiao, settings, detector=None, near=None, freeze=None))
+        return de._lanes_per_call(make_problem(qiao, settings, detector=None, near=None, freeze=None))
 
     assert lanes() == 1
     assert lanes(generations=1, restarts=1) == 64
@@ -99,7 +126,7 @@ def test_a_reached_target_is_not_searched_further(qiao):
         make_problem(qiao, settings, detector=None, near=None, freeze=None), TARGETS, seed=1, streams=range(5)
     )
     assert found.counts[:, REACHED].tolist() == [1] * 5
-    assert found.counts[:, ATTEMPTS].max() < settings.restarts
+    assert found.counts[:, ATTEMPTS].max() < settings.budget("lm")
 
 
 @pytest.mark.parametrize("threads", [1, 2])
@@ -107,7 +134,7 @@ def test_ctrl_c_inside_a_lane_gets_through(problem, monkeypatch, threads):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "solve_lanes", interrupted)
+    monkeypatch.setattr(de, "solve_lanes", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(problem, threads=threads)
 
@@ -117,14 +144,16 @@ def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch):
     wait = threading.Event()
 
     def lane(robot, detector, target, lanes, *rest):
+        if lanes[0] == lanes[1]:
+            return  # only compiles
         begun.append(lanes[0])
         if lanes[0] == 0:
             raise KeyboardInterrupt
         wait.wait(0.05)  # long enough that the first is heard of
 
-    monkeypatch.setattr(module, "solve_lanes", lane)
-    monkeypatch.setattr(module, "ATTEMPTS_PER_CALL", 1)
-    monkeypatch.setattr(module, "LANES_PER_CALL", 1)
+    monkeypatch.setattr(de, "solve_lanes", lane)
+    monkeypatch.setattr(DifferentialEvolution, "attempts_per_call", 1)
+    monkeypatch.setattr(de, "LANES_PER_CALL", 1)
     targets = TARGETS * 20
     with pytest.raises(KeyboardInterrupt):
         run(problem, targets, range(100), threads=2, attempts=50)
@@ -135,7 +164,7 @@ def test_an_error_inside_a_lane_gets_through(problem, monkeypatch):
     def broken(*arguments):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(module, "solve_lanes", broken)
+    monkeypatch.setattr(de, "solve_lanes", broken)
     with pytest.raises(ZeroDivisionError):
         run(problem, threads=2)
 

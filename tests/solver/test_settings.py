@@ -10,13 +10,14 @@ from ikde.errors import InputError
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 
 GOOD = {
+    "method": ("auto", "lm", "analytic", "memetic", "de"),
     "strategy": STRATEGIES,
     "bounds": REPAIRS,
     "update": ("generation", "in_place"),
     "collision": ("reject", "feasibility"),
     "population": (6, 1000),
     "generations": (1,),
-    "restarts": (1,),
+    "restarts": (1, None),
     "crossover": (0.0, 0, 1.0, 1),
     "start_share": (1e-9, 0.5, 1, 1.0),
     "weight": (1e-9, 1, 2.5),
@@ -29,8 +30,9 @@ BAD = {
     "crossover": (1.01, *NO_NUMBERS),
     "start_share": (0, 1.01, *NO_NUMBERS),
     "population": (5, 50.0, *NO_NUMBERS),
-    **dict.fromkeys(("generations", "restarts"), (0, 1.0, *NO_NUMBERS)),
-    **dict.fromkeys(("strategy", "bounds", "update", "collision"), ("", "Rand/1", None, 0)),
+    "generations": (0, 1.0, *NO_NUMBERS),
+    "restarts": (0, 1.0, *(value for value in NO_NUMBERS if value is not None)),
+    **dict.fromkeys(("method", "strategy", "bounds", "update", "collision"), ("", "Rand/1", None, 0)),
 }
 
 
@@ -57,7 +59,7 @@ def test_ikdes_own_method_is_finer():
 
 @pytest.mark.parametrize("name", ["ga", "", "DE"])
 def test_an_unknown_method_is_refused(name):
-    with pytest.raises(InputError, match="expected one of auto, de"):
+    with pytest.raises(InputError, match="it is one of auto, lm, analytic, memetic, de"):
         ikde.SolveSettings.for_method(name)
 
 
@@ -71,6 +73,13 @@ def test_bad_values_are_refused_by_name(name, value):
     with pytest.raises(InputError, match=rf"^settings\.{name}: expected .*, got ") as caught:
         ikde.SolveSettings(**{name: value})
     assert "\n" not in str(caught.value)
+
+
+def test_a_knob_of_the_de_asks_for_it():
+    assert not ikde.SolveSettings(restarts=3, position_tolerance_m=1e-3).evolves
+    assert ikde.SolveSettings(strategy="best/1").evolves
+    assert ikde.SolveSettings(method="de").evolves
+    assert not ikde.SolveSettings(method="lm", strategy="best/1").evolves
 
 
 def test_none_changes_nothing():

@@ -1,0 +1,311 @@
+"""What each idea behind the engine `lm` buys: one is taken away at a time, the rest stays.
+
+    python benchmarks/ablation.py [--quick]
+
+Pose targets of qiao2021, one core, 1e-6 m and 1e-6 rad. The variants are made from the text of the generated module,
+are compiled without a cache, and run interleaved; figures are medians over rounds. A second process does the same with
+vectors of 512 bits, which LLVM by itself avoids on some machines. Writes benchmarks/results/ablation.json.
+"""
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numba
+import numpy as np
+from machine import describe
+from rich.console import Console
+from rich.table import Table
+
+import ikde
+from ikde.batch.generators import ReachableSource
+from ikde.kernels import lm as tables_lm
+from ikde.kernels import tables
+from ikde.kernels.arrays import COUNTS, SeedArrays
+from ikde.kernels.clearance import judge_centres
+from ikde.model.generate import assemble as generator
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.solver.engines.engine import make_descent, make_ranges
+from ikde.solver.engines.pool import NO_BASE, SafeDistance, make_seeds
+from ikde.solver.problem import ROUNDING, make_problem
+
+RESULTS = Path(__file__).parent / "results" / "ablation.json"
+LANES = tables.LANES
+LIBM = "import math as _math\n\n\n@inline_kernel\ndef sin_cos(x):\n    return _math.sin(x), _math.cos(x)\n"
+FREE = re.compile(r"(free\d+) = 0\.0 if .* else 1\.0")
+NUMBER = re.compile(r"(?<![\w.\]])(\d+\.\d+(?:e-?\d+)?|\d+e-?\d+)(?![\w.])")
+
+
+@dataclass
+class Variant:
+    """One way to make the kernels and the seeds."""
+
+    name: str
+    change: Callable[[str], str] = lambda text: text
+    every_test: bool = False
+    seeds: str = "pool and base"
+    times: dict[str, list[float]] = field(default_factory=dict)
+    module: Any = None
+
+
+def main() -> None:
+    """Measure, print, record."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="1,000 targets, 3 rounds")
+    parser.add_argument("--wide", action="store_true", help="only the vectors of 512 bits, in a process of its own")
+    told = parser.parse_args()
+    count, rounds = (1000, 3) if told.quick else (10_000, 15)
+    record = measure(count, rounds)
+    if told.wide:
+        print(json.dumps(record))
+        return
+    record["wide"] = measure_wide(told.quick)
+    record["machine"] = describe()
+    show(record)
+    if not told.quick:
+        RESULTS.write_text(json.dumps(record, indent=1) + "\n")
+
+
+def measure_wide(quick: bool) -> dict[str, Any]:
+    """The same in a process that prefers vectors of 512 bits."""
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features().flatten() + ",-prefer-256-bit"
+    command = [sys.executable, __file__, "--wide", *(["--quick"] if quick else [])]
+    own = {**os.environ, "NUMBA_CPU_FEATURES": features}
+    found = subprocess.run(command, env=own, capture_output=True, text=True, check=False)
+    return json.loads(found.stdout) if found.returncode == 0 else {"error": found.stderr[-500:]}
+
+
+def measure(count: int, rounds: int) -> dict[str, Any]:
+    """All variants, interleaved."""
+    robot = ikde.load_robot("qiao2021")
+    settings = ikde.SolveSettings(position_tolerance_m=1e-6, orientation_tolerance_rad=1e-6)
+    problem = make_problem(robot, settings, detector=None, near=None, freeze=None)
+    options = {"lower": robot.lower, "upper": robot.upper, "goal": "pose", "count": count, "seed": 3}
+    targets = ReachableSource(robot=robot, detector=problem.detector, **options).read(0, count)
+    seeds = make_seeds(problem, "pose")
+    variants = list_variants()
+    jobs: dict[str, dict[str, Callable[[], Any]]] = {}
+    for variant in variants:
+        variant.module = make_module(robot, variant)
+        jobs[variant.name] = make_jobs(problem, targets, change_seeds(seeds, variant.seeds), variant)
+        for job in jobs[variant.name].values():
+            job()
+    for _ in range(rounds):
+        for variant in variants:
+            for name, job in jobs[variant.name].items():
+                variant.times.setdefault(name, []).append(job())
+    rows = {v.name: {name: float(np.median(times)) for name, times in v.times.items()} for v in variants}
+    widths = {v.name: vector_width(v.module) for v in variants if not isinstance(v.module, str)}
+    return {"targets": count, "rounds": rounds, "variants": rows, "vectors": widths}
+
+
+def list_variants() -> list[Variant]:
+    """The whole, then the whole less one idea."""
+    return [
+        Variant("all ideas"),
+        Variant("tables instead of generated code", seeds="tables"),
+        Variant("every test: nothing implied or proved", every_test=True),
+        Variant("seeds: the nearest of 64 tool poses, base not set", seeds="pool"),
+        Variant("seeds: uniform", seeds="uniform"),
+        Variant("limits by clipping, no active set", lambda text: FREE.sub(r"\1 = 1.0", text)),
+        Variant("sine and cosine of libm", lambda text: text.replace(TRIG, LIBM)),
+        Variant("fused multiply and add allowed", lambda text: text.replace(LEAF, FUSED)),
+    ]
+
+
+TRIG = "from ikde.kernels.trig import sin_cos\n"
+LEAF = "from ikde.kernels.jit import leaf_kernel\n"
+FUSED = """from numba import njit as _njit
+
+
+def leaf_kernel(function):
+    return _njit(error_model="numpy", nogil=True, _nrt=False, fastmath={"contract"})(function)
+
+
+"""
+
+
+def make_module(robot: ikde.Robot, variant: Variant) -> Any:
+    """Compile a variant's text, without a cache."""
+    if variant.seeds == "tables":
+        return tables_lm
+    kept = generator.drop_implied, generator.drop_proved
+    if variant.every_test:
+        generator.drop_implied = lambda tests: tests
+        generator.drop_proved = lambda robot, tests, margin, lower, upper: tests
+    text = generator.format_module(robot, robot.detector(None), "pose")
+    generator.drop_implied, generator.drop_proved = kept
+    made = ModuleType(re.sub(r"\W", "_", variant.name))
+    text = variant.change(text).replace("from ikde.kernels.jit import inline_kernel, kernel\n", PLAIN)
+    exec(compile(text, variant.name, "exec"), made.__dict__)
+    return made
+
+
+PLAIN = """from numba import njit as _njit
+from ikde.kernels.jit import inline_kernel
+
+
+def kernel(function):
+    return _njit(error_model="numpy", nogil=True)(function)
+
+
+"""
+
+
+def change_seeds(seeds: SeedArrays, how: str) -> SeedArrays:
+    """The pool without the base's help, or none."""
+    if how == "uniform":
+        return seeds._replace(q=seeds.q[:0], T_world_tool=seeds.T_world_tool[:, :0].copy(), base=NO_BASE)
+    if how == "pool":
+        return draw_whole_pool(seeds)
+    return seeds
+
+
+def draw_whole_pool(seeds: SeedArrays) -> SeedArrays:
+    """The same arms, the bases drawn from their ranges."""
+    from ikde.kernels.seeds import fill_poses
+
+    robot = ikde.load_robot("qiao2021")
+    rng = np.random.default_rng(0)
+    order = rng.permutation(len(seeds.q))
+    q = seeds.q[order].copy()
+    q[:, seeds.base] = rng.uniform(robot.lower, robot.upper, q.shape)[:, seeds.base]
+    T = np.empty_like(seeds.T_world_tool)
+    fill_poses(pack_robot(robot), q, T)
+    return seeds._replace(q=q, T_world_tool=T, base=NO_BASE)
+
+
+def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: Variant) -> dict[str, Callable[[], Any]]:
+    """What is timed: each gives its figure."""
+    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    is_table = variant.seeds == "tables"
+    first = (robot, detector) if is_table else (0, SafeDistance(ROUNDING))
+    count, joints = len(targets), len(problem.lower)
+    q, score = np.empty((count, joints)), np.empty((count, 2))
+    counts, pairs = np.empty((count, COUNTS), dtype=np.int64), np.zeros((count, len(detector.pairs)), dtype=np.int64)
+    settings = (make_ranges(problem), make_descent(problem), seeds, np.uint64(3))
+    few = min(count, 1000) if is_table else count
+    attempts = np.tile([0, 1000], (few, 1))
+    lane = (np.arange(count), attempts, q, score, counts, pairs)
+
+    def solve_lanes() -> float:
+        score[:], counts[:] = np.inf, 0
+        began = time.perf_counter()
+        with np.errstate(over="ignore"):
+            variant.module.solve_targets(*first, pack_targets(targets), np.array([0, few]), *settings, *lane)
+        return (time.perf_counter() - began) / few * 1e6
+
+    def solve_singly() -> float:
+        score[:], counts[:] = np.inf, 0
+        began = time.perf_counter()
+        single(*first, pack_targets(targets), few, *settings, attempts[0], q, score, counts, pairs)
+        return (time.perf_counter() - began) / few * 1e6
+
+    solve_target = variant.module.solve_target
+
+    @numba.njit
+    def single(robot, detector, targets, few, ranges, descent, seeds, seed, attempts, q, score, counts, pairs):
+        for k in range(few):
+            solve_target(
+                robot,
+                detector,
+                targets,
+                k,
+                ranges,
+                descent,
+                seeds,
+                seed,
+                k,
+                attempts,
+                q[k],
+                score[k],
+                counts[k],
+                pairs[k],
+            )
+
+    jobs: dict[str, Callable[[], Any]] = {"lanes us": solve_lanes, "singly us": solve_singly}
+    jobs |= {"steps": lambda: float(counts[:few, 2].mean()), "attempts": lambda: float(counts[:few, 1].mean())}
+    return jobs | make_check_jobs(problem, variant, first)
+
+
+def make_check_jobs(problem: Any, variant: Variant, first: tuple[Any, ...]) -> dict[str, Callable[[], Any]]:
+    """Nanoseconds of forward kinematics and the yes/no check, configuration by configuration and in lanes."""
+    robot = problem.robot
+    arrays, detector = pack_robot(robot), pack_detector(robot, problem.detector)
+    qs = np.random.default_rng(1).uniform(robot.lower, robot.upper, (16_384, len(robot.joints)))
+    hits = np.empty(len(qs), dtype=bool)
+    judge_centres(arrays, detector, qs, hits)
+    sets = {"all": qs, "free": qs[~hits][: len(qs[~hits]) // LANES * LANES].copy()}
+    find, make_buffers = variant.module.find_collision, variant.module.make_buffers
+    jobs: dict[str, Callable[[], Any]] = {}
+
+    @numba.njit
+    def loop(robot, detector, rows):
+        buffers, found = make_buffers(robot, detector, rows.shape[1]), 0
+        for k in range(rows.shape[0]):
+            found += find(robot, detector, rows[k], buffers) >= 0
+        return found
+
+    for name, rows in sets.items():
+        jobs[f"check {name} ns"] = lambda rows=rows: timed(lambda: loop(*first, rows)) / len(rows)
+    if hasattr(variant.module, "judge_lanes"):
+        judge = variant.module.judge_lanes
+
+        @numba.njit
+        def loop_lanes(detector, rows, free):
+            for k in range(rows.shape[0]):
+                judge(detector, rows[k], free[k])
+
+        packed = np.ascontiguousarray(qs.reshape(-1, LANES, qs.shape[1]).transpose(0, 2, 1)).reshape(
+            len(qs) // LANES, -1
+        )
+        free = np.empty((len(packed), LANES), dtype=np.bool_)
+        jobs["check lanes ns"] = lambda: timed(lambda: loop_lanes(first[1], packed, free)) / len(qs)
+        loop_lanes(first[1], packed, free)
+        assert (free.ravel() == ~hits).all()
+    assert loop(*first, qs) == hits.sum()
+    return jobs
+
+
+def timed(job: Callable[[], Any]) -> float:
+    """Nanoseconds."""
+    began = time.perf_counter()
+    job()
+    return (time.perf_counter() - began) * 1e9
+
+
+def vector_width(module: Any) -> dict[str, int]:
+    """How often the widest registers stand in the machine code of what runs in lanes."""
+    found = {}
+    for name in ("take_steps", "judge_lanes"):
+        if hasattr(module, name):
+            code = "".join(getattr(module, name).inspect_asm().values())
+            found[name] = {"zmm": code.count("%zmm"), "ymm": code.count("%ymm"), "lines": code.count("\n")}
+    return found
+
+
+def show(record: dict[str, Any]) -> None:
+    """Print the table."""
+    columns = list(record["variants"]["all ideas"])
+    table = Table("variant", *columns)
+    for part, rows in (("", record["variants"]), (" (512 bits)", record["wide"].get("variants", {}))):
+        for name, figures in rows.items():
+            if not part or name == "all ideas":
+                table.add_row(name + part, *(f"{figures[c]:.3g}" if c in figures else "" for c in columns))
+    Console(width=180).print(table)
+    print(json.dumps(record["vectors"]))
+
+
+if __name__ == "__main__":
+    main()

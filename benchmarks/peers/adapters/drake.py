@@ -1,0 +1,85 @@
+"""Drake: inverse kinematics as a nonlinear program, self-collision as its distance constraint."""
+
+import time
+from typing import Any
+
+import numpy as np
+from protocol import Peer, Setup
+from pydrake.geometry import CollisionFilterDeclaration, GeometrySet
+from pydrake.math import RotationMatrix
+from pydrake.multibody.inverse_kinematics import InverseKinematics
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.solvers import SnoptSolver, SolverOptions
+from pydrake.systems.framework import DiagramBuilder
+
+INFLUENCE_M, INSIDE = 0.02, 0.9  # share of each tolerance that the program is told, since its solver rounds
+
+
+class Program(Peer):
+    """`InverseKinematics` with a minimum distance, solved by SNOPT."""
+
+    name = "Drake InverseKinematics"
+    packages = ("drake",)
+    use = (
+        "position and orientation constraints, AddMinimumDistanceLowerBoundConstraint (0, influence 2 cm), SNOPT, "
+        "guesses collision-free; restarted"
+    )
+
+    def prepare(self, setup: Setup) -> None:
+        """From URDF; only the detector's pairs of links are looked at."""
+        super().prepare(setup)
+        builder = DiagramBuilder()
+        plant, scene = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
+        Parser(builder).AddModels(str(setup.urdf))
+        plant.Finalize()
+        robot = setup.robot
+        shapes = {
+            name: GeometrySet(plant.GetCollisionGeometriesForBody(plant.GetBodyByName(f"component_{name}")))
+            for name in robot.components(robot.detector(None).spheres)
+        }
+        every = GeometrySet()
+        for name in shapes:
+            every.Add(plant.GetCollisionGeometriesForBody(plant.GetBodyByName(f"component_{name}")))
+        filters = CollisionFilterDeclaration().ExcludeWithin(every)
+        for a, b in robot.pairs(robot.detector(None)):
+            filters.AllowBetween(shapes[a], shapes[b])
+        scene.collision_filter_manager().Apply(filters)
+        self.diagram = builder.Build()
+        self.context = self.diagram.CreateDefaultContext()
+        self.plant, self.plant_context = plant, plant.GetMyMutableContextFromRoot(self.context)
+        self.tool = plant.GetFrameByName(robot.tool)
+        starts = [plant.GetJointByName(name).position_start() for name in robot.joint_names]
+        assert starts == list(range(len(starts)))
+        self.solver, self.options = SnoptSolver(), SolverOptions()
+        # An orientation bound is 1 - cos(1e-3 rad) = 5e-7 to SNOPT, below its default of 1e-6.
+        self.options.SetOption(SnoptSolver.id(), "Major feasibility tolerance", 1e-8)
+
+    def convert(self, p: np.ndarray, R: np.ndarray) -> Any:
+        """Its own rotation matrix."""
+        return p, RotationMatrix(R)
+
+    def solve(self, target: Any, deadline: float) -> np.ndarray | None:
+        """One program, solved from one guess after the other."""
+        p, R = target
+        setup, plant = self.setup, self.plant
+        program = InverseKinematics(plant, self.plant_context)
+        half = INSIDE * setup.position_tolerance_m / np.sqrt(3.0)
+        world = plant.world_frame()
+        program.AddPositionConstraint(self.tool, np.zeros(3), world, p - half, p + half)
+        if setup.is_pose:
+            bound = INSIDE * setup.orientation_tolerance_rad
+            program.AddOrientationConstraint(world, R, self.tool, RotationMatrix(), bound)
+        program.AddMinimumDistanceLowerBoundConstraint(1e-6, INFLUENCE_M)
+        prog, q_variables, draw = program.prog(), program.q(), setup.checker.draw_free
+        while True:
+            result = self.solver.Solve(prog, draw(), self.options)
+            if result.is_success():
+                q = np.clip(result.GetSolution(q_variables), setup.lower, setup.upper)
+                if setup.checker.is_free(q):
+                    return q
+            if time.perf_counter() > deadline:
+                return None
+
+
+PEERS = (Program,)

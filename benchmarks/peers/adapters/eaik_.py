@@ -1,0 +1,99 @@
+"""EAIK: closed form for the arm, with the base sampled around the target."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from eaik.IK_HP import HPRobot
+from protocol import Peer, Setup, random_rotation
+
+import ikde
+
+ARM_JOINTS = 6
+
+
+class Sampled(Peer):
+    """A random base from which the target is in reach, all branches, the first that is inside and free."""
+
+    name = "EAIK, base sampled"
+    packages = ("EAIK",)
+    use = "HPRobot(H, P).IK for the arm from bases drawn within its reach of the target; every branch checked (numba)"
+
+    def prepare(self, setup: Setup) -> None:
+        """Axes and offsets of the arm at q = 0, seen from the frame that the base moves."""
+        super().prepare(setup)
+        robot = setup.robot
+        frames = ikde.forward(robot, np.zeros(len(robot.joints)))
+        moving = [frame for frame in robot.frames if frame.joint]
+        arm, self.base_frame = moving[-ARM_JOINTS:], moving[-ARM_JOINTS - 1].name
+        T_base_world = np.linalg.inv(frames[self.base_frame])
+        Ts = [T_base_world @ frames[frame.name] for frame in arm]
+        H = np.array([T[:3, :3] @ frame.axis for T, frame in zip(Ts, arm, strict=True)])
+        T_base_tool = T_base_world @ frames[robot.tool]
+        points = np.array([np.zeros(3), *(T[:3, 3] for T in Ts), T_base_tool[:3, 3]])
+        self.solver = HPRobot(H, np.diff(points, axis=0))
+        assert self.solver.hasKnownDecomposition()
+        reach = np.linalg.norm(np.diff(points[2:], axis=0), axis=1).sum()
+        height = frames[self.base_frame][2, 3]
+        # EAIK's end effector is turned like the base at q = 0, hence the last argument.
+        self.propose = make_proposal(setup.lower, setup.upper, points[2], reach, height, T_base_tool[:3, :3].T.copy())
+        self.choose = make_choice(setup.lower, setup.upper, setup.checker.is_free)
+
+    def solve(self, target: Any, deadline: float) -> np.ndarray | None:
+        """One base at a time."""
+        p, R = target
+        is_pose, propose, choose, solve = self.setup.is_pose, self.propose, self.choose, self.solver.IK
+        while True:
+            q, T = propose(p, R, is_pose)
+            answer = solve(T)
+            if choose(q, answer.Q, answer.is_LS):
+                return q
+            if time.perf_counter() > deadline:
+                return None
+
+
+def make_proposal(
+    lower: np.ndarray, upper: np.ndarray, shoulder: np.ndarray, reach: float, height: float, R_tool_end: np.ndarray
+) -> Callable[..., tuple[np.ndarray, np.ndarray]]:
+    """Compiled: a random base from which the target is within the arm's reach, and the arm's own target [4, 4]."""
+    turned = numba.njit(random_rotation)
+
+    @numba.njit
+    def propose(p, R, is_pose):
+        q = np.empty(lower.size)
+        yaw = np.random.uniform(lower[2], upper[2])
+        c, s = np.cos(yaw), np.sin(yaw)
+        dz = p[2] - height - shoulder[2]
+        flat = np.sqrt(max(reach * reach - dz * dz, 0.0))
+        x = p[0] - (c * shoulder[0] - s * shoulder[1]) + np.random.uniform(-flat, flat)
+        y = p[1] - (s * shoulder[0] + c * shoulder[1]) + np.random.uniform(-flat, flat)
+        x, y = min(max(x, lower[0]), upper[0]), min(max(y, lower[1]), upper[1])
+        q[0], q[1], q[2] = x, y, yaw
+        R_base_world = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        T = np.eye(4)
+        T[:3, :3] = R_base_world @ (R if is_pose else turned(np.random.standard_normal(4))) @ R_tool_end
+        T[:3, 3] = R_base_world @ (p - np.array([x, y, height]))
+        return q, T
+
+    return propose
+
+
+def make_choice(lower: np.ndarray, upper: np.ndarray, is_free: Callable[..., bool]) -> Callable[..., bool]:
+    """Compiled: completes q [N] with the first exact branch that keeps the limits and is free."""
+
+    @numba.njit
+    def choose(q, branches, approximate):
+        for row in range(branches.shape[0]):
+            if approximate[row]:
+                continue
+            q[3:] = branches[row]
+            if np.all(q >= lower) and np.all(q <= upper) and is_free(q):
+                return True
+        return False
+
+    return choose
+
+
+PEERS = (Sampled,)

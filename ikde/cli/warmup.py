@@ -1,0 +1,47 @@
+"""`ikde warmup`: compile everything now, so that no later command has to."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from ikde.cli.options import DetectorOption, JsonOption, RobotOption
+from ikde.cli.output import print_json, print_note, print_result, use_color
+
+if TYPE_CHECKING:
+    from ikde.solver.warmup import Stage
+
+
+def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_json: JsonOption = False) -> None:
+    """Compile the kernels of a robot ahead, for every engine and every kind of target; seconds if they are compiled."""
+    from ikde.io.robots import load_robot
+    from ikde.report.render import make_table, render
+    from ikde.solver.warmup import list_stages, warm_up
+
+    model = load_robot(robot)
+    stages = list_stages(model, model.detector(detector) or "none")
+    with _progress(len(stages)) as tell:
+        done = warm_up(stages, tell)
+    if as_json:
+        print_json({"robot": model.name, "stages": [{"name": s.name, "compile_seconds": s.seconds} for s in done]})
+        return
+    table = make_table("kernels", ">compiled in")
+    for stage in done:
+        table.add_row(stage.name, f"{stage.seconds:.1f} s" if stage.seconds else "was ready")
+    table.add_row("together", f"{sum(stage.seconds for stage in done):.1f} s")
+    print_result(render(table, color=use_color()))
+
+
+@contextmanager
+def _progress(count: int) -> Iterator[Callable[[int, "Stage"], None]]:
+    """A bar for who is looking, else a line a stage."""
+    if not sys.stderr.isatty():
+        yield lambda number, stage: print_note(f"{number + 1} of {count}: {stage.name}")
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True)) as bars:
+        bar = bars.add_task("compiling", total=count)
+        yield lambda number, stage: bars.update(bar, completed=number, description=f"compiling {stage.name}")
+        bars.update(bar, completed=count, description="compiled")

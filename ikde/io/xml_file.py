@@ -1,0 +1,84 @@
+"""XML that other programs read robots from: names, numbers and the file itself; shared by URDF and MJCF."""
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from pathlib import Path
+
+from ikde.batch.atomic import write_atomically
+from ikde.errors import FileError, InputError
+from ikde.model.robot import WORLD, Detector, Robot
+from ikde.model.spheres import Sphere, expand_rows
+from ikde.model.tree import build_tree
+
+_NO_XML = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+# Placeholders of what a robot file does not hold: neither forward kinematics nor spheres hang on them.
+MASS_KG, INERTIA_KG_M2 = 1.0, 0.01
+EFFORT, VELOCITY = 100.0, 1.0
+PLACEHOLDERS = (
+    f"Masses ({MASS_KG:g} kg) and inertias ({INERTIA_KG_M2:g} kg m2) are placeholders: a robot of ikde is geometry. "
+    "Put in your own before simulating."
+)
+
+
+def format_numbers(values: Iterable[float]) -> str:
+    """Numbers as `0.5 -1.0 0.1`: each reads back as the same bits (a negative zero as zero)."""
+    return " ".join(repr(float(value) + 0.0) for value in values)
+
+
+def format_document(root: ET.Element, notes: Iterable[str]) -> str:
+    """The document's text, indented, with `notes` as a comment on top."""
+    ET.indent(root)
+    text = ET.tostring(root, encoding="unicode")
+    comment = "\n".join(f"  {re.sub('-(?=-|$)', '- ', note)}" for note in notes)  # XML forbids -- in comments
+    bad = _NO_XML.search(text + comment)
+    if bad:
+        raise InputError(f"a name holds the character {bad[0]!r}, which XML cannot")
+    return f'<?xml version="1.0"?>\n<!--\n{comment}\n-->\n{text}\n'
+
+
+def reserve_name(wanted: str, taken: set[str]) -> str:
+    """`wanted`, with underscores after it until nothing else is called so; adds it to `taken`."""
+    while wanted in taken:
+        wanted += "_"
+    taken.add(wanted)
+    return wanted
+
+
+def list_components(robot: Robot, detector: Detector | None) -> dict[str, list[Sphere]]:
+    """Spheres of each component of a detector's approximation, in the frame of the joint that moves them."""
+    components: dict[str, list[Sphere]] = {}
+    if detector:
+        for sphere in expand_rows(robot, build_tree(robot), detector.spheres):
+            components.setdefault(sphere.component, []).append(sphere)
+    return components
+
+
+def list_carriers(robot: Robot) -> list[str]:
+    """Name of the frame that stands where each of the tree's bodies does: that of its joint, or the world."""
+    by_joint = {frame.joint: frame.name for frame in robot.frames}
+    bodies = build_tree(robot).bodies
+    return [WORLD if body.joint is None else by_joint[robot.joint_names[body.joint]] for body in bodies]
+
+
+def describe_detector(robot: Robot, detector: Detector | None) -> str:
+    """One line about where the collision shapes come from."""
+    if detector is None:
+        return "No collision shapes."
+    return (
+        f"Collision shapes: the spheres {detector.spheres!r} of the detector {detector.name!r}, a link a component; it "
+        f"looks at {len(robot.pairs(detector))} pairs of components, safe distance {detector.safe_distance_m!r} m."
+    )
+
+
+def write_xml(path: Path, text: str) -> None:
+    """Write a whole file or none; raises `FileError` in one line."""
+    if path.exists() and not path.is_file():
+        raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
+    if not path.parent.is_dir():
+        raise FileError(path, "cannot be written: its folder does not exist")
+    try:
+        write_atomically(path, text.encode())
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror or error}") from None

@@ -1,0 +1,141 @@
+"""Where a descent starts: the one of a few collision-free configurations whose tool is nearest to the target.
+
+The pool holds configurations that are free of collision, with their tool poses. Where the robot drives on a plane that
+it may turn on (`SeedArrays.base`), the base does the rest: whatever the arm does, the base can bring the tool over the
+target and turn it to the target's heading. Then only height and tilt count: the pool is sorted by height, so that those
+around the target's are found at once, and the base is set afterwards.
+"""
+
+import math
+
+import numpy as np
+
+from ikde.kernels.frames import compute_bodies, compute_tool
+from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.pose_error import AXIS, POSE, POSITION
+from ikde.kernels.rng import next_index, next_uniform
+from ikde.kernels.trig import angle_from_sides, sin_cos
+
+X, Y, Z = 3, 7, 11  # rows of `SeedArrays.T_world_tool`, a transform [3, 4] row by row
+POOL_STREAM = np.uint64(2**64 - 2)  # in place of a user's seed: the pool is the same for everybody
+POOL_DRAWS = 500  # for each configuration of the pool, before there seem to be none that are free
+WINDOW = 32  # configurations of the target's height that a seed is chosen from; doubled with every attempt
+COMPARED = 16  # of the window, by their tilt
+COMPARED_WHOLE = 64  # of the whole pool, by their pose, where the base cannot help
+LUCKY_ATTEMPTS = 6  # after as many failures the nearest ones are stuck: any configuration will do
+
+
+@inline_kernel
+def draw_seed(seeds, target, index, ranges, state, attempt, out_q):
+    """Fill `out_q` [N] with the start of one attempt; every choice hangs on the random stream `state` alone."""
+    if seeds.q.shape[0] == 0:
+        draw_uniform(ranges, seeds.first_box, state, attempt, out_q)
+        return
+    drives = seeds.base[0] >= 0
+    first, count = draw_window(seeds, target, index, drives, state, attempt)
+    best = find_tilt(seeds, target, index, first, count) if drives else find_pose(seeds, target, index, first, count)
+    for k in range(out_q.size):
+        out_q[k] = seeds.q[best, k]
+    if drives:
+        set_base(seeds, target, index, ranges, state, best, out_q)
+
+
+@inline_kernel
+def draw_window(seeds, target, index, drives, state, attempt):
+    """The first of the configurations to compare, and how many."""
+    size = seeds.q.shape[0]
+    if attempt >= LUCKY_ATTEMPTS:
+        return next_index(state, size), 1
+    if not drives:
+        return next_index(state, size - COMPARED_WHOLE + 1), COMPARED_WHOLE
+    count = 1 if target.kind[index] == POSITION else COMPARED
+    bins = seeds.height_start.size - 1
+    height = (target.T_world_tool[index, 2, 3] - seeds.lowest) * seeds.bins_per_metre
+    middle = seeds.height_start[min(max(np.int64(height), 0), bins)]
+    window = min(WINDOW << attempt, size)
+    first = middle + next_index(state, window) - window // 2 - count // 2
+    return min(max(first, 0), size - count), count
+
+
+@inline_kernel
+def draw_uniform(ranges, first_box, state, attempt, out_q):
+    """First ranges[2] itself, then uniform in a box about it that doubles with each attempt."""
+    share = first_box
+    for _ in range(attempt - 1):
+        share = min(1.0, 2.0 * share)
+    for k in range(out_q.size):
+        lower, upper, near = ranges[0, k], ranges[1, k], ranges[2, k]
+        low, high = max(lower, near - share * (upper - lower)), min(upper, near + share * (upper - lower))
+        out_q[k] = near if attempt == 0 and first_box < 1.0 else low + next_uniform(state) * (high - low)
+
+
+@inline_kernel
+def find_tilt(seeds, target, index, first, count):
+    """The one of `count` configurations from `first` on whose tool leans most like the target's."""
+    P = seeds.T_world_tool
+    x, y, z = target.T_world_tool[index, 2, 0], target.T_world_tool[index, 2, 1], target.T_world_tool[index, 2, 2]
+    if target.kind[index] == AXIS:
+        x, y = 0.0, 0.0
+    best, largest = first, -np.inf
+    for i in range(first, first + count):
+        likeness = P[8, i] * x + P[9, i] * y + P[10, i] * z
+        if target.kind[index] == AXIS:
+            likeness = -abs(P[10, i] - z)
+        if likeness > largest:
+            best, largest = i, likeness
+    return best
+
+
+@inline_kernel
+def find_pose(seeds, target, index, first, count):
+    """The one of `count` configurations from `first` on whose tool is nearest to the target."""
+    T, P, kind = target.T_world_tool[index], seeds.T_world_tool, target.kind[index]
+    length = 2.0 * seeds.rotation_length * seeds.rotation_length
+    best, smallest = first, np.inf
+    for i in range(first, first + count):
+        dx, dy, dz = P[X, i] - T[0, 3], P[Y, i] - T[1, 3], P[Z, i] - T[2, 3]
+        likeness = 0.0
+        if kind != POSITION:
+            likeness = P[2, i] * T[0, 2] + P[6, i] * T[1, 2] + P[10, i] * T[2, 2]
+        if kind == POSE:
+            likeness += P[0, i] * T[0, 0] + P[4, i] * T[1, 0] + P[8, i] * T[2, 0]
+            likeness += P[1, i] * T[0, 1] + P[5, i] * T[1, 1] + P[9, i] * T[2, 1]
+        distance = dx * dx + dy * dy + dz * dz - length * likeness
+        if distance < smallest:
+            best, smallest = i, distance
+    return best
+
+
+@inline_kernel
+def set_base(seeds, target, index, ranges, state, best, q):
+    """Drive the base so that the tool stands over the target and heads as it does: the pool's own base is at zero."""
+    T, P, kind = target.T_world_tool[index], seeds.T_world_tool, target.kind[index]
+    x, y, turn = seeds.base[0], seeds.base[1], seeds.base[2]
+    across, along = 0.0, 0.0  # sine and cosine of the heading to turn by, times a length
+    if kind == AXIS:
+        across, along = P[2, best] * T[1, 2] - P[6, best] * T[0, 2], P[2, best] * T[0, 2] + P[6, best] * T[1, 2]
+    elif kind == POSE:
+        for k in range(3):
+            across += P[k, best] * T[1, k] - P[4 + k, best] * T[0, k]
+            along += P[k, best] * T[0, k] + P[4 + k, best] * T[1, k]
+    if across == 0.0 and along == 0.0:
+        angle = ranges[0, turn] + next_uniform(state) * (ranges[1, turn] - ranges[0, turn])
+    else:
+        angle = math.copysign(angle_from_sides(abs(across), along), across)
+        angle = min(max(angle, ranges[0, turn]), ranges[1, turn])
+    s, c = sin_cos(angle)
+    q[turn] = angle
+    q[x] = min(max(T[0, 3] - c * P[X, best] + s * P[Y, best], ranges[0, x]), ranges[1, x])
+    q[y] = min(max(T[1, 3] - s * P[X, best] - c * P[Y, best], ranges[0, y]), ranges[1, y])
+
+
+@kernel
+def fill_poses(robot, q, out_T):
+    """Pose of the tool at each row of `q` [K, N], into `out_T` [12, K], row by row of the transform [3, 4]."""
+    T_world_body, T_world_tool = np.empty((robot.bodies.shape[0], 3, 4)), np.empty((3, 4))
+    for row in range(q.shape[0]):
+        compute_bodies(robot, q[row], T_world_body)
+        compute_tool(robot, T_world_body, T_world_tool)
+        for i in range(3):
+            for j in range(4):
+                out_T[4 * i + j, row] = T_world_tool[i, j]

@@ -1,0 +1,126 @@
+"""Several solutions of one target, far enough apart to be a choice, best first by a stated cost."""
+
+from collections.abc import Callable
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import Detector, Robot
+from ikde.model.target import Target
+from ikde.solver.joints import JointValues
+from ikde.solver.problem import Freeze, Problem, make_problem
+from ikde.solver.result import SolveResult
+from ikde.solver.rows import solve_rows
+from ikde.solver.settings import SolveSettings, check_seed, choose_settings
+
+TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
+SAMPLES = 16  # solves for each solution that is wanted, to choose from
+ROUNDS = 4  # as often, if they were too much alike
+
+Rank = Literal["motion", "clearance", "found"]
+
+
+def solve_distinct(
+    robot: Robot,
+    target: Target,
+    count: int,
+    settings: SolveSettings | None = None,
+    *,
+    rank: Rank = "motion",
+    seed: int = 0,
+    method: str = "auto",
+    detector: str | Detector | None = None,
+    near: JointValues | None = None,
+    freeze: Freeze | None = None,
+    announce_compile: Callable[[], None] | None = None,
+) -> list[SolveResult]:
+    """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
+
+    The list is shorter if no more are found; unreached, it holds one result with the reason.
+
+    Args:
+        robot: the robot.
+        target: what the tool is asked to do.
+        count: how many are wanted.
+        settings: tolerances and search settings; None for the method's own.
+        rank: what comes first, and what is kept of many: `"motion"`, the least root mean square of the joints'
+            distances from `near` (else home) as shares of their ranges; `"clearance"`, the largest; `"found"`, in the
+            order of the search, the first being that of `solve`.
+        seed: same seed, same bits.
+        method: the engine.
+        detector: as for `solve`.
+        near: as for `solve`.
+        freeze: as for `solve`.
+        announce_compile: called once if kernels must be compiled first.
+    """
+    if count < 1:
+        raise InputError(f"expected a whole number of at least 1, got {count}", ("count",))
+    if rank not in get_args(Rank):
+        raise InputError(f"expected one of {', '.join(get_args(Rank))}, got {rank!r}", ("rank",))
+    chosen = choose_settings(settings, method)
+    problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
+    options = {"seed": check_seed(seed), "strict": True, "announce_compile": announce_compile}
+    first = solve_rows(problem, [target], **options).row(0)
+    if not first.reached or count == 1:
+        return [first]
+    look = _go_on if chosen.evolves or chosen.method == "memetic" else _sample
+    solutions = look(problem, target, count, first, options)
+    return sort_solutions(problem, solutions, rank)[:count]
+
+
+def sort_solutions(problem: Problem, solutions: list[SolveResult], rank: Rank) -> list[SolveResult]:
+    """Best first; equals stay in the order in which they were found."""
+    if rank == "motion":
+        return sorted(solutions, key=lambda result: motion_cost(problem, result.q))
+    if rank == "clearance":
+        return sorted(solutions, key=lambda result: -(result.clearance_m or 0.0))
+    return solutions
+
+
+def motion_cost(problem: Problem, q: Floats) -> float:
+    """Root mean square of the joints' distances from `near`, else home, as shares of their ranges."""
+    start = problem.robot.home if problem.near is None else problem.near
+    widths = problem.robot.upper - problem.robot.lower
+    shares = (q - start) / np.where(widths > 0.0, widths, 1.0)
+    return float(np.sqrt(np.mean(shares**2)))
+
+
+def _sample(
+    problem: Problem, target: Target, count: int, first: SolveResult, options: dict[str, Any]
+) -> list[SolveResult]:
+    """Distinct solutions of many solves side by side, each on a stream of its own."""
+    solutions, size = [first], SAMPLES * count
+    for stream in range(1, 1 + ROUNDS * size, size):
+        rows = solve_rows(problem, [target] * size, first_stream=stream, probe=False, **options)
+        for row in np.flatnonzero(rows.reached).tolist():
+            if all(are_distinct(problem.robot, rows.q[row], other.q) for other in solutions):
+                solutions.append(rows.row(row))
+        if len(solutions) >= count:
+            break
+    return solutions
+
+
+def _go_on(
+    problem: Problem, target: Target, count: int, first: SolveResult, options: dict[str, Any]
+) -> list[SolveResult]:
+    """Distinct solutions of one stream: the search goes on where it has found one."""
+    solutions, attempt = [first], first.attempts
+    most = count * problem.settings.budget(first.method)
+    while len(solutions) < count and attempt < most:
+        result = solve_rows(problem, [target], first_attempt=attempt, probe=False, **options).row(0)
+        attempt += result.attempts
+        if not result.reached:
+            break
+        if all(are_distinct(problem.robot, result.q, other.q) for other in solutions):
+            solutions.append(result)
+    return solutions
+
+
+def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
+    """True if a revolute joint differs by more than 0.1 rad (around the circle) or the slides by more than 50 mm."""
+    difference = np.abs(q - other)
+    turns = difference[~robot.slides] % (2.0 * np.pi)
+    turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
+    return bool(np.any(turned) or np.linalg.norm(difference[robot.slides]) > SLIDE_APART_M)

@@ -1,0 +1,53 @@
+"""`analytic`: every branch of a UR-type arm in closed form, the base drawn from the seeds."""
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Ints
+from ikde.kernels.pose_error import POSE
+from ikde.model.closed_form import find_ur_arm, pack_ur_arm
+from ikde.model.pack import pack_robot
+from ikde.model.robot import Robot
+from ikde.solver.engines.engine import Question, make_ranges
+from ikde.solver.engines.pool import load_kernels, make_seeds
+
+
+class Analytic:
+    """Poses only; an arm without a base that moves is done with one attempt, and that is a proof."""
+
+    name = "analytic"
+    rows_per_call = 1024
+    attempts_per_call = 256
+
+    def __init__(self, question: Question) -> None:
+        self._question, problem = question, question.problem
+        check_closed_form(problem.robot)
+        if (question.targets.kind != POSE).any():
+            raise InputError("the closed form needs a whole pose: a position and an orientation", ("method",))
+        self._arm = find_ur_arm(problem.robot)
+        self._kernels = load_kernels(problem.robot, problem.detector, "pose")
+        self._seeds = make_seeds(problem, "pose")
+
+    def prepare(self) -> None:
+        """Compile or load the kernel."""
+        self.call(range(0), 0, np.zeros(0, dtype=np.int64))
+
+    def call(self, rows: range, first: int, last: Ints) -> None:
+        """Make attempts first .. last - 1 on the rows that are not reached yet."""
+        asked, arm = self._question, self._arm
+        if arm is None:
+            return
+        module, robot, detector = self._kernels
+        attempts = asked.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))
+        where = (asked.targets, np.array([rows.start, rows.stop]), make_ranges(asked.problem), self._seeds)
+        with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
+            module.solve_branches(
+                *(pack_robot(asked.problem.robot), robot, detector, pack_ur_arm(arm), arm.carrier, *where),
+                *(asked.seed, asked.streams, attempts, *asked.outputs),
+            )
+
+
+def check_closed_form(robot: Robot) -> None:
+    """Raise `InputError` for a robot without a closed form."""
+    if find_ur_arm(robot) is None:
+        raise InputError(f"{robot.name} has no closed form: its last six joints are no UR-type arm", ("method",))

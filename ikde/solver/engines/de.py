@@ -1,0 +1,46 @@
+"""`de`: the differential evolution of the papers [Qiao2021, Qiao2022]."""
+
+import numpy as np
+
+from ikde.kernels.arrays import Ints
+from ikde.kernels.lanes import solve_lanes
+from ikde.model.pack import pack_detector, pack_robot
+from ikde.solver.engines.engine import Question
+from ikde.solver.problem import ROUNDING, Problem, pack_search
+
+EVALUATIONS_PER_CALL = 20_000  # some 20 ms: searches that are shorter share a call, up to
+LANES_PER_CALL = 64
+
+
+class DifferentialEvolution:
+    """A lane a target: population after population."""
+
+    name = "de"
+    attempts_per_call = 16
+
+    def __init__(self, question: Question) -> None:
+        self._question, problem = question, question.problem
+        detector = pack_detector(problem.robot, problem.detector)
+        self._detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)
+        self._robot, self._search = pack_robot(problem.robot), pack_search(problem)
+        self.rows_per_call = _lanes_per_call(problem)
+
+    def prepare(self) -> None:
+        """Compile or load the kernel."""
+        self.call(range(0), 0, np.zeros(0, dtype=np.int64))
+
+    def call(self, rows: range, first: int, last: Ints) -> None:
+        """Make attempts first .. last - 1 on the rows that are not reached yet."""
+        asked = self._question
+        where, block = np.array([rows.start, rows.stop]), np.array([first, first + self.attempts_per_call])
+        arrays = (self._robot, self._detector, asked.targets, where, self._search)
+        with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
+            solve_lanes(*arrays, asked.seed, asked.streams, block, last, *asked.outputs)
+
+
+def _lanes_per_call(problem: Problem) -> int:
+    """How many lanes share a call: one, unless the search is very short."""
+    settings = problem.settings
+    attempts = min(settings.budget("de"), DifferentialEvolution.attempts_per_call)
+    evaluations = settings.population * (settings.generations + 1) * attempts
+    return int(np.clip(EVALUATIONS_PER_CALL // evaluations, 1, LANES_PER_CALL))

@@ -1,0 +1,72 @@
+"""What an engine is, and the inputs that all of them share."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from ikde.kernels.arrays import REACHED, DescentArrays, Floats, Ints, TargetArrays
+from ikde.model.pack import pack_targets
+from ikde.model.target import Targets
+from ikde.solver.engines.found import Found
+from ikde.solver.engines.pool import rotation_length_m
+from ikde.solver.problem import Problem, shrink_tolerances
+
+
+class Engine(Protocol):
+    """Makes attempts on the rows of a `Found`: each row's answer hangs on its stream and the attempts only."""
+
+    name: str
+    rows_per_call: int
+    """Rows that share a call of the kernel."""
+    attempts_per_call: int
+    """Python hears Ctrl-C between calls."""
+
+    def prepare(self) -> None:
+        """Compile or load the kernel that `call` is going to need, so that no clock counts it."""
+        ...
+
+    def call(self, rows: range, first: int, last: Ints) -> None:
+        """Make attempts first .. last[row] - 1, at most `attempts_per_call`, on every row that is open."""
+        ...
+
+
+class Question:
+    """Problem, targets and streams as the kernels take them, and the rows to be filled."""
+
+    def __init__(self, problem: Problem, targets: Targets, found: Found, *, seed: int, streams: Sequence[int]) -> None:
+        self.problem, self.found = problem, found
+        self.targets: TargetArrays = pack_targets(targets)
+        self.seed: np.uint64 = np.uint64(seed)
+        self.streams: Ints = np.array(streams, dtype=np.int64)
+
+    def attempts(self, rows: range, first: int, last: Ints, kind: int | None = None) -> Ints:
+        """Attempts [rows, 2] to make: first .. last - 1 where a row is open and its target of this kind, else none."""
+        inside = slice(rows.start, rows.stop)
+        wanted = (self.found.counts[inside, REACHED] == 0) & (self.found.excess_m[inside] == 0.0)
+        if kind is not None:
+            wanted &= self.targets.kind[inside] == kind
+        attempts = np.full((len(rows), 2), first)
+        attempts[:, 1] = np.where(wanted, last[inside], first)
+        return attempts
+
+    @property
+    def outputs(self) -> tuple[Floats, Floats, Ints, Ints]:
+        """What the kernels fill."""
+        return self.found.q, self.found.score, self.found.counts, self.found.pair_counts
+
+
+def make_ranges(problem: Problem) -> Floats:
+    """Lower, upper, and the middle of boxes [3, N]."""
+    near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
+    return np.array([problem.lower, problem.upper, near])
+
+
+def make_descent(problem: Problem) -> DescentArrays:
+    """Settings of damped least squares; the tolerances a hair smaller, so that rounding cannot turn the grade."""
+    position, orientation = shrink_tolerances(problem.settings)
+    return DescentArrays(
+        rotation_length=rotation_length_m(problem.robot),
+        position_tolerance=position,
+        orientation_tolerance=orientation,
+    )

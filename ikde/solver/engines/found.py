@@ -1,0 +1,42 @@
+"""What engines fill, a row a target."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ikde.kernels.arrays import COUNTS, Floats, Ints
+from ikde.solver.problem import Problem
+
+ENGINES = ("de", "lm", "analytic", "memetic")  # in the order of their numbers in `Found.engine`
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Found:
+    """What the kernels found, a row a target."""
+
+    q: Floats  # [T, N]
+    score: Floats  # [T, 2] how good `q` is: 0 if the pose is met, else 1; then depth or cost in m
+    counts: Ints  # [T, COUNTS]
+    pair_counts: Ints  # [T, P]
+    excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
+    seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
+    engine: Ints  # [T] who answered: index into `ENGINES`
+
+    def row(self, index: int) -> "Found":
+        """One target's share."""
+        rows = slice(index, index + 1)
+        return Found(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+
+
+def make_found(problem: Problem, count: int) -> Found:
+    """Buffers for so many targets, of which nothing is found yet."""
+    pairs = len(problem.robot.pairs(problem.detector))
+    return Found(
+        q=np.zeros((count, len(problem.robot.joints))),
+        score=np.full((count, 2), np.inf),
+        counts=np.zeros((count, COUNTS), dtype=np.int64),
+        pair_counts=np.zeros((count, pairs), dtype=np.int64),
+        excess_m=np.zeros(count),
+        seconds=np.zeros(count),
+        engine=np.zeros(count, dtype=np.int64),
+    )

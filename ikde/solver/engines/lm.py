@@ -1,0 +1,47 @@
+"""`lm`: damped least squares from collision-free seeds, by kernels written for the robot."""
+
+import numpy as np
+
+from ikde.kernels.arrays import Ints
+from ikde.solver.engines.engine import Question, make_descent, make_ranges
+from ikde.solver.engines.pool import load_kernels, make_seeds
+
+KIND_NAMES = ("position", "axis", "pose")  # by `TargetArrays.kind`
+FEW = 4  # targets: so few are solved one after the other, more side by side
+
+
+class DampedLeastSquares:
+    """Solves the rows of each kind of target with that kind's kernels."""
+
+    name = "lm"
+    rows_per_call = 1024
+    attempts_per_call = 256
+
+    def __init__(self, question: Question) -> None:
+        self._question, problem = question, question.problem
+        self._settings = make_ranges(problem), make_descent(problem)
+        kinds = np.unique(question.targets.kind).tolist()
+        names = {kind: KIND_NAMES[kind] for kind in kinds}
+        self._kernels = {kind: load_kernels(problem.robot, problem.detector, names[kind]) for kind in kinds}
+        self._seeds = {kind: make_seeds(problem, names[kind]) for kind in kinds}
+
+    def prepare(self) -> None:
+        """Compile or load what solves one target, or many."""
+        rows = range(min(len(self._question.streams), FEW + 1))
+        self.call(rows, 0, np.zeros(len(self._question.streams), dtype=np.int64))
+
+    def call(self, rows: range, first: int, last: Ints) -> None:
+        """Make attempts first .. last - 1 on the rows that are not reached yet."""
+        asked = self._question
+        stop = np.minimum(last, first + self.attempts_per_call)
+        for kind, (module, robot, detector) in self._kernels.items():
+            attempts = asked.attempts(rows, first, stop, kind)
+            settings = (*self._settings, self._seeds[kind], asked.seed)
+            with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
+                if len(rows) > FEW:
+                    where = (asked.targets, np.array([rows.start, rows.stop]))
+                    module.solve_targets(robot, detector, *where, *settings, asked.streams, attempts, *asked.outputs)
+                    continue
+                for row, block in zip(rows, attempts, strict=True):
+                    lane = (asked.streams[row], block, *(array[row] for array in asked.outputs))
+                    module.solve_target(robot, detector, asked.targets, row, *settings, *lane)

@@ -1,0 +1,40 @@
+"""`memetic`: differential evolution that adapts itself, polished by damped least squares; for what is hard."""
+
+import numpy as np
+
+from ikde.kernels.arrays import Ints, MemeticArrays
+from ikde.kernels.memetic import solve_memetic_lane
+from ikde.model.pack import pack_detector, pack_robot
+from ikde.solver.engines.engine import Question, make_descent
+from ikde.solver.problem import ROUNDING, pack_search
+
+
+class Memetic:
+    """A lane a target, each attempt a population of its own."""
+
+    name = "memetic"
+    rows_per_call = 1
+    attempts_per_call = 1
+
+    def __init__(self, question: Question) -> None:
+        self._question, problem = question, question.problem
+        detector = pack_detector(problem.robot, problem.detector)
+        self._arrays = (
+            pack_robot(problem.robot),
+            detector._replace(safe_distance=detector.safe_distance + ROUNDING),
+        )
+        search = pack_search(problem)
+        self._settings = (search, MemeticArrays(), make_descent(problem))
+
+    def prepare(self) -> None:
+        """Compile or load the kernel."""
+        self.call(range(min(len(self._question.streams), 1)), 0, np.zeros(1, dtype=np.int64))
+
+    def call(self, rows: range, first: int, last: Ints) -> None:
+        """Make attempts first .. last - 1 on the rows that are not reached yet."""
+        asked = self._question
+        attempts = asked.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))
+        with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
+            for row, block in zip(rows, attempts, strict=True):
+                lane = (asked.seed, asked.streams[row], block, *(array[row] for array in asked.outputs))
+                solve_memetic_lane(*self._arrays, asked.targets, row, *self._settings, *lane)

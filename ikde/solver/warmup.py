@@ -1,0 +1,70 @@
+"""Compile ahead: everything that a robot's solves are going to need, one small solve after the other."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from ikde.kernels.jit import compile_clock
+from ikde.model.closed_form import find_ur_arm
+from ikde.model.robot import Detector, Robot
+from ikde.model.target import Target
+from ikde.solver.plain import compute_frames
+from ikde.solver.settings import SolveSettings
+from ikde.solver.solve import solve_many
+
+SEVERAL = 5  # targets: as many are solved side by side
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stage:
+    """One part of the warm-up."""
+
+    name: str
+    run: Callable[[], object]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compiled:
+    """What a stage took; 0 s if its machine code was in the cache."""
+
+    name: str
+    seconds: float
+
+
+def list_stages(robot: Robot, detector: str | Detector | None = None) -> list[Stage]:
+    """What there is to compile: a robot's own kernels for each kind of target, and the engines that serve all."""
+    T = compute_frames(robot, robot.home)[robot.tool]
+    targets = {
+        "position": Target(T[:3, 3]),
+        "axis": Target(T[:3, 3], axis_world_tool=T[:3, 2]),
+        "pose": Target(T[:3, 3], R_world_tool=T[:3, :3]),
+    }
+    lm, closed, memetic = (SolveSettings(method=m, restarts=1) for m in ("lm", "analytic", "memetic"))
+    paper = SolveSettings.for_method("de").with_changes(restarts=1, generations=1)
+    asked = []
+    for kind, target in targets.items():
+        asked += [(f"lm, one {kind}", [target], lm), (f"lm, many of {kind}", [target] * SEVERAL, lm)]
+    if find_ur_arm(robot) is not None:
+        asked.append(("analytic", [targets["pose"]], closed))
+    asked += [("memetic", [targets["position"]], memetic), ("de", [targets["position"]], paper)]
+    return [_stage(name, robot, several, settings, detector) for name, several, settings in asked]
+
+
+def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None = None) -> list[Compiled]:
+    """Run stages in order; `progress` is told the number of each before it begins."""
+    done = []
+    for number, stage in enumerate(stages):
+        if progress is not None:
+            progress(number, stage)
+        with compile_clock() as clock:
+            stage.run()
+        done.append(Compiled(name=stage.name, seconds=clock.seconds))
+    return done
+
+
+def _stage(
+    name: str, robot: Robot, targets: list[Target], settings: SolveSettings, detector: str | Detector | None
+) -> Stage:
+    """A solve whose answer nobody is going to read: no search for reasons."""
+    options = {"detector": detector, "explain_failures": False}
+    return Stage(name=name, run=partial(solve_many, robot, targets, settings, **options))

@@ -1,0 +1,111 @@
+"""URDF as Pinocchio reads it: the same frames, limits and sphere centres as ikde's own."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ikde
+from ikde.io.urdf import format_urdf, rpy_from_rotation
+from ikde.model.rotation import rotation_from_rpy
+from ikde.solver.plain import compute_components
+from tests.conftest import ROBOTS, random_q
+from tests.random_robots import make_frame, make_robot, random_robot
+
+COUNT = 50
+EXACT = {"rtol": 0, "atol": 1e-12}
+angles = st.floats(-np.pi, np.pi)
+pitches = st.one_of(angles, st.sampled_from([-0.5 * np.pi, 0.5 * np.pi, 0.5 * np.pi - 1e-9, 1e-8 - 0.5 * np.pi]))
+
+
+class Reader:
+    """What Pinocchio makes of a robot's URDF, with q in the robot's order of joints."""
+
+    def __init__(self, robot):
+        text = format_urdf(robot)
+        self.model = pin.buildModelFromXML(text)
+        self.geometry = pin.buildGeomFromUrdfString(self.model, text, pin.GeometryType.COLLISION)
+        self.data, self.places = self.model.createData(), self.geometry.createData()
+        self.columns = [self.model.joints[self.model.getJointId(name)].idx_q for name in robot.joint_names]
+
+    def order(self, q):
+        values = np.empty(self.model.nq)
+        values[self.columns] = q
+        return values
+
+    def move(self, q):
+        pin.framesForwardKinematics(self.model, self.data, self.order(q))
+        pin.updateGeometryPlacements(self.model, self.data, self.geometry, self.places)
+
+    def frame(self, name):
+        return self.data.oMf[self.model.getFrameId(name, pin.FrameType.BODY)].homogeneous
+
+    def spheres(self):
+        """Centre and radius by the link that carries them, in order."""
+        found = {}
+        for shape, place in zip(self.geometry.geometryObjects, self.places.oMg, strict=True):
+            link = self.model.frames[shape.parentFrame].name
+            found.setdefault(link, []).append((*place.translation, shape.geometry.radius))
+        return found
+
+
+@pytest.fixture(params=[*ROBOTS, *range(6)])
+def robot(request):
+    """Every robot that ships, and random ones."""
+    return random_robot(request.param) if isinstance(request.param, int) else ikde.load_robot(request.param)
+
+
+def test_frames_are_those_of_pinocchio(robot, rng):
+    reader = Reader(robot)
+    for q in [robot.home, robot.lower, robot.upper, *random_q(robot, rng, COUNT)]:
+        reader.move(q)
+        Ts_world = ikde.forward(robot, q)
+        for name in (frame.name for frame in robot.frames):
+            np.testing.assert_allclose(reader.frame(name), Ts_world[name], **EXACT, err_msg=name)
+
+
+def test_spheres_are_those_of_pinocchio(robot, rng):
+    reader, detector = Reader(robot), robot.detector(None)
+    for q in random_q(robot, rng, COUNT if detector else 0):
+        reader.move(q)
+        found = reader.spheres()
+        components = compute_components(robot, detector.spheres, q)
+        assert sorted(found) == sorted(f"component_{name}" for name in components)
+        for name, (centres, radii) in components.items():
+            expected = np.column_stack([centres, radii])
+            np.testing.assert_allclose(found[f"component_{name}"], expected, **EXACT, err_msg=name)
+
+
+def test_limits_are_the_robots_own_bits(robot):
+    reader = Reader(robot)
+    assert reader.model.lowerPositionLimit.tolist() == reader.order(robot.lower).tolist()
+    assert reader.model.upperPositionLimit.tolist() == reader.order(robot.upper).tolist()
+
+
+def test_joints_keep_their_names_and_kinds(robot):
+    joints = {j.get("name"): j.get("type") for j in ET.fromstring(format_urdf(robot)).iter("joint")}
+    assert {joint.name: joint.kind for joint in robot.joints}.items() <= joints.items()
+    rest = [kind for name, kind in joints.items() if name not in robot.joint_names]
+    assert set(rest) <= {"fixed"}
+
+
+def test_every_frame_is_a_link(robot):
+    links = [link.get("name") for link in ET.fromstring(format_urdf(robot)).iter("link")]
+    assert len(links) == len(set(links))
+    assert {"world", *(frame.name for frame in robot.frames)} <= set(links)
+
+
+def test_a_frame_named_like_ours_makes_room():
+    frames = [make_frame("tool", "world", joint="fixed_tip", axis=(0, 0, 1)), make_frame("tip", "tool", (1, 0, 0))]
+    robot = make_robot({"fixed_tip": "revolute"}, frames)
+    assert [j.get("name") for j in ET.fromstring(format_urdf(robot)).iter("joint")] == ["fixed_tip", "fixed_tip_"]
+
+
+@settings(derandomize=True, deadline=None, max_examples=200)
+@given(roll=angles, pitch=pitches, yaw=angles)
+def test_a_rotation_comes_back_from_its_angles(roll, pitch, yaw):
+    R = rotation_from_rpy(np.array([roll, pitch, yaw]))
+    np.testing.assert_allclose(rotation_from_rpy(rpy_from_rotation(R)), R, rtol=0, atol=3e-15)

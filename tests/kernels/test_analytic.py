@@ -1,0 +1,183 @@
+"""The engine `analytic`: what it finds is exact, free, inside the limits, and the nearest branch where one is asked."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.kernels import analytic
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED
+from ikde.kernels.closed_form import ANGLES, BRANCHES, solve_ur_arm
+from ikde.model.closed_form import find_ur_arm, pack_ur_arm
+from ikde.model.generate.assemble import format_module
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.target import Target, Targets
+from ikde.solver.plain import compute_frames
+from ikde.solver.verify import verify_many
+from tests.collision_robots import find_gaps, tell
+from tests.conftest import random_q
+from tests.kernels.seeding import no_seeds, pack_seeds
+from tests.uncompiled import plain, plain_module, quietly, run_text
+from tests.ur_robots import random_ur_robot
+
+PLAIN = plain_module(analytic)
+EXACT = ikde.SolveSettings(position_tolerance_m=1e-11, orientation_tolerance_rad=1e-7)
+QIAO, UR5 = (ikde.load_robot(name) for name in ("qiao2021", "ur5"))
+every_robot = pytest.mark.parametrize("robot", [QIAO, UR5], ids=lambda robot: robot.name)
+BASE = np.array([0, 1, 2])
+
+
+def free_q(robot, rng, count):
+    """Configurations inside the limits that are free of collision."""
+    detector = robot.detector(None)
+    Q = random_q(robot, rng, 20 * count)
+    return Q[(find_gaps(robot, detector, Q) > detector.safe_distance_m).all(axis=1)][:count]
+
+
+def make_targets(robot, Q):
+    T = compute_frames(robot, Q)[robot.tool]
+    return Targets.of([Target(t[:3, 3], R_world_tool=t[:3, :3]) for t in T])
+
+
+def make_pool(robot, rng):
+    if robot is not QIAO:
+        return no_seeds(robot)
+    Q = free_q(robot, rng, 300)
+    Q[:, BASE] = 0.0
+    return pack_seeds(robot, Q, BASE)
+
+
+def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None, streams=None):
+    """The outputs of the kernel, by tables or by a module of the robot's own."""
+    detector, arm, count = robot.detector(None), find_ur_arm(robot), len(targets)
+    packed, arrays = pack_detector(robot, detector), pack_robot(robot)
+    tables = (arrays, packed._replace(safe_distance=packed.safe_distance + 1e-12))
+    safe_distance_m = detector.safe_distance_m if detector else 0.0
+    tables = tables if module is PLAIN else (0, tell(safe_distance_m + 1e-12))
+    outputs = SimpleNamespace(
+        q=np.zeros((count, len(robot.joints))),
+        score=np.full((count, 2), np.inf),
+        counts=np.zeros((count, COUNTS), dtype=np.int64),
+        pairs=np.zeros((count, len(packed.pairs)), dtype=np.int64),
+    )
+    rows = (0, count) if rows is None else rows
+    middle = 0.5 * (robot.lower + robot.upper) if near is None else near
+    ranges = np.array([robot.lower, robot.upper, middle])
+    attempts = np.tile([0, budget], (rows[1] - rows[0], 1))
+    streams = np.arange(count) if streams is None else streams
+    with quietly():
+        module.solve_branches(
+            *(arrays, *tables, pack_ur_arm(arm), arm.carrier, pack_targets(targets), np.array(rows), ranges, seeds),
+            *(np.uint64(4), streams, attempts, *vars(outputs).values()),
+        )
+    return outputs
+
+
+def list_branches(robot, T):
+    """All solutions [n, 6] of a robot that is an arm and nothing else, for a tool pose [4, 4]."""
+    work, out_q = np.empty((2, ANGLES)), np.empty((BRANCHES, 6))
+    ranges = np.array([robot.lower, robot.upper])
+    count = plain(solve_ur_arm)(pack_ur_arm(find_ur_arm(robot)), ranges, T[:3], work, out_q, np.empty(BRANCHES, int))
+    return out_q[:count]
+
+
+@every_robot
+def test_what_is_reached_is_exact_free_and_inside_the_limits(robot, rng):
+    targets = make_targets(robot, free_q(robot, rng, 25))
+    found = run(robot, targets, make_pool(robot, rng))
+    reached = found.counts[:, REACHED] == 1
+    assert reached.mean() > 0.9
+    verdicts = verify_many(robot, targets, found.q, EXACT, robot.detector(None))
+    assert verdicts.accepted[reached].all()
+    assert verdicts.within_tolerance[found.score[:, 0] == 0.0].all()
+
+
+def test_an_arm_without_a_base_is_done_with_one_attempt(rng):
+    """Made by a free configuration: one of all branches is free."""
+    targets = make_targets(UR5, free_q(UR5, rng, 30))
+    found = run(UR5, targets, no_seeds(UR5), budget=1)
+    assert (found.counts[:, REACHED] == 1).all()
+    assert (found.counts[:, ATTEMPTS] == 1).all()
+
+
+@every_robot
+def test_counts_add_up(robot, rng):
+    targets = make_targets(robot, random_q(robot, rng, 25))
+    found, budget = run(robot, targets, make_pool(robot, rng), budget=3), 3
+    reached = found.counts[:, REACHED] == 1
+    assert (found.counts[~reached, ATTEMPTS] == budget).all()
+    assert (found.counts[:, ATTEMPTS] <= budget).all()
+    assert (found.counts[:, EVALUATIONS] <= 8 * found.counts[:, ATTEMPTS]).all()
+    assert (found.counts[:, COLLIDING] + reached <= found.counts[:, EVALUATIONS]).all()
+    np.testing.assert_array_equal(found.pairs.sum(axis=1), found.counts[:, COLLIDING])
+    met = found.counts[:, EVALUATIONS] > 0
+    assert (found.score[reached] == [0.0, -1.0]).all()
+    assert (found.score[met & ~reached] == 0.0).all()
+    assert np.isinf(found.score[~met]).all()
+    # Who is not reached keeps one that meets the target but collides.
+    verdicts = verify_many(robot, targets, found.q, EXACT, robot.detector(None))
+    assert verdicts.within_tolerance[met].all()
+    assert not verdicts.accepted[met & ~reached].any()
+
+
+def test_near_a_configuration_the_nearest_free_branch_is_taken(rng):
+    """Against all branches, each judged by plain numpy."""
+    detector, width, seen = UR5.detector(None), UR5.upper - UR5.lower, 0
+    for q in free_q(UR5, rng, 25):
+        near = random_q(UR5, rng)
+        T = compute_frames(UR5, q)[UR5.tool]
+        targets = Targets.of([Target(T[:3, 3], R_world_tool=T[:3, :3])])
+        branches = list_branches(UR5, T)
+        free = (find_gaps(UR5, detector, branches) > detector.safe_distance_m).all(axis=1)
+        distance = (((branches - near) / width) ** 2).sum(axis=1)
+        expected = branches[free][distance[free].argmin()]
+        found = run(UR5, targets, no_seeds(UR5, 1.0 / 64.0), budget=1, near=near)
+        np.testing.assert_allclose(found.q[0], expected, rtol=0, atol=1e-9)
+        seen += distance[free].argmin() > 0
+    assert seen > 0
+
+
+def test_the_first_base_near_a_configuration_is_its_own(rng):
+    """Attempt 0 keeps the base where it is: the configuration that made the target is found again."""
+    Q = free_q(QIAO, rng, 10)
+    for q in Q:
+        found = run(QIAO, make_targets(QIAO, q[None]), no_seeds(QIAO, 1.0 / 64.0), budget=1, near=q)
+        np.testing.assert_allclose(found.q[0], q, rtol=0, atol=1e-7)
+
+
+@every_robot
+def test_a_module_of_the_robots_own_finds_the_same(robot, rng):
+    module = run_text(format_module(robot, robot.detector(None), "pose"))
+    targets, seeds = make_targets(robot, random_q(robot, rng, 20)), make_pool(robot, rng)
+    by_tables, own = run(robot, targets, seeds), run(robot, targets, seeds, module=module)
+    for name in ("q", "score", "counts"):
+        np.testing.assert_array_equal(getattr(by_tables, name), getattr(own, name))
+
+
+@every_robot
+def test_rows_do_not_hang_on_each_other(robot, rng):
+    targets, seeds = make_targets(robot, random_q(robot, rng, 12)), make_pool(robot, rng)
+    whole, part = run(robot, targets, seeds), run(robot, targets, seeds, rows=(4, 9))
+    for name in ("q", "score", "counts", "pairs"):
+        np.testing.assert_array_equal(getattr(whole, name)[4:9], getattr(part, name)[4:9])
+        outside = np.delete(getattr(part, name), range(4, 9), axis=0)
+        assert (np.isinf(outside) if name == "score" else outside == 0).all()
+
+
+def test_nothing_is_found_out_of_reach(rng):
+    targets = Targets.of([Target([3.0, 0.0, 0.5], R_world_tool=np.eye(3))])
+    found = run(UR5, targets, no_seeds(UR5), budget=5)
+    assert found.counts[0].tolist() == [0, 5, 0, 0, 0]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_random_arms_whatever_carries_them(seed, rng):
+    """Up to three joints of any kind before the arm; joints in any order; nothing to collide with."""
+    robot = random_ur_robot(seed)
+    targets = make_targets(robot, random_q(robot, rng, 6))
+    found = run(robot, targets, no_seeds(robot), budget=60)
+    verdicts = verify_many(robot, targets, found.q, EXACT, None)
+    reached = found.counts[:, REACHED] == 1
+    assert verdicts.accepted[reached].all()
+    assert reached.sum() >= 2

@@ -1,0 +1,213 @@
+"""Seeds: chosen by the stream alone, near the target; the base brings the tool over it and turns it to its heading."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from ikde.kernels import seeds
+from ikde.kernels.rng import seed_stream
+from ikde.model.pack import pack_robot, pack_targets
+from ikde.model.target import Target
+from ikde.solver.plain import compute_frames
+from tests.conftest import random_q
+from tests.kernels.seeding import no_seeds, pack_seeds
+from tests.random_robots import random_robot
+from tests.uncompiled import plain, plain_module, quietly
+
+PLAIN = plain_module(seeds)
+BASE = np.array([0, 1, 2])
+KINDS = ("position", "axis", "pose")
+each_kind = pytest.mark.parametrize("kind", KINDS)
+
+
+def make_target(T, kind):
+    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
+    return Target(T[:3, 3], **extra)
+
+
+def tool(robot, q):
+    return compute_frames(robot, q)[robot.tool]
+
+
+def make_ranges(robot, near=None):
+    return np.array([robot.lower, robot.upper, 0.5 * (robot.lower + robot.upper) if near is None else near])
+
+
+def draw(robot, pool, target, attempt=0, *, seed=5, stream=0, near=None):
+    """The start of an attempt, as a descent gets it."""
+    state, out_q = np.empty(1, dtype=np.uint64), np.full(len(robot.joints), np.nan)
+    with quietly():
+        plain(seed_stream)(seed, stream, attempt, state)
+        PLAIN.draw_seed(pool, pack_targets([target]), 0, make_ranges(robot, near), state, attempt, out_q)
+    return out_q
+
+
+@pytest.fixture(scope="module")
+def pool(qiao):
+    """Two thousand configurations of the arm with its base at zero, free of collision or not."""
+    Q = random_q(qiao, np.random.default_rng(1), 2000)
+    Q[:, BASE] = 0.0
+    return pack_seeds(qiao, Q, BASE)
+
+
+def spread(robot, rng, count, kind, *, inside=0.6):
+    """Targets that the base can drive to."""
+    Q = random_q(robot, rng, count)
+    Q[:, :2] *= inside
+    return [make_target(T, kind) for T in tool(robot, Q)]
+
+
+@each_kind
+def test_a_choice_hangs_on_the_stream_alone(qiao, pool, kind, rng):
+    target, *others = spread(qiao, rng, 3, kind)
+    for attempt in (0, 1, 7):
+        first = draw(qiao, pool, target, attempt)
+        draw(qiao, pool, others[0], attempt, seed=6)
+        assert draw(qiao, pool, target, attempt).tobytes() == first.tobytes()
+        drawn = {draw(qiao, pool, target, attempt, stream=stream).tobytes() for stream in range(12)}
+        assert len(drawn) > 1
+
+
+@each_kind
+def test_the_tool_is_over_the_target_and_heads_as_it_does(qiao, pool, kind, rng):
+    for attempt, target in enumerate(spread(qiao, rng, 12, kind)):
+        q = draw(qiao, pool, target, attempt % 6)
+        T = tool(qiao, q)
+        np.testing.assert_allclose(T[:2, 3], target.p_world_tool[:2], rtol=0, atol=1e-12)
+        if kind == "axis":
+            a, b = T[:2, 2], target.R_world_tool[:2, 2]
+            assert a @ b == pytest.approx(np.linalg.norm(a) * np.linalg.norm(b), abs=1e-12)
+        if kind == "pose":
+            # No turn about the vertical brings it nearer to the target.
+            away = target.R_world_tool @ T[:3, :3].T
+            for angle in (-0.01, 0.01):
+                turned = Rotation.from_euler("z", angle).as_matrix().T @ away
+                assert np.trace(turned) < np.trace(away) + 1e-12
+
+
+@each_kind
+def test_a_start_is_inside_the_ranges(qiao, pool, kind, rng):
+    """Also for targets that the base cannot drive to."""
+    for attempt in range(9):
+        T = np.eye(4)
+        T[:3, :3], T[:3, 3] = Rotation.random(rng=rng).as_matrix(), rng.uniform(-9.0, 9.0, 3)
+        q = draw(qiao, pool, make_target(T, kind), attempt)
+        assert np.all((qiao.lower <= q) & (q <= qiao.upper))
+
+
+def test_the_arm_is_one_of_the_pool_and_of_the_targets_height(qiao, pool, rng):
+    heights = pool.T_world_tool[seeds.Z]
+    step = 1.0 / pool.bins_per_metre
+    for target in spread(qiao, rng, 20, "pose"):
+        q = draw(qiao, pool, target)
+        (row,) = np.flatnonzero((pool.q[:, 3:] == q[3:]).all(axis=1))
+        rank = np.searchsorted(heights, np.clip(target.p_world_tool[2], heights[0], heights[-1] - step))
+        densest = np.diff(pool.height_start).max()
+        assert abs(row - rank) <= densest + seeds.WINDOW + seeds.COMPARED
+
+
+def test_the_pool_is_sorted_by_height_and_its_bins_say_where(pool):
+    heights = pool.T_world_tool[seeds.Z]
+    assert (np.diff(heights) >= 0.0).all()
+    for k, first in enumerate(pool.height_start[:-1]):
+        assert (heights[first:] >= pool.lowest + k / pool.bins_per_metre).all()
+        assert (heights[:first] < pool.lowest + k / pool.bins_per_metre).all()
+
+
+@each_kind
+def test_the_tilt_chosen_is_the_likest_of_those_compared(qiao, pool, kind, rng):
+    for target in spread(qiao, rng, 15, kind):
+        with quietly():
+            best = PLAIN.find_tilt(pool, pack_targets([target]), 0, 100, 50)
+        R = pool.T_world_tool.reshape(3, 4, -1)[:, :3, 100:150]
+        asked = target.R_world_tool
+        tilt = R[2].T @ asked[2] if kind != "axis" else -np.abs(R[2, 2] - asked[2, 2])
+        if kind != "position":
+            assert best == 100 + int(np.argmax(tilt))
+
+
+@each_kind
+def test_the_pose_chosen_is_the_nearest_of_those_compared(kind, rng):
+    """By squared distance and squared chord of the axes asked for, a radian counting as the rotation length."""
+    robot = random_robot(4)
+    pool = pack_seeds(robot, random_q(robot, rng, 200))
+    for T in tool(robot, random_q(robot, rng, 10)):
+        target = make_target(T, kind)
+        best = PLAIN.find_pose(pool, pack_targets([target]), 0, 20, 150)
+        Ts = np.moveaxis(pool.T_world_tool.reshape(3, 4, -1), 2, 0)[20:170]
+        distance = np.sum((Ts[:, :, 3] - target.p_world_tool) ** 2, axis=1)
+        columns = {"position": [], "axis": [2], "pose": [0, 1, 2]}[kind]
+        for j in columns:
+            chord = np.sum((Ts[:, :, j] - target.R_world_tool[:, j]) ** 2, axis=1)
+            distance = distance + pool.rotation_length**2 * chord
+        assert best == 20 + int(np.argmin(distance))
+
+
+def test_without_a_base_a_start_is_near_the_target_and_of_the_pool(rng):
+    robot = random_robot(4)
+    pool = pack_seeds(robot, random_q(robot, rng, 300))
+    chosen, any_one = [], []
+    for stream, T in enumerate(tool(robot, random_q(robot, rng, 40))):
+        q = draw(robot, pool, make_target(T, "position"), stream=stream)
+        assert (pool.q == q).all(axis=1).any()
+        chosen.append(np.linalg.norm(tool(robot, q)[:3, 3] - T[:3, 3]))
+        any_one.append(np.linalg.norm(tool(robot, random_q(robot, rng))[:3, 3] - T[:3, 3]))
+    assert np.mean(chosen) < 0.5 * np.mean(any_one)
+
+
+def test_late_attempts_take_any_configuration(qiao, pool, rng):
+    """The whole pool, not only what has the target's height."""
+    (target,) = spread(qiao, rng, 1, "pose")
+    arms = np.array([draw(qiao, pool, target, seeds.LUCKY_ATTEMPTS, stream=stream)[3:] for stream in range(60)])
+    rows = np.array([np.flatnonzero((pool.q[:, 3:] == arm).all(axis=1))[0] for arm in arms])
+    counts = np.histogram(rows, bins=4, range=(0, len(pool.q)))[0]
+    assert counts.min() >= 5
+
+
+def test_windows_double_and_stay_inside_the_pool(qiao, pool, rng):
+    state = np.array([3], dtype=np.uint64)
+    targets = pack_targets(spread(qiao, rng, 30, "pose"))
+    reached = []
+    with quietly():
+        for attempt in range(seeds.LUCKY_ATTEMPTS):
+            firsts = []
+            for index in range(30):
+                first, count = PLAIN.draw_window(pool, targets, index, True, state, attempt)
+                assert count == seeds.COMPARED
+                assert 0 <= first <= len(pool.q) - count
+                firsts.append(first)
+            reached.append(firsts)
+    assert np.std(np.diff(reached, axis=0)[-1]) > np.std(np.diff(reached, axis=0)[0])
+
+
+def test_the_first_start_is_near_itself_and_the_boxes_double(qiao, rng):
+    target, near, share = Target([0.8, 0.5, 1.0]), random_q(qiao, rng), 1.0 / 64.0
+    pool = no_seeds(qiao, share)
+    assert draw(qiao, pool, target, 0, near=near).tobytes() == near.tobytes()
+    width = qiao.upper - qiao.lower
+    for attempt in range(1, 10):
+        half = min(1.0, share * 2.0 ** (attempt - 1))
+        drawn = np.array([draw(qiao, pool, target, attempt, stream=s, near=near) for s in range(40)])
+        away = np.abs(drawn - near) / width
+        assert away.max() <= half + 1e-12
+        assert np.all((qiao.lower <= drawn) & (drawn <= qiao.upper))
+        assert away.max() > 0.8 * min(half, 0.5)
+
+
+def test_without_a_pool_starts_are_uniform(qiao):
+    pool = no_seeds(qiao)
+    drawn = np.array([draw(qiao, pool, Target([0.8, 0.5, 1.0]), 0, stream=s) for s in range(300)])
+    share = (drawn - qiao.lower) / (qiao.upper - qiao.lower)
+    assert share.min() >= 0.0
+    assert share.max() <= 1.0
+    np.testing.assert_allclose(share.mean(axis=0), 0.5, atol=0.08)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_poses_of_the_pool_are_those_of_numpy(seed, rng):
+    robot = random_robot(seed)
+    Q = random_q(robot, rng, 5)
+    out_T = np.full((12, 5), np.nan)
+    PLAIN.fill_poses(pack_robot(robot), Q, out_T)
+    expected = compute_frames(robot, Q)[robot.tool][:, :3].reshape(5, 12).T
+    np.testing.assert_allclose(out_T, expected, rtol=0, atol=1e-14)

@@ -1,0 +1,34 @@
+"""Questions for engines: problems with targets that can be reached."""
+
+import numpy as np
+
+import ikde
+from ikde.solver.engines.engine import Question
+from ikde.solver.engines.found import make_found
+from ikde.solver.problem import make_problem
+from tests.solver.test_solve import free_q, make_target
+
+
+def make_question(robot, rng, kinds, *, settings=None, freeze=None, near=None, seed=1):
+    """A question with a reachable target of each kind."""
+    problem = make_problem(robot, settings or ikde.SolveSettings(), detector=None, near=near, freeze=freeze)
+    targets = ikde.Targets.of([make_target(robot, free_q(robot, rng), kind) for kind in kinds])
+    found = make_found(problem, len(targets))
+    return Question(problem, targets, found, seed=seed, streams=range(len(targets))), targets
+
+
+def assert_solved(question, targets):
+    """Plain numpy accepts every row."""
+    problem, found = question.problem, question.found
+    graded = ikde.solver.verify.verify_many(problem.robot, targets, found.q, problem.settings, problem.detector)
+    assert found.counts[:, 0].all()
+    assert graded.accepted.all()
+
+
+def run(engine, count, attempts):
+    """All attempts on all rows, call by call."""
+    last = np.full(count, attempts)
+    engine.prepare()
+    for first in range(0, attempts, engine.attempts_per_call):
+        for begin in range(0, count, engine.rows_per_call):
+            engine.call(range(begin, min(begin + engine.rows_per_call, count)), first, last)

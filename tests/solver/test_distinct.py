@@ -1,0 +1,102 @@
+"""`solve_distinct`: solutions far enough apart, best first."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.solver.distinct import are_distinct
+from ikde.solver.families import FAMILIES, family
+from tests.solver.test_solve import CHEAP, QUICK, TARGET, assert_true_to_its_figures, free_q, make_target
+
+
+def are_apart(robot, q, other):
+    """More than 0.1 rad in a turn, around the circle, or more than 50 mm in a slide."""
+    for joint, a, b in zip(robot.joints, q, other, strict=True):
+        if joint.kind == "prismatic" and abs(a - b) > 0.05:
+            return True
+        if joint.kind == "revolute" and abs(np.angle(np.exp(1j * (a - b)))) > 0.1:
+            return True
+    return False
+
+
+@pytest.mark.parametrize("method", ["auto", "memetic", "de"])
+def test_distinct_solutions_are_pairwise_distinct_and_the_first_found_is_that_of_solve(qiao, method):
+    settings = ikde.SolveSettings.for_method(method)
+    found = ikde.solve_distinct(qiao, TARGET, 4, settings, rank="found", seed=2)
+    assert len(found) == 4
+    assert found[0].q.tobytes() == ikde.solve(qiao, TARGET, settings, seed=2).q.tobytes()
+    for i, result in enumerate(found):
+        assert_true_to_its_figures(qiao, TARGET, result, settings)
+        assert all(are_apart(qiao, result.q, other.q) for other in found[:i])
+
+
+def test_more_solutions_than_there_are_come_as_fewer(qiao, rng):
+    q = free_q(qiao, rng)
+    frozen = dict(zip(qiao.joint_names, q.tolist(), strict=True))
+    found = ikde.solve_distinct(qiao, make_target(qiao, q, "position"), 3, QUICK, freeze=frozen)
+    assert len(found) == 1
+    assert found[0].reached
+
+
+def test_without_a_solution_there_is_one_result_with_the_reason(qiao):
+    found = ikde.solve_distinct(qiao, ikde.Target((0.0, 0.0, 9.0)), 3, CHEAP)
+    assert [result.stop_reason for result in found] == ["out_of_reach"]
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_a_count_below_one_is_refused(qiao, count):
+    with pytest.raises(InputError, match="count: expected a whole number of at least 1"):
+        ikde.solve_distinct(qiao, TARGET, count)
+
+
+@pytest.mark.parametrize(
+    ("joint", "difference", "distinct"),
+    [
+        ("d_x", 0.049, False),
+        ("d_x", 0.051, True),
+        ("q1", 0.099, False),
+        ("q1", 0.101, True),
+        ("q_z", 2 * np.pi - 0.099, False),
+        ("q_z", 2 * np.pi - 0.101, True),
+        ("q_z", 2 * np.pi, False),
+    ],
+)
+def test_distinct_is_0_1_rad_around_the_circle_or_50_mm(qiao, joint, difference, distinct):
+    q, other = np.zeros(9), np.zeros(9)
+    other[qiao.joint_names.index(joint)] = difference
+    for pair in ((q, other), (other, q)):
+        assert are_distinct(qiao, *pair) is distinct
+        assert are_apart(qiao, *pair) is distinct
+
+
+def test_the_least_motion_from_home_or_near_comes_first(qiao):
+    widths = qiao.upper - qiao.lower
+    for near in (None, qiao.home + 0.2):
+        found = ikde.solve_distinct(qiao, TARGET, 6, seed=3, near=near)
+        start = qiao.home if near is None else near
+        costs = [np.sqrt(np.mean(((result.q - start) / widths) ** 2)) for result in found]
+        assert costs == sorted(costs)
+
+
+def test_the_largest_clearance_comes_first(qiao):
+    found = ikde.solve_distinct(qiao, TARGET, 6, rank="clearance", seed=3)
+    clearances = [result.clearance_m for result in found]
+    assert clearances == sorted(clearances, reverse=True)
+    assert clearances[0] > min(
+        result.clearance_m for result in ikde.solve_distinct(qiao, TARGET, 6, rank="found", seed=3)
+    )
+
+
+def test_an_arm_without_a_base_gives_its_families(rng):
+    """A pose of a UR5 well inside its reach has several of the eight families, each of which is found."""
+    robot = ikde.load_robot("ur5")
+    target = make_target(robot, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
+    found = ikde.solve_distinct(robot, target, 8, detector="none")
+    held = [family(robot, result.q) for result in found]
+    assert set(held) == set(FAMILIES)
+
+
+def test_an_unknown_rank_is_refused(qiao):
+    with pytest.raises(InputError, match="rank: expected one of motion, clearance, found"):
+        ikde.solve_distinct(qiao, TARGET, 2, rank="best")

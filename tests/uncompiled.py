@@ -1,0 +1,65 @@
+"""Kernels and generated text as plain Python: nothing is compiled, so that many robots cost little."""
+
+import math
+import re
+from types import FunctionType, SimpleNamespace
+
+import numpy as np
+
+from ikde.kernels.tables import LANES
+from ikde.kernels.trig import sin_cos
+
+DECORATOR = re.compile(r"^@(?:inline_|leaf_)?kernel\n", flags=re.MULTILINE)
+_SPACES = {}
+
+
+def plain(kernel):
+    """A kernel without its compiler, and so are all that it calls; anything else as it is."""
+    function = getattr(kernel, "py_func", None)
+    if function is None:
+        return kernel
+    return FunctionType(function.__code__, _plain_space(function.__globals__), function.__name__)
+
+
+def plain_module(module):
+    """All of a module's kernels without their compiler."""
+    return SimpleNamespace(**{name: plain(value) for name, value in vars(module).items()})
+
+
+def run_text(text):
+    """The functions that a generated text defines, not compiled."""
+    space = {"math": math, "np": np, "LANES": LANES, "sin_cos": plain(sin_cos)}
+    exec(compile(DECORATOR.sub("", text), "<generated>", "exec"), space)
+    for name, value in space.items():
+        space[name] = plain(value)
+    return SimpleNamespace(**space)
+
+
+def quietly():
+    """Random streams wrap around, and lanes without a target hold anything; numpy's scalars would complain."""
+    return np.errstate(over="ignore", invalid="ignore", divide="ignore")
+
+
+def evaluate(writer, wanted, **known):
+    """Values of a writer's names by running its statements."""
+    space = {"math": math, "np": np, **known}
+    exec("\n".join(writer.lines(wanted, set())), space)
+    return [space[value] if isinstance(value, str) else value for value in wanted]
+
+
+def joint_names(q):
+    """What generated kinematics takes: q0, s0, c0 and so on."""
+    named = {}
+    for k, value in enumerate(q):
+        named |= {f"q{k}": float(value), f"s{k}": math.sin(value), f"c{k}": math.cos(value)}
+    return named
+
+
+def _plain_space(space):
+    """A module's names with its kernels replaced."""
+    key = id(space)
+    if key not in _SPACES:
+        _SPACES[key] = twin = dict(space)
+        for name, value in space.items():
+            twin[name] = plain(value)
+    return _SPACES[key]
