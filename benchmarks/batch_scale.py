@@ -1,15 +1,15 @@
-"""What the runner itself costs: time a row beyond the search, and peak memory, as the number of targets grows.
+"""A million targets through `ikde batch`: time a target, how much of it is search, peak memory, and two threads.
 
-    python benchmarks/batch_scale.py                  # half a million, a million, and 20,000 with `de`: some minutes
-    python benchmarks/batch_scale.py --targets 20000  # smaller
+    python benchmarks/batch_scale.py                   # position and pose targets, one thread and all: some minutes
+    python benchmarks/batch_scale.py --targets 100000  # smaller
 
-Each run is a process of its own (`ikde batch`, position targets, all columns).
-The blinks have populations of 6 and one generation, so that nearly all of their time is the runner's: reading targets,
-grading, tabulating, writing. The bare search of the same lanes is timed apart and taken off. Writes
+Each run is a process of its own with all columns, everything graded, one row in 64 by plain numpy as well. The bare
+search of the same targets is timed apart. The parts of one thread and of all threads are compared byte for byte. Writes
 benchmarks/results/batch_scale.json.
 """
 
 import argparse
+import hashlib
 import json
 import os
 import shutil
@@ -31,29 +31,14 @@ from ikde.solver.search import search
 
 RESULTS = Path(__file__).parent / "results" / "batch_scale.json"
 SAMPLE = 20_000  # lanes of the bare search
-BLINK = {"settings": {"population": 6, "generations": 1, "restarts": 1}}
-RUNS = {
-    "blink, 1 thread": {"solve": BLINK, "threads": 1},
-    "blink, all threads": {"solve": BLINK, "threads": None},
-}
-DE = {
-    "method": "de",
-    "settings": {"strategy": "best/1", "restarts": 50},
-    "ranges": {"d_x": [-0.1, 0.1], "d_y": [-0.1, 0.1]},
-}
-DE_TARGETS = 20_000
+GOALS = ("position", "pose")
+THREADS = {"1 thread": 1, "all threads": None}
 
 
-def make_spec(solve: dict[str, Any], count: int) -> dict[str, Any]:
-    """A run of `count` position targets: in a box, or of random configurations if they are to be reached."""
-    box = {"box": {"from": [-1.0, -1.0, 0.3], "to": [1.0, 1.0, 1.2], "count": count}}
-    return {
-        "robot": "qiao2021",
-        "targets": box if solve is BLINK else {"reachable": {"count": count, "goal": "position"}},
-        "seed": 1,
-        "explain": False,
-        "solve": solve,
-    }
+def make_spec(goal: str, count: int) -> dict[str, Any]:
+    """A run of `count` targets that random collision-free configurations reach."""
+    targets = {"reachable": {"count": count, "goal": goal}}
+    return {"robot": "qiao2021", "targets": targets, "seed": 1, "explain": False}
 
 
 def run(spec: dict[str, Any], threads: int | None, folder: Path) -> dict[str, Any]:
@@ -70,6 +55,7 @@ def run(spec: dict[str, Any], threads: int | None, folder: Path) -> dict[str, An
     _, _, usage = os.wait4(process.pid, 0)
     process.returncode = 0  # reaped by wait4
     return {
+        "digest": digest_solutions(folder / "run"),
         "targets": summary["solves"],
         "reached": summary["solves"] - summary["unreached"],
         "wall_s": time.perf_counter() - started,
@@ -90,30 +76,37 @@ def time_bare_search(spec: dict[str, Any], threads: int | None) -> float:
     return (time.perf_counter() - started) / len(targets)
 
 
-def measure(label: str, solve: dict[str, Any], count: int, threads: int | None) -> dict[str, Any]:
-    """One run, with what it costs beyond the search if the search is short."""
-    spec = make_spec(solve, count)
+def digest_solutions(folder: Path) -> str:
+    """Of all solutions, byte for byte."""
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*.parquet")):
+        if "timing" not in str(path.relative_to(folder)):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def measure(goal: str, count: int, label: str) -> dict[str, Any]:
+    """One run, and the search alone."""
+    spec, threads = make_spec(goal, count), THREADS[label]
     folder = Path(tempfile.mkdtemp(prefix="batch_scale_"))
     try:
-        cell = {"run": label, **run(spec, threads, folder)}
+        cell = {"run": f"{goal}, {label}", **run(spec, threads, folder)}
     finally:
         shutil.rmtree(folder)
     cell["us_a_row"] = 1e6 * cell["wall_s"] / count
-    if solve is BLINK:
-        cell["search_us_a_row"] = 1e6 * time_bare_search(spec, threads)
-        cell["overhead_us_a_row"] = cell["us_a_row"] - cell["search_us_a_row"]
+    cell["solutions_a_second"] = count / cell["wall_s"]
+    cell["search_us_a_row"] = 1e6 * time_bare_search(spec, threads)
     return cell
 
 
 def print_table(cells: list[dict[str, Any]]) -> None:
     """The record as a table."""
-    columns = ("run", "targets", "wall s", "us a row", "of it search", "beyond", "peak MB", "folder MB", "reached")
-    table = Table(*columns)
+    table = Table("run", "targets", "wall s", "us a row", "of it search", "a second", "peak MB", "folder MB", "reached")
     for cell in cells:
-        bare, beyond = cell.get("search_us_a_row", np.nan), cell.get("overhead_us_a_row", np.nan)
-        figures = (cell["wall_s"], cell["us_a_row"], bare, beyond, cell["peak_memory_mb"], cell["folder_mb"])
-        shares = [f"{figure:,.1f}" if np.isfinite(figure) else "" for figure in figures]
-        table.add_row(cell["run"], f"{cell['targets']:,}", *shares, f"{cell['reached']:,}")
+        names = ("wall_s", "us_a_row", "search_us_a_row", "solutions_a_second", "peak_memory_mb", "folder_mb")
+        table.add_row(
+            cell["run"], f"{cell['targets']:,}", *(f"{cell[name]:,.1f}" for name in names), f"{cell['reached']:,}"
+        )
     Console(width=130).print(table)
 
 
@@ -122,13 +115,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--targets", type=int, default=1_000_000)
     most = parser.parse_args().targets
-    ikde.solve(ikde.load_robot("qiao2021"), ikde.Target((0.8, 0.5, 1.0)))  # kernels are compiled and cached
-    cells = [
-        measure(label, facts["solve"], count, facts["threads"])
-        for label, facts in RUNS.items()
-        for count in (most // 2, most)
-    ]
-    cells.append(measure("de, all threads", DE, min(DE_TARGETS, most), None))
+    robot, target = ikde.load_robot("qiao2021"), ikde.Target((0.8, 0.5, 1.0))
+    ikde.solve_many(robot, [target] * 8)  # kernels are compiled and cached
+    ikde.solve_many(robot, [ikde.Target(target.p_world_tool, R_world_tool=np.eye(3))] * 8)
+    cells = [measure(goal, count, label) for goal in GOALS for count in (most // 2, most) for label in THREADS]
+    for one, several in zip(cells[::2], cells[1::2], strict=True):
+        assert one["digest"] == several["digest"], "the number of threads changed an answer"
+        several["times_one_thread"] = one["wall_s"] / several["wall_s"]
+        print(f"{several['run']}: {several['times_one_thread']:.2f} times one thread, the same bytes")
     print_table(cells)
     if most >= 1_000_000:
         RESULTS.write_text(json.dumps({"machine": describe(), "cells": cells}, indent=1))

@@ -1,4 +1,4 @@
-"""Write the README's tables from the recorded results, so that nobody types a figure.
+"""Write the tables of README.md and docs/speed.md from the recorded results, so that nobody types a figure.
 
 python benchmarks/readme_tables.py
 """
@@ -74,20 +74,95 @@ def format_start(record: dict[str, Any]) -> str:
 def format_batch(record: dict[str, Any]) -> str:
     """Runs of `ikde batch`, a row a run."""
     lines = [
-        "`ikde batch`, whole processes; a *blink* searches next to nothing (population 6, one generation), so its "
-        "time is "
-        "reading, grading by plain numpy, tabulating and writing; *de* is best/1 with 50 restarts, base within ±0.1 m:",
+        "`ikde batch` on targets that random collision-free configurations reach, whole processes, all columns, every "
+        "answer graded, one in 64 by plain numpy as well:",
         "",
-        "| run | targets | s | µs a target | of it search | peak MB | reached |",
-        "|---|---|---|---|---|---|---|",
+        "| run | targets | s | answers a second | µs a target | of it search | peak MB | reached | times one thread |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     for cell in record["cells"]:
-        search = f"{cell['search_us_a_row']:.0f}" if "search_us_a_row" in cell else ""
+        gain = f"{cell['times_one_thread']:.2f}" if "times_one_thread" in cell else ""
         lines.append(
-            f"| {cell['run']} | {cell['targets']:,} | {cell['wall_s']:.0f} | {cell['us_a_row']:.0f} | {search} | "
-            f"{cell['peak_memory_mb']:.0f} | {cell['reached']:,} |"
+            f"| {cell['run']} | {cell['targets']:,} | {cell['wall_s']:.1f} | {cell['solutions_a_second']:,.0f} | "
+            f"{cell['us_a_row']:.1f} | {cell['search_us_a_row']:.1f} | {cell['peak_memory_mb']:.0f} | "
+            f"{cell['reached']:,} | {gain} |"
         )
     return "\n".join(lines)
+
+
+def format_engines(record: dict[str, Any]) -> str:
+    """One target at a time and in bulk, a row a set."""
+    lines = [
+        "`ikde.solve` and `ikde.solve_many` with default settings (1e-5 m, 1e-4 rad unless said otherwise), every "
+        "answer graded; microseconds a target on one core. *Kernel*: a clock in compiled code around each target of "
+        "the engine `lm`; *Python*: `ikde.solve` in a loop, with its result object and grade; *bulk*: `solve_many`. "
+        "*Hard*: low targets of which at least nine answers in ten collide:",
+        "",
+        "| set | reached | at 1e-9 m, rad | kernel median / p95 / p99 / max | Python median / p95 / p99 / max | bulk | "
+        "bulk at 1e-6 |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in record["sets"]:
+        times = [format_spread(row[key]) for key in ("kernel_us", "python_us")]
+        tight, fine = row["1e-6 m, 1e-6 rad"], row["1e-9 m, 1e-9 rad"]
+        name = f"{row['robot']}, {'hard ' if row['hard'] else ''}{row['kind']}"
+        lines.append(
+            f"| {name} | {row['reached']:,} of {row['targets']:,} | {fine['reached']:,} | {times[0]} | {times[1]} | "
+            f"{row['bulk_us']:.2f} | {tight['bulk_us']:.2f} |"
+        )
+    return "\n".join(lines)
+
+
+def format_spread(times: dict[str, float]) -> str:
+    """Median and tails."""
+    return " / ".join(three(times[key]) for key in ("median", "p95", "p99", "max"))
+
+
+def three(value: float) -> str:
+    """Three digits, no exponent."""
+    return f"{float(f'{value:.3g}'):,.10g}"
+
+
+def format_ablation(record: dict[str, Any]) -> str:
+    """What each idea buys, a row a variant; then the width of the vectors."""
+    columns = ("lanes us", "singly us", "attempts", "steps", "check all ns", "check free ns", "check lanes ns")
+    lines = [
+        f"{record['targets']:,} pose targets of qiao2021 at 1e-6 m and 1e-6 rad, inside compiled code; medians of "
+        f"{record['rounds']} interleaved rounds. The checks are forward kinematics and yes/no self-collision on random "
+        "(*all*) and on free configurations, one by one and in lanes:",
+        "",
+        "| variant | µs a target in lanes | one by one | attempts | steps | check ns, all | free | in lanes |",
+        f"|---|{'---|' * len(columns)}",
+    ]
+    rows = dict(record["variants"])
+    if "variants" in record["wide"]:
+        rows["all ideas, vectors of 512 bits"] = record["wide"]["variants"]["all ideas"]
+    for name, row in rows.items():
+        lines.append(f"| {name} | {' | '.join(three(row[c]) if c in row else '' for c in columns)} |")
+    widths = record["vectors"]["all ideas"]
+    registers = ", ".join(f"`{name}` names ymm registers {found['ymm']:,} times" for name, found in widths.items())
+    return "\n".join([*lines, "", f"In the machine code of what runs in lanes, {registers}."])
+
+
+def format_memetic(record: dict[str, Any]) -> str:
+    """Evaluations until solved, a row a method, a column a problem."""
+    problems = record["problems"]
+    lines = [
+        f"Evaluations until solved, median / p95, over {next(iter(next(iter(problems.values())).values()))['targets']} "
+        f"targets a problem, {record['settings']['budget']:,} at most; the share solved where it is not all of them:",
+        "",
+        f"| method | {' | '.join(problems)} |",
+        f"|---|{'---|' * len(problems)}",
+    ]
+    for method in next(iter(problems.values())):
+        lines.append(f"| {method} | {' | '.join(format_race(rows[method]) for rows in problems.values())} |")
+    return "\n".join(lines)
+
+
+def format_race(row: dict[str, Any]) -> str:
+    """One cell."""
+    share = "" if row["solved"] == row["targets"] else f" ({row['solved'] / row['targets']:.0%})"
+    return f"{row['median']:,.0f} / {row['p95']:,.0f}{share}"
 
 
 PEER_TABLES = (("pose", "hard pose"), ("position", "hard position"), ("paper task 1", "paper task 2"))
@@ -137,27 +212,44 @@ def format_ms(value: float) -> str:
     return f"{rounded:,.0f}" if rounded >= 10.0 else f"{rounded:g}" if rounded >= 1e-3 else f"{rounded:.4f}"
 
 
-def make_block() -> str:
+def make_readme() -> str:
     """Everything between the README's markers."""
-    search, kernels = load("paper_search"), load("kernel_times")
+    engines = load("engines")
     note = "a shared virtual machine whose clock swings by a factor of 1.5, which is what p95 and max show"
-    parts = [
-        f"{format_machine(search['machine'])}; {note}.",
-        format_search(search),
-        format_kernels(kernels),
+    return join(
+        f"{format_machine(engines['machine'])}; {note}.",
+        format_engines(engines),
+        format_peers(load("peers")),
         format_batch(load("batch_scale")),
         format_start(load("start_up")),
-    ]
-    if (RESULTS / "peers.json").exists():
-        parts.append(format_peers(load("peers")))
+    )
+
+
+def make_speed() -> str:
+    """Everything between the markers of docs/speed.md."""
+    ablation = load("ablation")
+    return join(
+        f"{format_machine(ablation['machine'])}.",
+        "## What each idea buys",
+        format_ablation(ablation),
+        "## Differential evolution",
+        format_memetic(load("memetic")),
+        format_search(load("paper_search")),
+        "## Data-driven kernels",
+        format_kernels(load("kernel_times")),
+    )
+
+
+def join(*parts: str) -> str:
+    """Paragraphs."""
     return "\n\n".join(parts) + "\n"
 
 
-def insert(readme: str) -> str:
-    """The README with its block made anew."""
-    return BLOCK.sub(lambda match: f"{match[1]}{make_block()}{match[2]}", readme)
+def insert(page: str, block: str) -> str:
+    """A page with its block made anew."""
+    return BLOCK.sub(lambda match: f"{match[1]}{block}{match[2]}", page)
 
 
 if __name__ == "__main__":
-    path = ROOT / "README.md"
-    path.write_text(insert(path.read_text()))
+    for path, block in ((ROOT / "README.md", make_readme()), (ROOT / "docs" / "speed.md", make_speed())):
+        path.write_text(insert(path.read_text(), block))

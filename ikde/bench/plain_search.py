@@ -21,6 +21,7 @@ Advance = Callable[[int], None]
 Limits = Literal["classical", "key_point", "half_turn", "full_turn"]
 
 STATED = SolveSettings(
+    method="de",
     position_tolerance_m=5e-5,
     strategy="best/1",
     restarts=1,

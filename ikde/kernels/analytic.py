@@ -5,7 +5,7 @@
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH
 from ikde.kernels.closed_form import ANGLES, BRANCHES, solve_ur_arm
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
@@ -108,7 +108,7 @@ def solve_branches(
                 robot, detector, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
             )
             place_arm(arm, max(chosen, 0), solutions, q)
-            out_score[row, 0], out_score[row, 1] = 0.0, -1.0 if chosen >= 0 else 0.0
+            out_score[row, 0], out_score[row, 1] = 0.0, 0.0 if chosen >= 0 else UNKNOWN_DEPTH
             for k in range(joints):
                 out_q[row, k] = q[k]
             if chosen >= 0:

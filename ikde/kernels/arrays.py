@@ -131,3 +131,5 @@ class MemeticArrays(NamedTuple):
 # attempts that met the target but collided, or left the ranges.
 REACHED, ATTEMPTS, EVALUATIONS, COLLIDING, OUTSIDE = range(5)
 COUNTS = 5
+
+UNKNOWN_DEPTH = 1.0  # m, in a score: a collision whose depth nobody has measured; every measured one is better

@@ -7,7 +7,7 @@ them side by side and gives a lane that has finished the next target. Both make 
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
@@ -30,9 +30,9 @@ def record(descent, verdict, pair, position, orientation, q, out_q, out_score, o
     """Enter a finished attempt; True if it reached the target. Kept is the best so far, as in `lanes.solve_lane`."""
     out_counts[ATTEMPTS] += 1
     met = 0.0 if verdict == MET else 1.0
-    badness = 0.0 if verdict == MET else position + descent.rotation_length * orientation
-    if pair < 0 and verdict == MET:
-        badness = -1.0  # free: better than the first that collided
+    badness = position + descent.rotation_length * orientation
+    if verdict == MET:
+        badness = UNKNOWN_DEPTH if pair >= 0 else 0.0
     if met < out_score[0] or (met == out_score[0] and badness < out_score[1]):
         out_score[0], out_score[1] = met, badness
         for k in range(q.size):

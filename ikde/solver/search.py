@@ -85,7 +85,7 @@ def choose_engines(robot: Robot, settings: SolveSettings, *, only_poses: bool, i
     if not inside:
         return ["memetic"]
     is_closed = only_poses and find_ur_arm(robot) is not None and not _has_spare_joints(robot)
-    return [*(["analytic"] if is_closed else []), "lm", "memetic"]
+    return ["lm", *(["analytic"] if is_closed else []), "memetic"]
 
 
 def _has_spare_joints(robot: Robot) -> bool:

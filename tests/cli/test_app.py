@@ -23,7 +23,7 @@ sys.exit(f"loaded {sorted(heavy)}" if heavy else code)
 """
 SOLVE_ANNOUNCED = """
 import signal, sys
-import ikde.solver.search as module
+import ikde.solver.engines.de as module
 from ikde.__main__ import main
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job may have inherited "ignore"
 search = module.solve_lanes

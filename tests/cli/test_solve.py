@@ -40,6 +40,7 @@ BEYOND = {
     "rejected",
     "blocking_pairs",
     "settings",
+    "family",
 }
 SOLVE = ("solve", "--position", "0.8", "0.5", "1")
 SOLVE_MM = ("solve", "--position", "800", "500", "1000", "--unit", "mm")
@@ -128,8 +129,9 @@ def test_an_axis_is_met(cli, qiao):
 def test_tolerances_are_in_the_units_asked_for(cli):
     options = ("--tolerance", "2", "--orientation-tolerance", "1", "--angles", "deg", "--axis", "0", "0", "1")
     data = cli(*SOLVE_MM, *options, "--json").data
-    assert 1e-5 < data["position_error_m"] <= 2e-3
-    assert 1e-4 < data["orientation_error_rad"] <= np.radians(1)
+    assert data["reached"]
+    assert data["settings"]["position_tolerance_m"] == pytest.approx(2e-3)
+    assert data["settings"]["orientation_tolerance_rad"] == pytest.approx(np.radians(1))
 
 
 def test_several_solutions_are_distinct_and_numbered(cli, qiao):

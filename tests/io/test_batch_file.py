@@ -107,7 +107,12 @@ def test_robots_and_tables_stand_beside_the_run_file(tmp_path):
         ("robot: qiao2021", "robot: qiao", ":1 → robot:", "no robot is called 'qiao' (did you mean 'qiao2021'?)"),
         ("robot: qiao2021", "robot: a.yaml", ":1 → robot:", "no such file: a.yaml"),
         ("robot: qiao2021", "", ":2 → robot:", "this key is missing"),
-        ("method: de", "method: ga", ":8 → solve.method:", "expected 'auto' or 'de', got 'ga'"),
+        (
+            "method: de",
+            "method: ga",
+            ":8 → solve.method:",
+            "expected 'auto', 'lm', 'analytic', 'memetic' or 'de', got 'ga'",
+        ),
         ("spheres: typical", "sphere: typical", ":9 → solve.detector.sphere:", "unknown key (did you mean 'spheres'?)"),
         ("spheres: typical, ", "", ":9 → solve.detector.spheres:", "this key is missing"),
         ("spheres: typical", "spheres: typcal", ":9 → solve.detector.spheres:", "(did you mean 'typical'?)"),

@@ -112,7 +112,7 @@ def test_counts_add_up(robot, rng):
     assert (found.counts[:, COLLIDING] + reached <= found.counts[:, EVALUATIONS]).all()
     np.testing.assert_array_equal(found.pairs.sum(axis=1), found.counts[:, COLLIDING])
     met = found.counts[:, EVALUATIONS] > 0
-    assert (found.score[reached] == [0.0, -1.0]).all()
+    assert (found.score[reached] == [0.0, 0.0]).all()
     assert (found.score[met & ~reached] == 0.0).all()
     assert np.isinf(found.score[~met]).all()
     # Who is not reached keeps one that meets the target but collides.

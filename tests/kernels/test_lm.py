@@ -10,7 +10,7 @@ import pytest
 
 import ikde
 from ikde.kernels import lm
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, DescentArrays
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH, DescentArrays
 from ikde.kernels.tables import LANES
 from ikde.model.generate.assemble import format_module
 from ikde.model.generate.module import KINDS, load_module
@@ -195,8 +195,8 @@ def test_budgets_are_kept_and_counted(asked, answers):
     assert (counts[:, EVALUATIONS] <= counts[:, ATTEMPTS] * asked.descent.most_steps).all()
     np.testing.assert_array_equal(pair_counts.sum(axis=1), counts[:, COLLIDING])
     assert (counts[:, COLLIDING] + reached <= counts[:, ATTEMPTS]).all()
-    assert (score[reached] == [0.0, -1.0]).all()
-    assert (score[~reached & (counts[:, COLLIDING] > 0)] == 0.0).all()
+    assert (score[reached] == [0.0, 0.0]).all()
+    assert (score[~reached & (counts[:, COLLIDING] > 0)] == [0.0, UNKNOWN_DEPTH]).all()
     assert (score[~reached & (counts[:, COLLIDING] == 0), 0] == 1.0).all()
 
 

@@ -7,6 +7,7 @@ import ikde
 from ikde.solver.problem import make_problem
 from ikde.solver.quick import find_quick
 from ikde.solver.rows import solve_rows
+from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
 from tests.solver.test_solve import KINDS, free_q, make_target
 
@@ -51,9 +52,9 @@ def test_other_engines_have_no_quick_way(qiao, settings):
     assert find_quick(qiao, settings, qiao.detector(None), "pose") is None
 
 
-def test_a_fixed_arm_is_left_to_its_closed_form():
+def test_a_fixed_arm_falls_back_on_its_closed_form():
     robot = ikde.load_robot("ur5")
-    assert find_quick(robot, AUTO, robot.detector(None), "pose") is None
-    assert find_quick(robot, AUTO, robot.detector(None), "position") is not None
+    assert choose_engines(robot, AUTO, only_poses=True) == ["lm", "analytic", "memetic"]
+    assert choose_engines(robot, AUTO, only_poses=False) == ["lm", "memetic"]
     target = make_target(robot, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
-    assert ikde.solve(robot, target).method == "analytic"
+    assert ikde.solve(robot, target).method == "lm"

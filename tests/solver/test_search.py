@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
 from ikde.solver import search as module
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
+from ikde.solver.engines.found import ENGINES
 from ikde.solver.problem import make_problem
 from ikde.solver.search import search, usable_cores
+from tests.solver.test_solve import free_q, make_target
 
 CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=3)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
@@ -171,3 +173,17 @@ def test_an_error_inside_a_lane_gets_through(problem, monkeypatch):
 
 def test_there_is_a_core_to_use():
     assert usable_cores() >= 1
+
+
+def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collision(qiao, rng, monkeypatch):
+    monkeypatch.setattr(module, "FIRST_ATTEMPTS", 1)
+    taken_over = 0
+    for stream in range(40):
+        q = free_q(qiao, rng)
+        frozen = dict(zip(qiao.joint_names[:3], q[:3].tolist(), strict=True))
+        problem = make_problem(qiao, ikde.SolveSettings(), detector=None, near=None, freeze=frozen)
+        found = search(problem, [make_target(qiao, q, "pose")], seed=1, streams=[stream])
+        if ENGINES[found.engine[0]] == "memetic" and found.counts[0, COLLIDING] and found.counts[0, REACHED]:
+            taken_over += 1
+            assert not ikde.check(qiao, found.q[0]).collision
+    assert taken_over > 0

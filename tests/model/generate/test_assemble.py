@@ -1,0 +1,108 @@
+"""The text of a module: Python of one robot, the engines as they stand, the same whoever writes it."""
+
+import ast
+import hashlib
+import inspect
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import ikde
+from ikde.kernels import analytic, lm
+from ikde.model.closed_form import find_ur_arm
+from ikde.model.generate import assemble, module
+from tests.collision_robots import SHIPPED, name_case
+
+ROOT = Path(__file__).parents[3]
+each_kind = pytest.mark.parametrize("kind", module.KINDS)
+OWN = ["make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes"]
+
+
+def functions_of(text):
+    return [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
+
+
+@each_kind
+@pytest.mark.parametrize("name", ikde.robot_names())
+def test_a_module_is_python_of_one_robot(name, kind):
+    robot = ikde.load_robot(name)
+    text = assemble.format_module(robot, robot.detector(None), kind)
+    names = [function.name for function in functions_of(text)]
+    assert names[: len(OWN)] == OWN
+    assert len(set(names)) == len(names)
+    assert {"solve_target", "solve_targets", "fill_pool"} <= set(names)
+    assert ("solve_branches" in names) == (kind == "pose" and find_ur_arm(robot) is not None)
+    assert all(ast.get_docstring(function) for function in functions_of(text))
+
+
+@each_kind
+@pytest.mark.parametrize("name", ["qiao2021", "panda"])
+def test_every_name_is_known_where_it_is_used(name, kind):
+    robot = ikde.load_robot(name)
+    text = assemble.format_module(robot, robot.detector(None), kind)
+    rules = "E9,F821,F822,F823,F841,W291,W293"
+    command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", rules, "-"]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("case", SHIPPED, ids=name_case)
+def test_the_head_tells_what_the_module_is_for(case):
+    robot, detector = case
+    head = ast.get_docstring(ast.parse(assemble.format_module(robot, detector, "axis")))
+    first, second, *_ = head.split("\n")
+    assert first.startswith(f"Kernels of the robot {robot.name} for axis targets")
+    assert not second
+    assert all(f"q{k} {joint.name}" in head for k, joint in enumerate(robot.joints))
+    assert f"Detector {detector.name}:" in head
+    assert max(map(len, head.split("\n"))) <= 120
+
+
+def test_the_engine_is_in_it_as_it_stands(qiao):
+    text = assemble.format_module(qiao, qiao.detector(None), "pose")
+    for source in (lm, analytic):
+        body = (
+            Path(source.__file__)
+            .read_text(encoding="utf-8")
+            .split("ikde.kernels.tables import", 1)[1]
+            .split("\n", 1)[1]
+        )
+        assert body in text
+    assert "kernels.tables" not in text
+
+
+def test_straight_line_code_has_no_loop_but_the_lanes(qiao):
+    for function in functions_of(assemble.format_module(qiao, qiao.detector(None), "pose"))[: len(OWN)]:
+        loops = [node for node in ast.walk(function) if isinstance(node, ast.For | ast.While)]
+        assert len(loops) == (function.name in {"take_steps", "judge_lanes"})
+        signature = [argument.arg for argument in function.args.args]
+        twin = getattr(sys.modules["ikde.kernels.tables"], function.name, None)
+        if twin is not None:
+            assert signature == list(inspect.signature(getattr(twin, "py_func", twin)).parameters)
+
+
+def test_the_same_robot_has_the_same_module():
+    for name in ("qiao2021", "panda"):
+        a = ikde.load_robot(name)
+        b = replace(a)
+        assert a is not b
+        assert a != b
+        assert module.module_name(a, a.detector(None), "pose") == module.module_name(b, b.detector(None), "pose")
+        texts = [assemble.format_module(robot, robot.detector(None), "pose") for robot in (a, b)]
+        assert texts[0] == texts[1]
+
+
+def test_another_process_writes_the_same_text(qiao):
+    script = (
+        "import hashlib, ikde; from ikde.model.generate import assemble; r = ikde.load_robot('qiao2021');"
+        "t = assemble.format_module(r, r.detector(None), 'pose'); print(hashlib.sha256(t.encode()).hexdigest())"
+    )
+    environment = {**os.environ, "PYTHONHASHSEED": "7", "NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=120, check=True)
+    text = assemble.format_module(qiao, qiao.detector(None), "pose")
+    assert done.stdout.strip() == hashlib.sha256(text.encode()).hexdigest()
