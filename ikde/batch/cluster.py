@@ -14,7 +14,7 @@ from ikde.batch.options import LOCAL, check_address
 from ikde.batch.parts import GO_ON
 from ikde.batch.task import Answer, Task, solve_task
 from ikde.errors import InputError
-from ikde.kernels.jit import CACHE_FOLDER
+from ikde.model.generate.module import code_digest
 from ikde.solver.search import usable_cores
 
 SolveTasks = Callable[[Iterable[Task]], Generator[Answer]]
@@ -47,7 +47,7 @@ def open_cluster(address: str, workers: int | None = None) -> Iterator[SolveTask
 
 def solve_remotely(task: Task, kernels: str) -> Answer:
     """What a worker does; `kernels` is the digest of the kernels that must have a hand in the answer."""
-    if CACHE_FOLDER.name != kernels:
+    if code_digest() != kernels:
         raise InputError("the workers have another version of ikde: its answers would differ")
     return solve_task(task, threads=1)
 
@@ -132,7 +132,7 @@ def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Generator
     landed = distributed.as_completed(loop=client.loop)
 
     def send(task: Task, tries: int) -> None:
-        future = client.submit(solve_remotely, task, CACHE_FOLDER.name, pure=False)
+        future = client.submit(solve_remotely, task, code_digest(), pure=False)
         flying[future] = (task, tries)
         landed.add(future)
 

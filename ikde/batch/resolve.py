@@ -10,7 +10,7 @@ from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
 from ikde.errors import InputError
-from ikde.kernels.jit import CACHE_FOLDER
+from ikde.model.generate.module import code_digest
 from ikde.model.robot import Detector, Robot
 
 MOST_SOLVES = 10**9  # of an arm
@@ -45,7 +45,7 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
     }
     recipe = {
         "ikde": ikde_version(),
-        "kernels": CACHE_FOLDER.name,
+        "kernels": code_digest(),
         "robot": {"name": robot.name, "digest": robot_digest(robot)},
         "targets": targets,
         "arms": {arm.name: describe_arm(arm) for arm in arms},

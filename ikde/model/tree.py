@@ -1,6 +1,7 @@
 """The tree of rigid bodies behind the frames: a body is everything that one joint moves as a whole."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -30,6 +31,7 @@ class Tree:
     T_body_frame: dict[str, Floats]
 
 
+@lru_cache(maxsize=64)
 def build_tree(robot: Robot) -> Tree:
     """Collapse fixed frames onto the bodies that carry them."""
     world = Body(parent=0, joint=None, axis=np.array([0.0, 0.0, 1.0]), T_parent_body=np.eye(4))

@@ -38,6 +38,7 @@ class Quick:
         self._graded = pack_robot(robot), pack_detector(robot, detector)
         self._terms = pack_terms(robot, settings)
         self._kind = np.array([KINDS.index(kind)])
+        self._kind.setflags(write=False)
         self._pairs = robot.pairs(detector)
         self._attempts = np.array([0, FEW["lm"]])
         self._robot, self._settings, self._detector = robot, settings, detector or "none"
@@ -70,6 +71,7 @@ class Quick:
         started = time.perf_counter()
         T_world_tool = np.empty((1, 3, 4))
         T_world_tool[0, :, :3], T_world_tool[0, :, 3] = target.R_world_tool, target.p_world_tool
+        T_world_tool.setflags(write=False)  # as all targets are: for others numba would compile once more
         packed = TargetArrays(self._kind, T_world_tool)
         q, score, counts = np.empty((1, len(self._robot.joints))), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)
         blocked = np.zeros(len(self._pairs), dtype=np.int64)

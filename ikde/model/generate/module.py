@@ -32,6 +32,11 @@ def load_module(robot: Robot, detector: Detector | None, kind: str) -> ModuleTyp
     return _import(f"ikde_kernels_{name}", path)
 
 
+def code_digest() -> str:
+    """Of all code that answers hang on bit for bit: the kernels, and the generator that writes more of them."""
+    return f"{jit.CACHE_FOLDER.name}-{_own_digest()[:12]}"
+
+
 def _format(robot: Robot, detector: Detector | None, kind: str) -> str:
     """The text; the generator is imported only when it has something to write."""
     from ikde.model.generate.assemble import format_module
