@@ -146,17 +146,30 @@ def make_module(robot: ikde.Robot, variant: Variant) -> Any:
     text = generator.format_module(robot, robot.detector(None), "pose")
     generator.drop_implied, generator.drop_proved = kept
     made = ModuleType(re.sub(r"\W", "_", variant.name))
-    text = variant.change(text).replace("from ikde.kernels.jit import inline_kernel, kernel\n", PLAIN)
+    text = (
+        variant.change(text).replace("from ikde.kernels.jit import inline_kernel, kernel\n", PLAIN).replace(LEAF, BARE)
+    )
     exec(compile(text, variant.name, "exec"), made.__dict__)
     return made
 
 
+BARE = """from numba import njit as _njit
+
+
+def leaf_kernel(function):
+    return _njit(error_model="numpy", nogil=True, _nrt=False)(function)
+
+
+"""
 PLAIN = """from numba import njit as _njit
-from ikde.kernels.jit import inline_kernel
 
 
 def kernel(function):
     return _njit(error_model="numpy", nogil=True)(function)
+
+
+def inline_kernel(function):
+    return _njit(error_model="numpy", forceinline=True, _nrt=False)(function)
 
 
 """

@@ -1,7 +1,7 @@
 """Run every peer beside ikde, interleaved, one core each, and record how often and how fast they solve.
 
     python benchmarks/peers/run.py                                  # all cases, all peers
-    python benchmarks/peers/run.py --only ikde rtb --cases pose --targets 20 --out /tmp/try.json
+    python benchmarks/peers/run.py --only ikde rtb --cases pose --targets 20 --out try.json
 
 In each round every peer works on its next targets for at most a slice of time, in a new order; then comes the next
 round, so that a swing of the machine's clock hits all alike. All peers get the same targets from the first on; a peer

@@ -92,8 +92,9 @@ def _sample(
 ) -> list[SolveResult]:
     """Distinct solutions of many solves side by side, each on a stream of its own."""
     solutions, size = [first], SAMPLES * count
+    begin = 0 if problem.near is None else 1  # attempt 0 is `near` itself, on every stream
     for stream in range(1, 1 + ROUNDS * size, size):
-        rows = solve_rows(problem, [target] * size, first_stream=stream, probe=False, **options)
+        rows = solve_rows(problem, [target] * size, first_stream=stream, first_attempt=begin, probe=False, **options)
         for row in np.flatnonzero(rows.reached).tolist():
             if all(are_distinct(problem.robot, rows.q[row], other.q) for other in solutions):
                 solutions.append(rows.row(row))

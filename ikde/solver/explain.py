@@ -65,7 +65,8 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
     colliding, pairs = int(found.counts[0, COLLIDING]), problem.robot.pairs(problem.detector)
     blocking = count_blocking_pairs(pairs, found.pair_counts[0])
     if colliding > 0 and not problem.settings.evolves:
-        colliding, blocking = _count_pairs(problem, target, seed)
+        counted = _count_pairs(problem, target, seed)
+        colliding, blocking = counted if counted[0] else (colliding, blocking)
     if colliding == 0 and problem.detector is not None and problem.settings.evolves:
         probe = _probe(problem.with_settings(collision="reject"), target, seed)
         colliding, blocking = int(probe.counts[0, COLLIDING]), count_blocking_pairs(pairs, probe.pair_counts[0])
@@ -111,7 +112,8 @@ def _probe(problem: Problem, target: Target, seed: int) -> Found:
 
 def _count_pairs(problem: Problem, target: Target, seed: int) -> tuple[int, dict[tuple[str, str], int]]:
     """How many of some attempts met the target in collision, and how often each pair was to blame."""
-    found = search(problem, [target] * COUNTED, seed=seed, streams=range(COUNTED), attempts=1)
+    begin = 0 if problem.near is None else 1  # attempt 0 is `near` itself, on every stream
+    found = search(problem, [target] * COUNTED, seed=seed, streams=range(COUNTED), first_attempt=begin, attempts=1)
     met = found.q[(found.score[:, 0] == 0.0) & (found.counts[:, REACHED] == 0)]
     detector = problem.detector
     if detector is None or not len(met):

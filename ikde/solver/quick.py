@@ -40,7 +40,7 @@ class Quick:
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
         self._pairs = robot.pairs(detector)
-        self._attempts = np.array([0, FEW["lm"]])
+        self._attempts = np.array([0, min(FEW["lm"], settings.budget("lm"))])
         self._robot, self._settings, self._detector = robot, settings, detector or "none"
         self._common = {
             "reached": True,

@@ -70,7 +70,7 @@ class Rows:
 
     @property
     def attempts(self) -> Ints:
-        """Populations evolved [T]."""
+        """Starts made [T]: populations, seeds, or places of the base."""
         return self.found.counts[:, ATTEMPTS]
 
     @property

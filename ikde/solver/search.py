@@ -50,13 +50,14 @@ def search(
         rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0))
         if not len(rows):
             break
-        found.engine[rows] = ENGINES.index(name)
+        before = found.score[rows].copy()
         lanes = _Lanes(make_engine(name, question), found, threads or usable_cores())
         few = min(FEW[name], budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         if attempts is None:
             _prove(problem, targets, found)
         lanes.run(first_attempt + few, first_attempt + np.full(len(targets), budget))
+        found.engine[rows[(found.score[rows] != before).any(axis=1)]] = ENGINES.index(name)
     return found
 
 
@@ -80,10 +81,10 @@ def choose_engines(robot: Robot, settings: SolveSettings, *, only_poses: bool, i
     """
     if settings.evolves:
         return ["de"]
-    if settings.method != "auto":
-        return [settings.method]
     if not inside:
         return ["memetic"]
+    if settings.method != "auto":
+        return [settings.method]
     is_closed = only_poses and find_ur_arm(robot) is not None and not _has_spare_joints(robot)
     return ["lm", *(["analytic"] if is_closed else []), "memetic"]
 

@@ -33,11 +33,12 @@ class SolveSettings:
     method: Method = "auto"
     """The engine: `lm`, damped least squares from collision-free seeds; `analytic`, the closed form of a UR-type arm;
     `memetic`, a DE that adapts itself and is polished; `de`, that of the papers. `auto` takes the fastest that fits and
-    falls back on `memetic`; if a knob of the DE is set, it takes `de`."""
+    falls back on `memetic`; if a knob of the DE is set to other than its default, it takes `de`."""
     position_tolerance_m: float = 1e-5
     orientation_tolerance_rad: float = 1e-4
     restarts: int | None = None
-    """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`)."""
+    """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`). Under `auto` it is
+    that of the engine that comes last."""
     strategy: str = "rand/1"
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
     population: int = 50

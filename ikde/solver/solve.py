@@ -35,14 +35,15 @@ def solve(
         settings: tolerances and search settings; None for the method's own (`SolveSettings.for_method`).
         seed: same seed, same bits. 0 <= seed < 2^64.
         stream: which random stream of the seed; `solve_many` gives its target k stream k.
-        method: `"auto"`, ikde's choice, or `"de"`, the search of the paper.
+        method: the engine (`SolveSettings.method`); `"auto"` is ikde's choice.
         detector: a name, a `Detector`, `"none"`, or None for the robot's default.
         near: joint values to stay close to: the joint ranges are searched in growing boxes around them.
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
         announce_compile: called once if kernels must be compiled first.
 
     Returns:
-        The solution, or the best configuration found with the reason; graded by `verify` either way.
+        The solution, or the best configuration found with the reason; graded by code that shares nothing with the
+        search, and by plain numpy where it is not reached or `result.verification` is asked for.
 
     Raises:
         InputError: for what does not fit the robot.

@@ -74,6 +74,7 @@ def test_the_least_motion_from_home_or_near_comes_first(qiao):
     widths = qiao.upper - qiao.lower
     for near in (None, qiao.home + 0.2):
         found = ikde.solve_distinct(qiao, TARGET, 6, seed=3, near=near)
+        assert len(found) == 6
         start = qiao.home if near is None else near
         costs = [np.sqrt(np.mean(((result.q - start) / widths) ** 2)) for result in found]
         assert costs == sorted(costs)
