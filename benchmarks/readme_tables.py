@@ -162,7 +162,8 @@ def format_memetic(record: dict[str, Any]) -> str:
 def format_race(row: dict[str, Any]) -> str:
     """One cell."""
     share = "" if row["solved"] == row["targets"] else f" ({row['solved'] / row['targets']:.0%})"
-    return f"{row['median']:,.0f} / {row['p95']:,.0f}{share}"
+    counts = (f"{row[key]:,.0f}" if row[key] is not None else "more" for key in ("median", "p95"))
+    return f"{' / '.join(counts)}{share}"
 
 
 PEER_TABLES = (("pose", "hard pose"), ("position", "hard position"), ("paper task 1", "paper task 2"))
