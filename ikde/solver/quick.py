@@ -74,7 +74,8 @@ class Quick:
         T_world_tool[0, :, :3], T_world_tool[0, :, 3] = target.R_world_tool, target.p_world_tool
         T_world_tool.setflags(write=False)  # as all targets are: for others numba would compile once more
         packed = TargetArrays(self._kind, T_world_tool)
-        q, score, counts = np.empty((1, len(self._robot.joints))), self._no_score.copy(), np.zeros(COUNTS, dtype=np.int64)
+        q, score = np.empty((1, len(self._robot.joints))), self._no_score.copy()
+        counts = np.zeros(COUNTS, dtype=np.int64)
         blocked = np.zeros(len(self._pairs), dtype=np.int64)
         lane = (np.uint64(seed), stream, self._attempts, q[0], score, counts, blocked)
         self._solve(*self._tables, packed, 0, *self._setup, *lane)
