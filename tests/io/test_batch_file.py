@@ -71,9 +71,8 @@ def test_the_run_of_table_4_is_as_the_paper_has_it():
     arm = batch.arms[0]
     assert (batch.name, batch.file, batch.solves) == ("Table 4", str(path), 20_000)
     assert arm.problem.detector is None
-    assert arm.problem.settings == ikde.SolveSettings(
-        position_tolerance_m=5e-5, strategy="best/1", update="in_place", bounds="redraw", restarts=1, collision="reject"
-    )
+    told = {"strategy": "best/1", "update": "in_place", "bounds": "redraw", "restarts": 1, "collision": "reject"}
+    assert arm.problem.settings == ikde.SolveSettings(method="de", position_tolerance_m=5e-5, **told)
     assert [d.name for d in batch.graders] == ["typical_all", "improved_printed", "typical", "improved"]
 
 

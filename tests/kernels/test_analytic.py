@@ -7,7 +7,7 @@ import pytest
 
 import ikde
 from ikde.kernels import analytic
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH
 from ikde.kernels.closed_form import ANGLES, BRANCHES, solve_ur_arm
 from ikde.model.closed_form import find_ur_arm, pack_ur_arm
 from ikde.model.generate.assemble import format_module
@@ -113,7 +113,7 @@ def test_counts_add_up(robot, rng):
     np.testing.assert_array_equal(found.pairs.sum(axis=1), found.counts[:, COLLIDING])
     met = found.counts[:, EVALUATIONS] > 0
     assert (found.score[reached] == [0.0, 0.0]).all()
-    assert (found.score[met & ~reached] == 0.0).all()
+    assert (found.score[met & ~reached] == [0.0, UNKNOWN_DEPTH]).all()
     assert np.isinf(found.score[~met]).all()
     # Who is not reached keeps one that meets the target but collides.
     verdicts = verify_many(robot, targets, found.q, EXACT, robot.detector(None))
