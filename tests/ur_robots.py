@@ -10,7 +10,8 @@ from ikde.kernels.closed_form import ANGLES, BRANCHES, solve_ur_arm
 from ikde.model.closed_form import find_ur_arm, pack_ur_arm
 from ikde.model.robot import Frame
 from tests.random_robots import make_robot
-from tests.reference import denavit_hartenberg, make_transform
+from tests.reference import make_transform
+from tests.reference_ur_arm import denavit_hartenberg
 
 TWISTS = (0.5 * np.pi, 0.0, 0.0, 0.5 * np.pi, -0.5 * np.pi, 0.0)
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from ikde.model.closed_form import find_ur_arm
-from tests import reference
+from tests import reference, reference_ur_arm
 from tests.random_robots import make_frame, make_robot
 from tests.ur_robots import SHIPPED, any_turn, every_ur_robot, pose, random_arm_q, random_ur_robot, solve
 
@@ -38,7 +38,7 @@ def test_the_solutions_are_the_twins(robot, rng):
     arm = find_ur_arm(robot)
     _, poses = random_arm_q(robot, rng, 50)
     for T, solutions in zip(poses, solve(robot, poses, any_turn(robot))[0], strict=True):
-        expected = reference.solve_ur_arm(arm, T)
+        expected = reference_ur_arm.solve_ur_arm(arm, T)
         assert len(solutions) == len(expected)
         assert all(differences(expected, angles).min() < 1e-6 for angles in arm.signs * solutions + arm.offsets)
 

@@ -25,7 +25,7 @@ from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import make_problem, pack_search
 from ikde.solver.settings import SolveSettings
-from tests import reference
+from tests import reference, reference_memetic
 from tests.conftest import random_q
 from tests.random_robots import random_robot
 
@@ -82,7 +82,9 @@ def run_lane(problem, target, memetic=None, *, seed=1, stream=0, blocks=((0, 6),
 def assert_like_twin(problem, target, memetic, seed=1):
     work, best, meets, spent, state = run_evolve(problem, target, memetic, seed)
     stream = reference.Stream.for_attempt(seed, 2, 3)
-    x, scores, best_twin, meets_twin, spent_twin, history = reference.evolve_memetic(problem, target, stream, memetic)
+    x, scores, best_twin, meets_twin, spent_twin, history = reference_memetic.evolve_memetic(
+        problem, target, stream, memetic
+    )
     assert (best, meets, spent, state) == (best_twin, meets_twin, spent_twin, stream.state)
     np.testing.assert_allclose(work.members.x[best], x[best], rtol=0, atol=1e-9)
     if spent >= memetic.first_population:

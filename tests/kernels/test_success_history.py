@@ -23,7 +23,7 @@ from ikde.kernels.success_history import (
     trim_archive,
     update_memory,
 )
-from tests import reference
+from tests import reference, reference_memetic
 
 pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # numpy's scalars, uncompiled
 
@@ -41,18 +41,18 @@ def make_pair(memetic):
     """A kernel's history and its twin."""
     history = make_history(memetic.memory, 20, 20, 3)
     reset_history(history, memetic.first_weight, memetic.first_crossover, memetic.is_weighted)
-    return history, reference.History(memetic)
+    return history, reference_memetic.History(memetic)
 
 
 def test_cauchy_numbers_equal_the_twin_and_have_their_quartiles():
     numbers, stream = draw(draw_cauchy, 4000), reference.Stream(5)
-    np.testing.assert_allclose(numbers, [reference.draw_cauchy(stream) for _ in numbers], rtol=1e-9)
+    np.testing.assert_allclose(numbers, [reference_memetic.draw_cauchy(stream) for _ in numbers], rtol=1e-9)
     np.testing.assert_allclose(np.quantile(numbers, [0.25, 0.5, 0.75]), [-1.0, 0.0, 1.0], atol=0.1)
 
 
 def test_normal_numbers_equal_the_twin_and_have_their_moments():
     numbers, stream = draw(draw_normal, 4000), reference.Stream(5)
-    np.testing.assert_allclose(numbers, [reference.draw_normal(stream) for _ in numbers], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(numbers, [reference_memetic.draw_normal(stream) for _ in numbers], rtol=0, atol=1e-13)
     assert abs(numbers.mean()) < 0.06
     assert numbers.std() == pytest.approx(1.0, abs=0.04)
     assert np.mean(np.abs(numbers) < 1.0) == pytest.approx(0.683, abs=0.03)
@@ -61,10 +61,12 @@ def test_normal_numbers_equal_the_twin_and_have_their_moments():
 @pytest.mark.parametrize("mean", [0.0, 0.3, 0.95])
 def test_weights_and_crossovers_equal_the_twin_and_keep_their_bounds(mean):
     weights, stream = draw(draw_weight, 500, mean), reference.Stream(5)
-    np.testing.assert_allclose(weights, [reference.draw_weight(stream, mean) for _ in weights], rtol=1e-9)
+    np.testing.assert_allclose(weights, [reference_memetic.draw_weight(stream, mean) for _ in weights], rtol=1e-9)
     assert np.all((weights > 0.0) & (weights <= 1.0))
     crossovers, stream = draw(draw_crossover, 500, mean), reference.Stream(5)
-    np.testing.assert_allclose(crossovers, [reference.draw_crossover(stream, mean) for _ in crossovers], atol=1e-13)
+    np.testing.assert_allclose(
+        crossovers, [reference_memetic.draw_crossover(stream, mean) for _ in crossovers], atol=1e-13
+    )
     assert np.all((crossovers >= 0.0) & (crossovers <= 1.0))
 
 
@@ -78,7 +80,7 @@ def test_the_lehmer_mean_equals_its_formula(rng):
     for count in range(1, 10):
         success = rng.uniform(size=(12, 3))
         for column in (0, 1):
-            expected = reference.lehmer_mean(success[:count, column], success[:count, 2])
+            expected = reference_memetic.lehmer_mean(success[:count, column], success[:count, 2])
             assert lehmer_mean(success, count, column) == pytest.approx(expected, rel=1e-13)
     assert lehmer_mean(np.zeros((3, 3)), 3, 1) == 0.0
 
