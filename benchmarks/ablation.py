@@ -31,11 +31,12 @@ from ikde.batch.generators import ReachableSource
 from ikde.kernels import lm as tables_lm
 from ikde.kernels import tables
 from ikde.kernels.arrays import COUNTS, SeedArrays
+from ikde.kernels.blocks import flatten_question
 from ikde.kernels.clearance import judge_centres
 from ikde.model.generate import assemble as generator
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
-from ikde.solver.engines.pool import NO_BASE, SafeDistance, make_seeds
+from ikde.solver.engines.pool import NO_BASE, make_seeds
 from ikde.solver.problem import ROUNDING, make_problem
 
 RESULTS = Path(__file__).parent / "results" / "ablation.json"
@@ -202,7 +203,7 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
     """What is timed: each gives its figure."""
     robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
     is_table = variant.seeds == "tables"
-    first = (robot, detector) if is_table else (0, SafeDistance(ROUNDING))
+    first = (robot, detector) if is_table else (0, ROUNDING)
     count, joints = len(targets), len(problem.lower)
     q, score = np.empty((count, joints)), np.empty((count, 2))
     counts, pairs = np.empty((count, COUNTS), dtype=np.int64), np.zeros((count, len(detector.pairs)), dtype=np.int64)
@@ -221,30 +222,18 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
     def solve_singly() -> float:
         score[:], counts[:] = np.inf, 0
         began = time.perf_counter()
-        single(*first, pack_targets(targets), few, *settings, attempts[0], q, score, counts, pairs)
+        single(
+            *first, *pack_targets(targets), few, *flatten_question(*settings[:3]), settings[3], q, score, counts, pairs
+        )
         return (time.perf_counter() - began) / few * 1e6
 
     solve_target = variant.module.solve_target
 
     @numba.njit
-    def single(robot, detector, targets, few, ranges, descent, seeds, seed, attempts, q, score, counts, pairs):
+    def single(robot, detector, kinds, T, few, numbers, whole, pool, pool_T, seed, q, score, counts, pairs):
         for k in range(few):
-            solve_target(
-                robot,
-                detector,
-                targets,
-                k,
-                ranges,
-                descent,
-                seeds,
-                seed,
-                k,
-                attempts,
-                q[k],
-                score[k],
-                counts[k],
-                pairs[k],
-            )
+            question = (kinds, T, k, numbers, whole, pool, pool_T)
+            solve_target(robot, detector, *question, seed, k, 0, 1000, q[k], score[k], counts[k], pairs[k])
 
     jobs: dict[str, Callable[[], Any]] = {"lanes us": solve_lanes, "singly us": solve_singly}
     jobs |= {"steps": lambda: float(counts[:few, 2].mean()), "attempts": lambda: float(counts[:few, 1].mean())}

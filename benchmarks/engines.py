@@ -26,6 +26,7 @@ from rich.table import Table
 import ikde
 from ikde.batch.generators import ReachableSource
 from ikde.kernels.arrays import COUNTS
+from ikde.kernels.blocks import flatten_question
 from ikde.model.pack import pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
@@ -122,13 +123,13 @@ def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int
     problem = make_problem(robot, ikde.SolveSettings(method="lm"), detector=None, near=None, freeze=None)
     module, *tables = load_kernels(robot, problem.detector, kind)
     run = make_loop(module.solve_target)
-    setup = (make_ranges(problem), make_descent(problem), make_seeds(problem, kind))
+    block = flatten_question(make_ranges(problem), make_descent(problem), make_seeds(problem, kind))
     pairs = max(len(robot.pairs(problem.detector)), 1)
     times = np.empty((rounds, len(targets)))
     with np.errstate(over="ignore"):
-        run(*tables, pack_targets(targets[:2]), *setup, np.uint64(SEED), pairs, np.empty(2))
+        run(*tables, *pack_targets(targets[:2]), *block, np.uint64(SEED), pairs, np.empty(2))
         for row in times:
-            run(*tables, pack_targets(targets), *setup, np.uint64(SEED), pairs, row)
+            run(*tables, *pack_targets(targets), *block, np.uint64(SEED), pairs, row)
     return np.median(times, axis=0)
 
 
@@ -138,17 +139,15 @@ def make_loop(solve_target: Any) -> Callable[..., None]:
     clock.argtypes, clock.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_int
 
     @numba.njit
-    def run(robot, detector, targets, ranges, descent, seeds, seed, pairs, out_us):
-        now, attempts = np.zeros(4, dtype=np.int64), np.array([0, 1000])
-        q, score = np.empty(ranges.shape[1]), np.empty(2)
+    def run(robot, detector, kinds, T, numbers, whole, pool, pool_T, seed, pairs, out_us):
+        now, q, score = np.zeros(4, dtype=np.int64), np.empty(pool.shape[1]), np.empty(2)
         counts, blocked = np.empty(COUNTS, dtype=np.int64), np.empty(pairs, dtype=np.int64)
         for k in range(out_us.size):
             score[:], counts[:] = np.inf, 0
             clock(1, now.ctypes.data)
             before = now[0] * 1e6 + now[1] * 1e-3
-            solve_target(
-                robot, detector, targets, k, ranges, descent, seeds, seed, k, attempts, q, score, counts, blocked
-            )
+            question = (kinds, T, k, numbers, whole, pool, pool_T)
+            solve_target(robot, detector, *question, seed, k, 0, 1000, q, score, counts, blocked)
             clock(1, now.ctypes.data)
             out_us[k] = now[0] * 1e6 + now[1] * 1e-3 - before
 

@@ -92,9 +92,9 @@ class SeedArrays(NamedTuple):
     q: Floats  # [K, N] m or rad; none: starts are drawn uniformly
     T_world_tool: Floats  # [12, K] the transform [3, 4] row by row
     base: Ints  # [3] coordinates of a base that drives in the plane and turns, at zero in the pool; -1: there is none
-    lowest: float  # m, height of the lowest tool: with a base, the pool is sorted by height
-    bins_per_metre: float
-    height_start: Ints  # [bins + 1] the first configuration of each bin of heights
+    grid: Ints  # [G, 2] a grid over tool poses: which entry of the transform each direction divides, into how many bins
+    grid_scale: Floats  # [G, 2] lowest value, bins per unit
+    cell_start: Ints  # [cells + 1] the first configuration of each cell: the pool is sorted by cell
     rotation_length: float  # m/rad: what a radian counts beside a metre
     first_box: float  # as in `SearchArrays`: below 1 the starts are drawn about ranges[2]
 

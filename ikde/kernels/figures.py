@@ -12,20 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import BODY, COORDINATE, FIRST, LAST, PARENT, SLIDES, Floats, Ints
+from ikde.kernels.blocks import unpack_grader
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
 POSITION_ERROR, ORIENTATION_ERROR, CLEARANCE = range(3)
 LANES = 32  # shorter loops are unrolled instead, and roots are then taken one by one
 POSITION, AXIS = 0, 1  # kinds of target; the third is a pose
-
-
-class Terms(NamedTuple):
-    """What is asked of every configuration beside its target."""
-
-    limits: Floats  # [2, N] lower and upper, m or rad
-    position_tolerance: float  # m
-    orientation_tolerance: float  # rad
 
 
 class Lanes(NamedTuple):
@@ -222,13 +215,15 @@ def is_inside(limits, q):
 
 
 @kernel
-def compute_figures(robot, detector, target, terms, q, out_figures, out_pairs, out_accepted):
+def compute_figures(numbers, whole, kinds, T_world_tool, q, out_figures, out_pairs, out_accepted):
     """Figures of configurations `q` [T, N], a target each.
 
+    numbers, whole are those of `blocks.unpack_grader`; kinds and T_world_tool those of `TargetArrays`.
     `out_figures` [T, 3]: position error in m, orientation error in rad, clearance in m (inf without pairs);
     `out_pairs` [T]: index of the closest pair (-1 without pairs); `out_accepted` [T]: within tolerances and limits of
     `terms`, and farther apart than the safe distance.
     """
+    robot, detector, terms = unpack_grader(numbers, whole)
     lanes = Lanes(
         np.empty((q.shape[1], LANES)),
         np.empty((3, LANES)),
@@ -253,9 +248,9 @@ def compute_figures(robot, detector, target, terms, q, out_figures, out_pairs, o
         measure_pairs(detector, count, lanes)
         for lane in range(count):
             index = first + lane
-            asked = target.T_world_tool[index]
+            asked = T_world_tool[index]
             position = measure_position(asked, lanes.tool, lane)
-            orientation = measure_orientation(target.kind[index], asked, lanes.tool, lane)
+            orientation = measure_orientation(kinds[index], asked, lanes.tool, lane)
             clearance = lanes.clearance[lane]
             out_figures[index, POSITION_ERROR], out_figures[index, ORIENTATION_ERROR] = position, orientation
             out_figures[index, CLEARANCE], out_pairs[index] = clearance, lanes.closest[lane]

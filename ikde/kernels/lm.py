@@ -7,7 +7,8 @@ them side by side and gives a lane that has finished the next target. Both make 
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
+from ikde.kernels.blocks import unpack_question
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
@@ -51,26 +52,32 @@ def record(descent, verdict, pair, position, orientation, q, out_q, out_score, o
 def solve_target(
     robot,
     detector,
-    target,
+    kinds,
+    T_world_tool,
     index,
-    ranges,
-    descent,
-    seeds,
+    numbers,
+    whole,
+    pool,
+    pool_T,
     seed,
     stream,
-    attempts,
+    first,
+    last,
     out_q,
     out_score,
     out_counts,
     out_pairs,
 ):
-    """Attempts number attempts[0] .. attempts[1] - 1 on one target, up to the first that is reached.
+    """Attempts number `first` .. `last` - 1 on one target, up to the first that is reached.
 
-    `ranges` [3, N]; the outputs are those of `lanes.solve_lane`: out_q [N], out_score [2], out_counts [COUNTS],
-    out_pairs [P], the pair found first in each collision.
+    The target is row `index` of `TargetArrays`; numbers, whole, pool, pool_T are those of `blocks.unpack_question`.
+    The outputs are those of `lanes.solve_lane`: out_q [N], out_score [2], out_counts [COUNTS], out_pairs [P], the pair
+    found first in each collision.
     """
+    target = TargetArrays(kinds, T_world_tool)
+    ranges, descent, seeds = unpack_question(numbers, whole, pool, pool_T)
     q, state, buffers = np.empty(out_q.size), np.empty(1, dtype=np.uint64), make_buffers(robot, detector, out_q.size)
-    for attempt in range(attempts[0], attempts[1]):
+    for attempt in range(first, last):
         seed_stream(seed, stream, attempt, state)
         draw_seed(seeds, target, index, ranges, state, attempt, q)
         steps, verdict, position, orientation = 0, GO_ON, 0.0, 0.0

@@ -1,9 +1,9 @@
 """Where a descent starts: the one of a few collision-free configurations whose tool is nearest to the target.
 
-The pool holds configurations that are free of collision, with their tool poses. Where the robot drives on a plane that
-it may turn on (`SeedArrays.base`), the base does the rest: whatever the arm does, the base can bring the tool over the
-target and turn it to the target's heading. Then only height and tilt count: the pool is sorted by height, so that those
-around the target's are found at once, and the base is set afterwards.
+The pool holds configurations that are free of collision, with their tool poses, sorted by the cells of a grid over
+those poses: what is near the target is found at once. Where the robot drives on a plane that it may turn on
+(`SeedArrays.base`), the base does the rest: whatever the arm does, the base can bring the tool over the target and turn
+it to the target's heading. Then only height and tilt count, and the base is set afterwards.
 """
 
 import math
@@ -18,10 +18,9 @@ from ikde.kernels.trig import angle_from_sides, sin_cos
 
 X, Y, Z = 3, 7, 11  # rows of `SeedArrays.T_world_tool`, a transform [3, 4] row by row
 POOL_STREAM = np.uint64(2**64 - 2)  # in place of a user's seed: the pool is the same for everybody
-POOL_DRAWS = 500  # for each configuration of the pool, before there seem to be none that are free
-WINDOW = 32  # configurations of the target's height that a seed is chosen from; doubled with every attempt
-COMPARED = 16  # of the window, by their tilt
-COMPARED_WHOLE = 64  # of the whole pool, by their pose, where the base cannot help
+POOL_DRAWS = 50  # for each configuration of the pool, before there seem to be none that are free
+WINDOW = 32  # configurations around the target's cell that a seed is chosen from; doubled with every attempt
+COMPARED = 16  # of the window, by their poses
 LUCKY_ATTEMPTS = 6  # after as many failures the nearest ones are stuck: any configuration will do
 
 
@@ -32,7 +31,7 @@ def draw_seed(seeds, target, index, ranges, state, attempt, out_q):
         draw_uniform(ranges, seeds.first_box, state, attempt, out_q)
         return
     drives = seeds.base[0] >= 0
-    first, count = draw_window(seeds, target, index, drives, state, attempt)
+    first, count = draw_window(seeds, target, index, state, attempt)
     best = find_tilt(seeds, target, index, first, count) if drives else find_pose(seeds, target, index, first, count)
     for k in range(out_q.size):
         out_q[k] = seeds.q[best, k]
@@ -41,20 +40,30 @@ def draw_seed(seeds, target, index, ranges, state, attempt, out_q):
 
 
 @inline_kernel
-def draw_window(seeds, target, index, drives, state, attempt):
+def draw_window(seeds, target, index, state, attempt):
     """The first of the configurations to compare, and how many."""
     size = seeds.q.shape[0]
     if attempt >= LUCKY_ATTEMPTS:
         return next_index(state, size), 1
-    if not drives:
-        return next_index(state, size - COMPARED_WHOLE + 1), COMPARED_WHOLE
-    count = 1 if target.kind[index] == POSITION else COMPARED
-    bins = seeds.height_start.size - 1
-    height = (target.T_world_tool[index, 2, 3] - seeds.lowest) * seeds.bins_per_metre
-    middle = seeds.height_start[min(max(np.int64(height), 0), bins)]
-    window = min(WINDOW << attempt, size)
-    first = middle + next_index(state, window) - window // 2 - count // 2
+    cell = find_cell(seeds, target, index)
+    first, last = seeds.cell_start[cell], seeds.cell_start[cell + 1]
+    spare = (WINDOW << attempt) - (last - first)
+    if spare > 0:
+        first, last = first - spare // 2, last + spare // 2
+    count = min(COMPARED, size)
+    first += next_index(state, max(last - first - count, 0) + 1)
     return min(max(first, 0), size - count), count
+
+
+@inline_kernel
+def find_cell(seeds, target, index):
+    """The cell of the grid that the target lies in, or the nearest one."""
+    cell = 0
+    for k in range(seeds.grid.shape[0]):
+        entry, bins = seeds.grid[k, 0], seeds.grid[k, 1]
+        value = (target.T_world_tool[index, entry // 4, entry % 4] - seeds.grid_scale[k, 0]) * seeds.grid_scale[k, 1]
+        cell = cell * bins + min(max(np.int64(value), 0), bins - 1)
+    return cell
 
 
 @inline_kernel
@@ -72,17 +81,18 @@ def draw_uniform(ranges, first_box, state, attempt, out_q):
 @inline_kernel
 def find_tilt(seeds, target, index, first, count):
     """The one of `count` configurations from `first` on whose tool leans most like the target's."""
-    P = seeds.T_world_tool
-    x, y, z = target.T_world_tool[index, 2, 0], target.T_world_tool[index, 2, 1], target.T_world_tool[index, 2, 2]
-    if target.kind[index] == AXIS:
-        x, y = 0.0, 0.0
-    best, largest = first, -np.inf
+    T, P, kind = target.T_world_tool[index], seeds.T_world_tool, target.kind[index]
+    length = seeds.rotation_length * seeds.rotation_length
+    best, smallest = first, np.inf
     for i in range(first, first + count):
-        likeness = P[8, i] * x + P[9, i] * y + P[10, i] * z
-        if target.kind[index] == AXIS:
-            likeness = -abs(P[10, i] - z)
-        if likeness > largest:
-            best, largest = i, likeness
+        dz, tilt = P[Z, i] - T[2, 3], 0.0
+        if kind != POSITION:
+            tilt = (P[10, i] - T[2, 2]) ** 2
+        if kind == POSE:
+            tilt += (P[8, i] - T[2, 0]) ** 2 + (P[9, i] - T[2, 1]) ** 2
+        distance = dz * dz + length * tilt
+        if distance < smallest:
+            best, smallest = i, distance
     return best
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ikde.errors import VerificationError
 from ikde.kernels import figures as kernels
 from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.blocks import Terms, flatten_grader
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target, Targets
@@ -58,8 +59,8 @@ def compute_figures(
     Without `settings` there are no tolerances.
     """
     figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
-    packed = (pack_robot(robot), pack_detector(robot, detector), pack_targets(targets), pack_terms(robot, settings))
-    kernels.compute_figures(*packed, np.ascontiguousarray(Q), figures, pairs, accepted)
+    asked = (*pack_grader(robot, detector, settings), *pack_targets(targets))
+    kernels.compute_figures(*asked, np.ascontiguousarray(Q), figures, pairs, accepted)
     return Figures(
         position_error_m=figures[:, kernels.POSITION_ERROR],
         orientation_error_rad=figures[:, kernels.ORIENTATION_ERROR],
@@ -70,15 +71,14 @@ def compute_figures(
 
 
 @lru_cache(maxsize=64)
-def pack_terms(robot: Robot, settings: SolveSettings | None) -> kernels.Terms:
-    """Limits and tolerances for the grader; without settings there are no tolerances."""
-    limits = np.array([robot.lower, robot.upper])
-    limits.setflags(write=False)
-    return kernels.Terms(
-        limits=limits,
+def pack_grader(robot: Robot, detector: Detector | None, settings: SolveSettings | None) -> tuple[Floats, Ints]:
+    """What the grader is told beside targets and configurations; without settings there are no tolerances."""
+    terms = Terms(
+        limits=np.array([robot.lower, robot.upper]),
         position_tolerance=float(settings.position_tolerance_m) if settings else np.inf,
         orientation_tolerance=float(settings.orientation_tolerance_rad) if settings else np.inf,
     )
+    return flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms)
 
 
 def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearances:

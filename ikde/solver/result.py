@@ -76,13 +76,13 @@ class SolveResult:
     solve_seconds: float
     """Wall time of this search, without compilation; in bulk, very short searches share a call and its time evenly."""
     compile_seconds: float
-    verify: Callable[[], Verification] = field(repr=False)
-    """Grades this `q` by plain numpy."""
+    verify: Callable[[Target, Floats], Verification] = field(repr=False)
+    """Grades any target and configuration as this one was graded, by plain numpy."""
 
     @cached_property
     def verification(self) -> Verification:
-        """The grade of plain numpy, on exactly this `q`; of a result in bulk it may be computed only now."""
-        return self.verify()
+        """The grade of plain numpy, on exactly this `q`; computed when it is first asked for."""
+        return self.verify(self.target, self.q)
 
 
 def reached_reason(detector: Detector | None) -> str:

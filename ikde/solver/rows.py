@@ -13,7 +13,7 @@ from ikde.solver.grade import Graded, Verify, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason, reached_reason
 from ikde.solver.search import search
-from ikde.solver.verify import Bools, Verification, verify_many
+from ikde.solver.verify import Bools, Verification, verify, verify_many
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -163,7 +163,7 @@ class Rows:
             blocking_pairs=story.blocking_pairs,
             solve_seconds=float(self.found.seconds[index]),
             compile_seconds=self.compile_seconds,
-            verify=partial(self.verification, index),
+            verify=partial(verify, problem.robot, settings=problem.settings, detector=problem.detector or "none"),
         )
 
 

@@ -50,13 +50,12 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     check_seed(seed)
-    chosen = choose_settings(settings, method)
     if near is None and freeze is None:
-        quick = find_quick(robot, chosen, robot.detector(detector), target.kind)
+        quick = find_quick(robot, settings, method, detector, target.kind)
         result = quick.solve(target, seed, stream, announce_compile) if quick else None
         if result is not None:
             return result
-    problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
+    problem = make_problem(robot, choose_settings(settings, method), detector=detector, near=near, freeze=freeze)
     options = {"seed": seed, "first_stream": stream, "announce_compile": announce_compile}
     return solve_rows(problem, [target], strict=True, **options).row(0)
 

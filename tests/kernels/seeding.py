@@ -3,33 +3,40 @@
 import numpy as np
 
 from ikde.kernels.arrays import SeedArrays
-from ikde.kernels.seeds import Z
 from ikde.solver.plain import compute_frames
 
 NO_BASE = np.array([-1, -1, -1])
-BINS = 32
+GRID = np.array([[11, 8], [8, 3], [9, 3], [10, 3]])  # entry of the transform, bins: height and tilt
 
 
 def pack_seeds(robot, Q, base=NO_BASE, first_box=1.0, rotation_length=0.2):
-    """`SeedArrays` of configurations [K, N]; sorted by height if there is a base, as coordinates [3]."""
+    """`SeedArrays` of configurations [K, N], sorted by the cells of a grid over the height and tilt of their tools."""
     T = np.ascontiguousarray(compute_frames(robot, Q)[robot.tool][:, :3].reshape(len(Q), 12).T)
-    lowest, bins_per_metre, starts = 0.0, 0.0, np.zeros(BINS + 1, dtype=np.int64)
-    if base[0] >= 0:
-        order = np.argsort(T[Z], kind="stable")
+    scale, starts = np.zeros((4, 2)), np.zeros(8 * 27 + 1, dtype=np.int64)
+    if len(Q):
+        scale = np.array([[-0.5, 4.0], [-1.0, 1.5], [-1.0, 1.5], [-1.0, 1.5]])
+        cells = [cell_of(T[:, k], scale) for k in range(len(Q))]
+        order = np.argsort(cells, kind="stable")
         Q, T = np.ascontiguousarray(Q[order]), np.ascontiguousarray(T[:, order])
-        lowest = float(T[Z, 0])
-        bins_per_metre = BINS / float(T[Z, -1] - lowest)
-        starts = np.searchsorted(T[Z], lowest + np.arange(BINS + 1) / bins_per_metre)
+        starts = np.array([np.sum(np.array(cells) < cell) for cell in range(len(starts))])
     return SeedArrays(
         q=np.array(Q),
         T_world_tool=T,
         base=np.array(base),
-        lowest=lowest,
-        bins_per_metre=bins_per_metre,
-        height_start=starts,
+        grid=GRID,
+        grid_scale=scale,
+        cell_start=starts,
         rotation_length=rotation_length,
         first_box=first_box,
     )
+
+
+def cell_of(T, scale):
+    """Number of the cell that a tool pose, twelve entries, lies in; the outer cells reach to infinity."""
+    cell = 0
+    for (entry, bins), (lowest, per_unit) in zip(GRID, scale, strict=True):
+        cell = cell * bins + int(np.clip(np.trunc((T[entry] - lowest) * per_unit), 0, bins - 1))
+    return cell
 
 
 def no_seeds(robot, first_box=1.0):

@@ -8,8 +8,10 @@ import pytest
 
 import ikde
 from ikde.kernels import figures as module
+from ikde.kernels.blocks import Terms, flatten_grader
 from ikde.kernels.clearance import compute_clearance
-from ikde.kernels.figures import LANES, Terms, compute_figures
+from ikde.kernels.figures import LANES, compute_figures
+from ikde.kernels.grade_one import grade_one
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Targets
@@ -30,8 +32,8 @@ def run(robot, detector, targets, Q, terms=None):
     """Figures [T, 3], pairs [T] and verdicts [T] by the grader."""
     figures, pairs = np.full((len(Q), 3), np.nan), np.full(len(Q), -9, dtype=np.int64)
     accepted = np.zeros(len(Q), dtype=np.bool_)
-    packed = (pack_robot(robot), pack_detector(robot, detector), pack_targets(targets), terms or terms_of(robot))
-    compute_figures(*packed, np.ascontiguousarray(Q), figures, pairs, accepted)
+    block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms or terms_of(robot))
+    compute_figures(*block, *pack_targets(targets), np.ascontiguousarray(Q), figures, pairs, accepted)
     return figures, pairs, accepted
 
 
@@ -102,23 +104,25 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
 def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
     q, targets = qiao.home[None], Targets(np.zeros((1, 3)))
     (position, _, clearance), *_ = run(qiao, qiao.detector(None), targets, q)[0]
-    packed = [pack_robot(qiao), pack_detector(qiao, qiao.detector(None)), pack_targets(targets)]
+    detector = pack_detector(qiao, qiao.detector(None))
     for safe_distance, tolerance, expected in (
         (clearance, position, False),
         (np.nextafter(clearance, 0.0), position, True),
         (np.nextafter(clearance, 0.0), np.nextafter(position, 0.0), False),
     ):
-        packed[1] = packed[1]._replace(safe_distance=float(safe_distance))
+        nearest = detector._replace(safe_distance=float(safe_distance))
+        block = flatten_grader(pack_robot(qiao), nearest, terms_of(qiao, float(tolerance)))
         accepted = np.zeros(1, dtype=np.bool_)
         out = (np.empty((1, 3)), np.empty(1, dtype=np.int64), accepted)
-        compute_figures(*packed, terms_of(qiao, float(tolerance)), q, *out)
+        compute_figures(*block, *pack_targets(targets), q, *out)
         assert accepted[0] == expected
+        assert grade_one(*block, *pack_targets(targets), q[0])[4] == expected
 
 
 def test_it_shares_no_code_with_the_search():
     names = {getattr(value, "__module__", "") for value in vars(module).values()}
     assert {name for name in names if name.startswith("ikde.")} <= {
-        *(f"ikde.kernels.{own}" for own in ("figures", "jit", "trig", "arrays")),
+        *(f"ikde.kernels.{own}" for own in ("figures", "jit", "trig", "arrays", "blocks")),
     }
 
 

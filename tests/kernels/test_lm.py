@@ -11,13 +11,13 @@ import pytest
 import ikde
 from ikde.kernels import lm
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH, DescentArrays
+from ikde.kernels.blocks import flatten_question
 from ikde.kernels.tables import LANES
 from ikde.model.generate.assemble import format_module
 from ikde.model.generate.module import KINDS, load_module
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.reach import arm_length_m
 from ikde.model.target import Target, Targets
-from ikde.solver.engines.pool import SafeDistance
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import verify_many
 from tests.collision_robots import RANDOM, find_gaps, tell
@@ -97,7 +97,7 @@ def tables_of(asked, module):
     if module is by_tables:
         packed = pack_detector(asked.robot, detector)
         return pack_robot(asked.robot), packed._replace(safe_distance=packed.safe_distance + 1e-12)
-    return 0, SafeDistance(detector.safe_distance_m + 1e-12)
+    return 0, detector.safe_distance_m + 1e-12
 
 
 def solve_singly(module, asked, rows=None, *, first=0, budgets=None, outputs=None):
@@ -109,9 +109,9 @@ def solve_singly(module, asked, rows=None, *, first=0, budgets=None, outputs=Non
         for row in range(len(asked.targets)) if rows is None else rows:
             if outputs[2][row, REACHED]:
                 continue
-            settings = (asked.packed, row, asked.ranges, asked.descent, asked.seeds, np.uint64(9), asked.streams[row])
-            block = np.array([first, budgets[row]])
-            module.solve_target(robot, detector, *settings, block, *(array[row] for array in outputs))
+            question = (*asked.packed, row, *flatten_question(asked.ranges, asked.descent, asked.seeds))
+            lane = (np.uint64(9), int(asked.streams[row]), first, int(budgets[row]), *(array[row] for array in outputs))
+            module.solve_target(robot, detector, *question, *lane)
     return outputs
 
 

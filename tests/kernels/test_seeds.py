@@ -10,7 +10,7 @@ from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.plain import compute_frames
 from tests.conftest import random_q
-from tests.kernels.seeding import no_seeds, pack_seeds
+from tests.kernels.seeding import cell_of, no_seeds, pack_seeds
 from tests.random_robots import random_robot
 from tests.uncompiled import plain, plain_module, quietly
 
@@ -95,35 +95,36 @@ def test_a_start_is_inside_the_ranges(qiao, pool, kind, rng):
         assert np.all((qiao.lower <= q) & (q <= qiao.upper))
 
 
-def test_the_arm_is_one_of_the_pool_and_of_the_targets_height(qiao, pool, rng):
-    heights = pool.T_world_tool[seeds.Z]
-    step = 1.0 / pool.bins_per_metre
+def test_the_arm_is_one_of_the_pool_and_from_around_the_targets_cell(qiao, pool, rng):
     for target in spread(qiao, rng, 20, "pose"):
         q = draw(qiao, pool, target)
         (row,) = np.flatnonzero((pool.q[:, 3:] == q[3:]).all(axis=1))
-        rank = np.searchsorted(heights, np.clip(target.p_world_tool[2], heights[0], heights[-1] - step))
-        densest = np.diff(pool.height_start).max()
-        assert abs(row - rank) <= densest + seeds.WINDOW + seeds.COMPARED
+        T = np.column_stack([target.R_world_tool, target.p_world_tool]).ravel()
+        first, last = pool.cell_start[cell_of(T, pool.grid_scale) + np.arange(2)]
+        assert first - seeds.WINDOW // 2 - seeds.COMPARED <= row < last + seeds.WINDOW // 2 + seeds.COMPARED
 
 
-def test_the_pool_is_sorted_by_height_and_its_bins_say_where(pool):
-    heights = pool.T_world_tool[seeds.Z]
-    assert (np.diff(heights) >= 0.0).all()
-    for k, first in enumerate(pool.height_start[:-1]):
-        assert (heights[first:] >= pool.lowest + k / pool.bins_per_metre).all()
-        assert (heights[:first] < pool.lowest + k / pool.bins_per_metre).all()
+def test_the_cell_of_a_target_is_the_one_that_its_pose_lies_in(qiao, pool, rng):
+    assert pool.cell_start[-1] == len(pool.q)
+    for target in spread(qiao, rng, 20, "pose"):
+        T = np.column_stack([target.R_world_tool, target.p_world_tool]).ravel()
+        with quietly():
+            assert PLAIN.find_cell(pool, pack_targets([target]), 0) == cell_of(T, pool.grid_scale)
+    for row in range(0, len(pool.q), 97):
+        cell = cell_of(pool.T_world_tool[:, row], pool.grid_scale)
+        assert pool.cell_start[cell] <= row < pool.cell_start[cell + 1]
 
 
 @each_kind
-def test_the_tilt_chosen_is_the_likest_of_those_compared(qiao, pool, kind, rng):
+def test_height_and_tilt_chosen_are_the_nearest_of_those_compared(qiao, pool, kind, rng):
     for target in spread(qiao, rng, 15, kind):
         with quietly():
             best = PLAIN.find_tilt(pool, pack_targets([target]), 0, 100, 50)
-        R = pool.T_world_tool.reshape(3, 4, -1)[:, :3, 100:150]
-        asked = target.R_world_tool
-        tilt = R[2].T @ asked[2] if kind != "axis" else -np.abs(R[2, 2] - asked[2, 2])
-        if kind != "position":
-            assert best == 100 + int(np.argmax(tilt))
+        T = pool.T_world_tool.reshape(3, 4, -1)[:, :, 100:150]
+        compared = {"position": [], "axis": [2], "pose": [0, 1, 2]}[kind]
+        tilt = np.sum((T[2, compared].T - target.R_world_tool[2, compared]) ** 2, axis=1)
+        distance = (T[2, 3] - target.p_world_tool[2]) ** 2 + pool.rotation_length**2 * tilt
+        assert best == 100 + int(np.argmin(distance))
 
 
 @each_kind
@@ -172,7 +173,7 @@ def test_windows_double_and_stay_inside_the_pool(qiao, pool, rng):
         for attempt in range(seeds.LUCKY_ATTEMPTS):
             firsts = []
             for index in range(30):
-                first, count = PLAIN.draw_window(pool, targets, index, True, state, attempt)
+                first, count = PLAIN.draw_window(pool, targets, index, state, attempt)
                 assert count == seeds.COMPARED
                 assert 0 <= first <= len(pool.q) - count
                 firsts.append(first)

@@ -146,7 +146,7 @@ def _errors(step: Step) -> list[str]:
 
 
 def _reaches(tests: list[Test]) -> list[str]:
-    lines = ["safe_distance = detector.safe_distance"]
+    lines = ["safe_distance = detector"]
     for reach in sorted({test.reach for test in tests}):
         lines.append(f"{reach_name(reach)} = ({reach!r} + safe_distance) * ({reach!r} + safe_distance)")
     return lines

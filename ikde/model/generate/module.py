@@ -28,7 +28,7 @@ def load_module(robot: Robot, detector: Detector | None, kind: str) -> ModuleTyp
         return _execute(f"ikde_kernels_{name}", _format(robot, detector, kind))
     path = jit.CACHE_FOLDER / "robots" / f"{name}.py"
     if not path.exists():
-        _write_whole(path, _format(robot, detector, kind))
+        write_whole(path, _format(robot, detector, kind).encode())
     return _import(f"ikde_kernels_{name}", path)
 
 
@@ -63,14 +63,14 @@ def _own_digest() -> str:
     return digest.hexdigest()
 
 
-def _write_whole(path: Path, content: str) -> None:
+def write_whole(path: Path, content: bytes) -> None:
     """Whole or not at all: another process may write the same at the same moment.
 
     Its time is always the same, as its contents are: numba takes machine code for outdated when the file is newer.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
+    with os.fdopen(handle, "wb") as file:
         file.write(content)
     os.utime(temporary, (1.0, 1.0))
     Path(temporary).replace(path)

@@ -59,7 +59,9 @@ class Question:
 def make_ranges(problem: Problem) -> Floats:
     """Lower, upper, and the middle of boxes [3, N]."""
     near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
-    return np.array([problem.lower, problem.upper, near])
+    ranges = np.array([problem.lower, problem.upper, near])
+    ranges.setflags(write=False)
+    return ranges
 
 
 def make_descent(problem: Problem) -> DescentArrays:

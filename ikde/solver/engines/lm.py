@@ -3,6 +3,7 @@
 import numpy as np
 
 from ikde.kernels.arrays import Ints
+from ikde.kernels.blocks import flatten_question
 from ikde.solver.engines.engine import Question, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 
@@ -36,12 +37,14 @@ class DampedLeastSquares:
         stop = np.minimum(last, first + self.attempts_per_call)
         for kind, (module, robot, detector) in self._kernels.items():
             attempts = asked.attempts(rows, first, stop, kind)
-            settings = (*self._settings, self._seeds[kind], asked.seed)
+            settings = (*self._settings, self._seeds[kind])
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
                 if len(rows) > FEW:
                     where = (asked.targets, np.array([rows.start, rows.stop]))
-                    module.solve_targets(robot, detector, *where, *settings, asked.streams, attempts, *asked.outputs)
+                    which = (asked.seed, asked.streams, attempts)
+                    module.solve_targets(robot, detector, *where, *settings, *which, *asked.outputs)
                     continue
-                for row, block in zip(rows, attempts, strict=True):
-                    lane = (asked.streams[row], block, *(array[row] for array in asked.outputs))
-                    module.solve_target(robot, detector, asked.targets, row, *settings, *lane)
+                block = flatten_question(*settings)
+                for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
+                    lane = (asked.seed, int(asked.streams[row]), begin, end, *(array[row] for array in asked.outputs))
+                    module.solve_target(robot, detector, *asked.targets, row, *block, *lane)

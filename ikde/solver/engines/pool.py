@@ -1,47 +1,61 @@
 """The seeds of the engines `lm` and `analytic`: collision-free configurations drawn once for a robot and its ranges."""
 
+import hashlib
 import os
 from functools import lru_cache
+from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Floats, Ints, SeedArrays
-from ikde.kernels.jit import CACHE_IS_WRITABLE
-from ikde.kernels.seeds import COMPARED_WHOLE, Z, fill_poses
-from ikde.model.generate.module import load_module
+from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
+from ikde.kernels.seeds import COMPARED, fill_poses
+from ikde.model.generate.module import load_module, module_name
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import arm_length_m
 from ikde.model.robot import Detector, Robot
+from ikde.solver.engines.pool_file import load_pool, save_pool
 from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem
 
-POOL_SIZE = 4096
-BINS = 256
+DRAWN, DRAWN_NARROW = 2**16, 2**14  # configurations: within the joint limits, within ranges of a problem's own
+PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
+Z, TILT_X, TILT_Y, TILT_Z = 11, 8, 9, 10  # entries of the transform [3, 4] that a base which turns cannot change
+X, Y, AXIS_X, AXIS_Y = 3, 7, 2, 6
+GRIDS_DRIVING = {  # entry, bins
+    "position": ((Z, 64),),
+    "axis": ((Z, 32), (TILT_Z, 16)),
+    "pose": ((Z, 32), (TILT_X, 5), (TILT_Y, 5), (TILT_Z, 5)),
+}
+GRIDS = {
+    "position": ((Z, 12), (X, 12), (Y, 12)),
+    "axis": ((Z, 8), (X, 8), (Y, 8), (AXIS_X, 3), (AXIS_Y, 3), (TILT_Z, 3)),
+    "pose": ((Z, 8), (X, 8), (Y, 8), (AXIS_X, 3), (AXIS_Y, 3), (TILT_Z, 3)),
+}
 ROOMY_M = 2.0  # a base must have so much room in x and in y for it to be set freely
 SHORTEST_M = 1e-3
 NO_BASE = np.array([-1, -1, -1])
-
-
-class SafeDistance(NamedTuple):
-    """All that a generated collision check is told of its detector."""
-
-    safe_distance: float  # m
 
 
 Kernels = tuple[Any, Any, Any]
 
 
 def load_kernels(robot: Robot, detector: Detector | None, kind: str) -> Kernels:
-    """The module written for a robot, and what it takes in place of the robot's and the detector's tables.
+    """The module written for a robot, and what it takes in place of tables: nothing, and the safe distance in m.
 
     With `$IKDE_KERNELS` set to `tables`, or with no folder to write modules to, the data-driven kernels and the tables.
     """
     packed = pack_detector(robot, detector)
     safe_distance = packed.safe_distance + ROUNDING
-    if os.environ.get("IKDE_KERNELS") == "tables" or not CACHE_IS_WRITABLE:
+    if runs_on_tables():
         return _load_tables(), pack_robot(robot), packed._replace(safe_distance=safe_distance)
-    return load_module(robot, detector, kind), 0, SafeDistance(safe_distance)
+    return load_module(robot, detector, kind), 0, safe_distance
+
+
+def runs_on_tables() -> bool:
+    """True if kernels written for a robot are not wanted, or have no place to be."""
+    return os.environ.get("IKDE_KERNELS") == "tables" or not CACHE_IS_WRITABLE
 
 
 @lru_cache
@@ -55,49 +69,83 @@ def _load_tables() -> SimpleNamespace:
 def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     """Where attempts start: about `near` if there is one, else from the pool of the problem's ranges."""
     if problem.near is not None:
-        return _pack(problem.robot, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
+        return _sort(problem.robot, kind, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
     ranges = tuple(zip(problem.lower.tolist(), problem.upper.tolist(), strict=True))
-    return _draw_pool(problem.robot, problem.detector, kind, ranges)
+    return _find_pool(problem.robot, problem.detector, kind, ranges)
 
 
 @lru_cache(maxsize=32)
-def _draw_pool(
+def _find_pool(
     robot: Robot, detector: Detector | None, kind: str, ranges: tuple[tuple[float, float], ...]
 ) -> SeedArrays:
-    """Some milliseconds, once for a robot, a detector and joint ranges."""
+    """The pool of a robot, a detector and joint ranges; that of the joint limits lies in the cache folder."""
     lower, upper = np.array(ranges).T.copy()
+    whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
+    if not whole or runs_on_tables():
+        return _draw_pool(robot, detector, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
+    path = CACHE_FOLDER / "robots" / f"{module_name(robot, detector, kind)}_{_own_digest()}.npz"
+    seeds = load_pool(path)
+    if seeds is None:
+        seeds = _draw_pool(robot, detector, kind, lower, upper, DRAWN)
+        save_pool(path, seeds)
+    return seeds
+
+
+@lru_cache(maxsize=1)
+def _own_digest() -> str:
+    """Of this file: another one draws other pools."""
+    return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:8]
+
+
+def _draw_pool(
+    robot: Robot, detector: Detector | None, kind: str, lower: Floats, upper: Floats, count: int
+) -> SeedArrays:
+    """Draw `count` free configurations; a tenth of a second for 2^16."""
     base = find_base(robot, lower, upper)
     if base[0] >= 0:
+        lower, upper = lower.copy(), upper.copy()
         lower[base] = upper[base] = 0.0
     module, *tables = load_kernels(robot, detector, kind)
-    q = np.empty((POOL_SIZE, len(lower)))
+    q = np.empty((count, len(lower)))
     with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
         found = module.fill_pool(*tables, lower, upper, q)
-    return _pack(robot, q[: found if found >= COMPARED_WHOLE else 0], base, 1.0)
+    return _sort(robot, kind, q[: found if found >= COMPARED else 0], base, 1.0)
 
 
-def _pack(robot: Robot, q: Floats, base: Ints, first_box: float) -> SeedArrays:
+def _sort(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) -> SeedArrays:
+    """Lay a grid over the tool poses of configurations [K, N], and keep a few of each of its cells."""
     T_world_tool = np.empty((12, len(q)))
     fill_poses(pack_robot(robot), q, T_world_tool)
-    lowest, bins_per_metre, starts = 0.0, 0.0, np.zeros(BINS + 1, dtype=np.int64)
-    if base[0] >= 0 and len(q):
-        order = np.argsort(T_world_tool[Z], kind="stable")
-        q, T_world_tool = np.ascontiguousarray(q[order]), np.ascontiguousarray(T_world_tool[:, order])
-        lowest, highest = T_world_tool[Z, [0, -1]]
-        bins_per_metre = BINS / max(highest - lowest, ROUNDING)
-        starts = np.searchsorted(T_world_tool[Z], lowest + np.arange(BINS + 1) / bins_per_metre)
-    for array in (q, T_world_tool, starts):
+    grid = np.array((GRIDS_DRIVING if base[0] >= 0 else GRIDS)[kind])
+    scale, starts = np.zeros((len(grid), 2)), np.zeros(np.prod(grid[:, 1]) + 1, dtype=np.int64)
+    if len(q):
+        values, bins = T_world_tool[grid[:, 0]], grid[:, 1]
+        scale[:, 0] = values.min(axis=1)
+        scale[:, 1] = bins / np.maximum(values.max(axis=1) - scale[:, 0], ROUNDING)
+        places = ((values.T - scale[:, 0]) * scale[:, 1]).astype(np.int64).clip(0, bins - 1)
+        cells = np.ravel_multi_index(tuple(places.T), tuple(bins))
+        kept = _keep_few(cells)
+        q, T_world_tool = np.ascontiguousarray(q[kept]), np.ascontiguousarray(T_world_tool[:, kept])
+        starts = np.searchsorted(cells[kept], np.arange(len(starts)))
+    for array in (q, T_world_tool, grid, scale, starts):
         array.setflags(write=False)
     return SeedArrays(
         q=q,
         T_world_tool=T_world_tool,
         base=base if len(q) else NO_BASE,
-        lowest=float(lowest),
-        bins_per_metre=float(bins_per_metre),
-        height_start=starts,
+        grid=grid,
+        grid_scale=scale,
+        cell_start=starts,
         rotation_length=rotation_length_m(robot),
         first_box=first_box,
     )
+
+
+def _keep_few(cells: Ints) -> Ints:
+    """Indices of the first PER_CELL of each cell, sorted by cell."""
+    order = np.argsort(cells, kind="stable")
+    rank = np.arange(len(cells)) - np.searchsorted(cells[order], cells[order])
+    return order[rank < PER_CELL]
 
 
 @lru_cache(maxsize=64)

@@ -121,7 +121,7 @@ def test_a_file_that_is_written_again_is_as_old_as_before(empty_cache):
     path = empty_cache / "robots" / "some.py"
     stamps = []
     for _ in range(2):
-        module._write_whole(path, "ONE = 1\n")
+        module.write_whole(path, b"ONE = 1\n")
         stamps.append((path.stat().st_mtime, path.stat().st_size))
     assert stamps[0] == stamps[1]
 
@@ -143,7 +143,6 @@ SCRIPT = """
 import json, pathlib, sys, time
 from ikde.kernels.jit import compile_clock
 from ikde.model.generate.module import load_module
-from ikde.solver.engines.pool import SafeDistance
 from tests.model.generate.test_module import tiny_robot
 import numpy as np
 robot = tiny_robot()
@@ -152,7 +151,7 @@ while not pathlib.Path(sys.argv[1]).exists():
 with compile_clock() as clock:
     module = load_module(robot, robot.detector(None), "position")
     q = np.linspace(-2.0, 2.0, 9)
-    found = [int(module.find_collision(0, SafeDistance(0.0), q[k : k + 1], 0)) for k in range(9)]
+    found = [int(module.find_collision(0, 0.0, q[k : k + 1], 0)) for k in range(9)]
 print(json.dumps({"found": found, "seconds": clock.seconds, "file": module.__file__}))
 """
 

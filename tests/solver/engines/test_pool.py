@@ -1,35 +1,42 @@
 """Seeds: free, the same for everybody, drawn where the joints may be."""
 
 import numpy as np
+import pytest
 
 import ikde
-from ikde.kernels.seeds import Z
+from ikde.kernels.seeds import find_cell
+from ikde.model.pack import pack_targets
 from ikde.model.robot import Robot
-from ikde.solver.engines.pool import POOL_SIZE, find_base, load_kernels, make_seeds, rotation_length_m
+from ikde.model.target import KINDS, Targets
+from ikde.solver.engines.pool import DRAWN, PER_CELL, find_base, load_kernels, make_seeds, rotation_length_m
 from ikde.solver.problem import make_problem
 
 
-def pool(robot: Robot, **options):
+def pool(robot: Robot, kind: str = "pose", **options):
     told = {"detector": None, "near": None, "freeze": None} | options
-    return make_seeds(make_problem(robot, ikde.SolveSettings(), **told), "pose")
+    return make_seeds(make_problem(robot, ikde.SolveSettings(), **told), kind)
 
 
-def test_the_pool_is_free_and_sorted_by_height(qiao):
+def test_the_pool_is_free_and_spread_over_tool_poses(qiao):
     seeds = pool(qiao)
-    assert seeds.q.shape == (POOL_SIZE, 9)
+    assert 10_000 < len(seeds.q) < DRAWN
     assert (seeds.q[:, :3] == 0.0).all()  # the base is set for each target
-    assert not any(ikde.check(qiao, q).collision for q in seeds.q[::256])
+    assert not any(ikde.check(qiao, q).collision for q in seeds.q[::512])
     T_world_tool = ikde.forward(qiao, seeds.q)[qiao.tool]
-    assert np.abs(T_world_tool[:, :3].reshape(POOL_SIZE, 12).T - seeds.T_world_tool).max() < 1e-12
-    assert (np.diff(seeds.T_world_tool[Z]) >= 0.0).all()
+    assert np.abs(T_world_tool[:, :3].reshape(-1, 12).T - seeds.T_world_tool).max() < 1e-12
+    assert np.diff(seeds.cell_start).max() == PER_CELL
+    assert seeds.cell_start[-1] == len(seeds.q)
 
 
-def test_heights_are_found_by_their_bin(qiao):
-    seeds = pool(qiao)
-    heights = seeds.T_world_tool[Z]
-    for height in np.linspace(heights[0], heights[-1], 50)[:-1]:
-        start = seeds.height_start[int((height - seeds.lowest) * seeds.bins_per_metre)]
-        assert abs(heights[min(start, POOL_SIZE - 1)] - height) <= 2.0 / seeds.bins_per_metre
+@pytest.mark.parametrize("name", ["qiao2021", "ur5"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_configuration_lies_in_the_cell_that_it_is_sorted_into(name, kind):
+    robot = ikde.load_robot(name)
+    seeds = pool(robot, kind=kind, freeze={robot.joint_names[-1]: 0.1})
+    targets = Targets.packed(np.zeros(len(seeds.q), dtype=np.int64), seeds.T_world_tool.T.reshape(-1, 3, 4).copy())
+    for row in range(0, len(seeds.q), 251):
+        cell = find_cell(seeds, pack_targets(targets), row)
+        assert seeds.cell_start[cell] <= row < seeds.cell_start[cell + 1]
 
 
 def test_frozen_joints_stay_and_the_base_then_helps_no_more(qiao):

@@ -1,0 +1,97 @@
+"""What stays from target to target, in flat arrays: numba looks at every array that it hands over.
+
+A named tuple is looked at field by field, in Python, on every call: the 27 arrays and numbers of a search took 12 us,
+five times as long as the search. `flatten` lays named tuples end to end; kernels unpack them for nothing.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ikde.kernels.arrays import DescentArrays, DetectorArrays, Floats, Ints, RobotArrays, SeedArrays
+from ikde.kernels.jit import kernel
+
+
+class Terms(NamedTuple):
+    """What the grader asks of every configuration beside its target."""
+
+    limits: Floats  # [2, N] lower and upper, m or rad
+    position_tolerance: float  # m
+    orientation_tolerance: float  # rad
+
+
+def flatten_question(ranges: Floats, descent: DescentArrays, seeds: SeedArrays) -> tuple[Floats, Ints, Floats, Floats]:
+    """What `unpack_question` takes; the pool, which is large, stays as it is."""
+    q, T_world_tool, *others = seeds
+    sizes = np.array([ranges.shape[1], len(seeds.grid)])
+    return *_flatten(sizes, ranges, *descent, *others), q, T_world_tool
+
+
+def flatten_grader(robot: RobotArrays, detector: DetectorArrays, terms: Terms) -> tuple[Floats, Ints]:
+    """What `unpack_grader` takes."""
+    joints, tables = terms.limits.shape[1], (robot.bodies, robot.frame_body, detector.components, detector.pairs)
+    sizes = np.array([joints, *map(len, tables), len(detector.rows), len(detector.radius)])
+    return _flatten(sizes, *robot, *detector, *terms)
+
+
+def _flatten(*values: Floats | Ints | float) -> tuple[Floats, Ints]:
+    """All numbers and all whole numbers, each in the order of the values; read-only."""
+    arrays = [np.asarray(value) for value in values]
+    numbers = np.concatenate([array.ravel() for array in arrays if array.dtype.kind == "f"])
+    whole = np.concatenate([array.ravel().astype(np.int64) for array in arrays if array.dtype.kind in "iu"])
+    for block in (numbers, whole):
+        block.setflags(write=False)
+    return numbers, whole
+
+
+@kernel
+def unpack_question(numbers, whole, q, T_world_tool):
+    """Ranges [3, N], `DescentArrays` and `SeedArrays`, as views."""
+    joints, directions = whole[0], whole[1]
+    n, w, scale = numbers[3 * joints :], whole[2:], 2 * directions
+    descent = DescentArrays(n[0], n[1], n[2], n[3], n[4], n[5], w[0], w[1], n[6])
+    seeds = SeedArrays(
+        q,
+        T_world_tool,
+        w[2:5],
+        w[5 : 5 + scale].reshape((directions, 2)),
+        n[7 : 7 + scale].reshape((directions, 2)),
+        w[5 + scale :],
+        n[7 + scale],
+        n[8 + scale],
+    )
+    return numbers[: 3 * joints].reshape((3, joints)), descent, seeds
+
+
+@kernel
+def unpack_grader(numbers, whole):
+    """`RobotArrays`, `DetectorArrays` and `Terms`, as views."""
+    joints, bodies, frames, components = whole[0], whole[1], whole[2], whole[3]
+    pairs, rows, spheres = whole[4], whole[5], whole[6]
+    w, u = whole[7:], whole[7 + 4 * bodies :].view(np.uint64)
+    T_body_frame = 12 * bodies
+    safe_distance = T_body_frame + 12 * frames
+    radius = safe_distance + 1 + 3 * spheres
+    bounds = radius + spheres
+    offset = bounds + 4 * components
+    limits = offset + spheres
+    robot = RobotArrays(
+        w[: 4 * bodies].reshape((bodies, 4)),
+        numbers[:T_body_frame].reshape((bodies, 3, 4)),
+        u[:frames],
+        numbers[T_body_frame:safe_distance].reshape((frames, 3, 4)),
+    )
+    first_pair = frames + 3 * components
+    first_row = first_pair + 2 * pairs
+    detector = DetectorArrays(
+        numbers[safe_distance],
+        numbers[safe_distance + 1 : radius].reshape((3, spheres)),
+        numbers[radius:bounds],
+        u[frames:first_pair].reshape((components, 3)),
+        numbers[bounds:offset].reshape((components, 4)),
+        u[first_pair:first_row].reshape((pairs, 2)),
+        u[first_row:].reshape((rows, 4)),
+        numbers[offset:limits],
+    )
+    end = limits + 2 * joints
+    return robot, detector, Terms(numbers[limits:end].reshape((2, joints)), numbers[end], numbers[end + 1])

@@ -1,0 +1,29 @@
+"""The pool of a robot on disk, beside the module written for it: drawing it takes a tenth of a second, loading 3 ms."""
+
+import io
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from ikde.kernels.arrays import SeedArrays
+from ikde.model.generate.module import write_whole
+
+
+def load_pool(path: Path) -> SeedArrays | None:
+    """What `save_pool` wrote, or None if there is nothing whole."""
+    try:
+        with path.open("rb") as file, np.load(file) as arrays:
+            fields = {name: arrays[name] for name in SeedArrays._fields}
+    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
+        return None
+    for array in fields.values():
+        array.setflags(write=False)
+    return SeedArrays(**{name: array if array.ndim else float(array) for name, array in fields.items()})
+
+
+def save_pool(path: Path, seeds: SeedArrays) -> None:
+    """Write a pool, whole or not at all."""
+    content = io.BytesIO()
+    np.savez(content, **{name: np.asarray(field) for name, field in seeds._asdict().items()})
+    write_whole(path, content.getvalue())

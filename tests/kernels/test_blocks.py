@@ -1,0 +1,36 @@
+"""What is laid end to end comes apart as it was."""
+
+import numpy as np
+import pytest
+
+from ikde.kernels.arrays import DescentArrays
+from ikde.kernels.blocks import flatten_grader, flatten_question, unpack_grader, unpack_question
+from ikde.model.pack import pack_detector, pack_robot
+from tests.conftest import random_q
+from tests.kernels.seeding import no_seeds, pack_seeds
+from tests.kernels.test_figures import ROBOTS, terms_of
+
+
+def assert_same(ours, theirs):
+    assert type(ours) is type(theirs)
+    for name, a, b in zip(ours._fields, ours, theirs, strict=True):
+        assert np.shape(a) == np.shape(b), name
+        assert np.array_equal(a, b), name
+
+
+@pytest.mark.parametrize("robot", ROBOTS[::3], ids=lambda robot: robot.name)
+def test_the_graders_tables_come_back(robot):
+    for detector in (None, *robot.detectors.values()):
+        packed = pack_robot(robot), pack_detector(robot, detector), terms_of(robot, 0.25, 0.5)
+        for ours, theirs in zip(packed, unpack_grader(*flatten_grader(*packed)), strict=True):
+            assert_same(ours, theirs)
+
+
+def test_the_question_comes_back(qiao, rng):
+    ranges = np.array([qiao.lower, qiao.upper, qiao.home])
+    descent = DescentArrays(position_tolerance=0.25, orientation_tolerance=0.5, most_steps=7, patience=3)
+    for seeds in (pack_seeds(qiao, random_q(qiao, rng, 100), np.array([0, 1, 2])), no_seeds(qiao, 0.125)):
+        back = unpack_question(*flatten_question(ranges, descent, seeds))
+        assert (back[0] == ranges).all()
+        assert_same(descent, back[1])
+        assert_same(seeds, back[2])

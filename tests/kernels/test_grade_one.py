@@ -1,0 +1,34 @@
+"""One configuration graded alone has the bits of the grader in lanes."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.kernels.blocks import Terms, flatten_grader
+from ikde.kernels.grade_one import grade_one
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from tests.conftest import random_q
+from tests.kernels.test_figures import ROBOTS, run, targets_near, terms_of
+
+
+@pytest.mark.parametrize("robot", ROBOTS[::3], ids=lambda robot: robot.name)
+def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
+    Q = random_q(robot, rng, 12)
+    targets = targets_near(robot, Q, rng)
+    for detector in (None, *robot.detectors.values()):
+        terms = terms_of(robot, 0.5, 1.0)
+        figures, pairs, accepted = run(robot, detector, targets, Q, terms)
+        block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms)
+        for row, q in enumerate(Q):
+            *errors, pair, verdict = grade_one(*block, *pack_targets(targets.take(np.array([row]))), q)
+            assert np.array(errors).tobytes() == figures[row].tobytes()
+            assert (pair, verdict) == (pairs[row], accepted[row])
+
+
+def test_what_is_outside_the_limits_is_not_accepted(qiao):
+    q, wide = qiao.home.copy(), Terms(np.array([qiao.lower, qiao.upper]), np.inf, np.inf)
+    block = flatten_grader(pack_robot(qiao), pack_detector(qiao, None), wide)
+    target = pack_targets([ikde.Target((0.0, 0.0, 0.0))])
+    assert grade_one(*block, *target, q)[4]
+    q[4] = qiao.upper[4] + 1e-9
+    assert not grade_one(*block, *target, q)[4]
