@@ -167,6 +167,7 @@ def format_race(row: dict[str, Any]) -> str:
 
 
 PEER_TABLES = (("pose", "hard pose"), ("position", "hard position"), ("paper task 1", "paper task 2"))
+ENOUGH = {"median": 1, "p95": 20, "p99": 100, "max": 1}  # targets that a figure asks for
 
 
 def format_peers(record: dict[str, Any]) -> str:
@@ -176,7 +177,7 @@ def format_peers(record: dict[str, Any]) -> str:
     lines = [
         f"ikde beside other solvers, interleaved, one core each, tolerances {position:g} m and {orientation:g} rad, "
         "limits and self-collision inside success, every answer graded by plain numpy; ms over all targets asked, "
-        f"median / p95 / p99 / max ({options['limit']:g} s at most). How each is used: "
+        f"median / p95 / p99 / max ({options['limit']:g} s at most, slow ones are asked fewer). How each is used: "
         "[benchmarks/peers](benchmarks/peers/README.md).",
     ]
     for names in PEER_TABLES:
@@ -199,12 +200,12 @@ def order_peers(rows: dict[str, Any]) -> list[str]:
 
 
 def format_peer(row: dict[str, Any]) -> str:
-    """One cell: how many were solved of how many, and the times."""
+    """One cell: how many were solved of how many, and the times; no percentile of too few targets."""
     if "ms" not in row:
         return "-"
-    times = " / ".join(format_ms(row["ms"][key]) for key in ("median", "p95", "p99", "max"))
+    times = " / ".join(format_ms(row["ms"][key]) if row["asked"] >= n else "-" for key, n in ENOUGH.items())
     share = f"{row['solved'] / row['asked']:.2%}".replace(".00", "")
-    return f"{share} of {row['asked']:,}: {times}"
+    return f"{share} of {row['asked']:,}{', then stopped' if 'lost' in row else ''}: {times}"
 
 
 def format_ms(value: float) -> str:
