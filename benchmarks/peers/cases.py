@@ -25,7 +25,7 @@ BLOCK = 1000
 STEPS, DAMPING, REACHED_M, REACHED_RAD = 80, 1e-4, 1e-4, 1e-3
 PAPER_TARGETS_M = {"task 1": (0.8, 0.5, 1.0), "task 2": (0.54, -0.131, 0.974)}
 PAPER_BASE_M = 0.1
-NAMES = ("pose", "position", "hard pose", "hard position", "paper task 1", "paper task 2")
+NAMES = ("pose", "hard pose", "position", "hard position", "paper task 1", "paper task 2")
 
 Descend = Callable[[np.ndarray, np.ndarray], bool]
 Poses = tuple[np.ndarray, np.ndarray]

@@ -1,138 +1,105 @@
-"""The runner's end of the pipe: starts a worker, asks it, notices when it is gone or stuck."""
+"""The runner's end of the pipe: starts a worker, asks it, and stops it when it is gone or over its time.
 
-import ast
+`Connection` puts the length before each message: reading a pickle from a bare pipe fails once it is longer than 64 KB.
+"""
+
 import os
-import pickle
-import select
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from multiprocessing import Pipe
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from protocol import Setup
-from worker import ADAPTERS, FOLDER
+from protocol import Answer, Setup
+from roster import ROSTER
 
+WORKER = Path(__file__).parent / "worker.py"
 THREADS = ("OMP", "OPENBLAS", "MKL", "NUMBA", "BLIS", "VECLIB_MAXIMUM")
-START_S, PREPARE_S, GRACE_S = 180.0, 600.0, 60.0
+START_S, PREPARE_S, GRACE_S = 120.0, 300.0, 5.0
 
 
 class Lost(Exception):  # noqa: N818 - read as `raise Lost`
     """A peer that cannot be used, with the reason in one line."""
 
 
-@dataclass(frozen=True)
-class Description:
-    """What an adapter's source says about one of its peers, read without importing what it needs."""
-
-    adapter: str
-    index: int
-    name: str
-    use: str
-    cores: int
-    batch: bool
-
-
-def list_peers() -> list[Description]:
-    """Every peer of every adapter."""
-    return [peer for adapter in ADAPTERS for peer in _read_adapter(adapter)]
-
-
-def _read_adapter(adapter: str) -> list[Description]:
-    tree = ast.parse((FOLDER / "adapters" / f"{adapter}.py").read_text(encoding="utf-8"))
-    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    peers = next(n.value for n in tree.body if isinstance(n, ast.Assign) and ast.unparse(n.targets[0]) == "PEERS")
-    found = []
-    for index, element in enumerate(peers.elts):  # type: ignore[attr-defined]
-        facts = _read_class(classes, element.id)
-        found.append(
-            Description(adapter, index, facts["name"], facts["use"], facts.get("cores", 1), facts.get("batch", False))
-        )
-    return found
-
-
-def _read_class(classes: dict[str, ast.ClassDef], name: str) -> dict[str, Any]:
-    facts: dict[str, Any] = {}
-    for base in classes[name].bases:
-        if ast.unparse(base) in classes:
-            facts |= _read_class(classes, ast.unparse(base))
-    for node in classes[name].body:
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            try:
-                facts[node.targets[0].id] = ast.literal_eval(node.value)
-            except ValueError:
-                continue
-    return facts
-
-
 class Client:
     """A running worker."""
 
-    def __init__(self, description: Description) -> None:
-        self.name, self.use, self.batch = description.name, description.use, description.batch
-        self._description = description
+    def __init__(self, index: int) -> None:
+        self._index, self.entry = index, ROSTER[index]
+        self._setup: Setup | None = None
         self._start()
 
     def prepare(self, setup: Setup, p: np.ndarray, R: np.ndarray, seconds: float) -> dict[str, float]:
-        """Load a case's robot, in a new process if the last one has gone; seconds that took."""
-        if self._process.poll() is not None:
-            self._start()
-        answer = self._ask(PREPARE_S + seconds * len(p), "prepare", setup, p, R, seconds)
-        if "lost" in answer:
-            raise Lost(answer["lost"])
-        return answer
+        """Load a robot unless it is the one at hand, in a new process if the last has gone; seconds that took."""
+        if setup is not self._setup:
+            self._setup, self._outcome = setup, {"lost": "not started"}
+            if self._process.poll() is not None:
+                self._start()
+            self._outcome = self._ask(PREPARE_S, "prepare", setup, p, R, seconds)
+        if "lost" in self._outcome:
+            raise Lost(self._outcome["lost"])
+        return self._outcome
 
-    def solve(
-        self, p: np.ndarray, R: np.ndarray, seconds: float, slice_s: float
-    ) -> list[tuple[float, np.ndarray | None]]:
-        """Solve targets until the slice is over: seconds and joint values of each."""
-        at_once = len(p) if self.batch else 1
-        return self._ask(GRACE_S + slice_s + 3.0 * seconds * at_once, "solve", p, R, seconds, slice_s)
+    def solve(self, p: np.ndarray, R: np.ndarray, seconds: float, slice_s: float) -> list[Answer]:
+        """Solve targets until the slice is over; a target may take its own time twice, then the worker is stopped."""
+        try:
+            return self._ask(slice_s + 2.0 * seconds + GRACE_S, "solve", p, R, seconds, slice_s)
+        except Lost:
+            self._setup = None
+            raise
+
+    def close(self) -> None:
+        """End the worker."""
+        self._process.kill()
+        self._process.wait()
+        self._pipe.close()
 
     def _start(self) -> None:
-        peer = self._description
         one_thread = {f"{name}_NUM_THREADS": "1" for name in THREADS}
         flags = f"--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1 {os.environ.get('XLA_FLAGS', '')}"
         environment = {**os.environ, **one_thread, "XLA_FLAGS": flags.strip(), "JAX_PLATFORMS": "cpu"}
-        command = [sys.executable, str(FOLDER / "worker.py"), peer.adapter, str(peer.index), str(peer.cores)]
+        self._pipe, theirs = Pipe()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": self._errors, "bufsize": 0}
-        self._process = subprocess.Popen(command, env=environment, **pipes)
+        self._process = subprocess.Popen(
+            [sys.executable, str(WORKER), str(self._index), str(theirs.fileno())],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=self._errors,
+            stderr=self._errors,
+            pass_fds=[theirs.fileno()],
+        )
+        theirs.close()
         answer = self._read(START_S)
         if "missing" in answer:
             self.close()
             raise Lost(answer["missing"])
         self.import_s, self.versions = round(answer["import_s"], 3), answer["versions"]
 
-    def close(self) -> None:
-        """End the worker."""
-        if self._process.poll() is None:
-            self._process.kill()
-        self._process.wait()
-
     def _ask(self, patience_s: float, *request: Any) -> Any:
-        if self._process.poll() is not None:
-            raise Lost("gone since an earlier case")
         try:
-            self._process.stdin.write(pickle.dumps(request))  # type: ignore[union-attr]
+            self._pipe.send(request)
         except OSError:
             raise self._explain() from None
         return self._read(patience_s)
 
     def _read(self, patience_s: float) -> Any:
-        pipe = self._process.stdout
-        ready, _, _ = select.select([pipe], [], [], patience_s)
-        if not ready:
-            self.close()
-            raise Lost(f"no answer within {patience_s:.0f} s")
         try:
-            return pickle.load(pipe)  # type: ignore[arg-type]
-        except (EOFError, pickle.UnpicklingError):
+            if self._pipe.poll(patience_s):
+                return self._pipe.recv()
+        except (EOFError, OSError):
             raise self._explain() from None
+        self.close()
+        raise Lost(f"stopped: no answer within {patience_s:.0f} s")
 
     def _explain(self) -> Lost:
-        self._process.wait()
+        """Its last words; a worker whose pipe is shut gets a moment to end by itself."""
+        try:
+            self._process.wait(GRACE_S)
+        except subprocess.TimeoutExpired:
+            self.close()
         self._errors.seek(0)
         lines = self._errors.read().decode(errors="replace").strip().splitlines()
         return Lost(f"ended with {self._process.returncode}: {lines[-1][:200] if lines else 'no word'}")

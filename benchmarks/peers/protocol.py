@@ -1,23 +1,25 @@
 """What every peer is given and asked for: the same robot, limits, tolerances, targets and sphere checker.
 
-An adapter is one file in `adapters/` with one or more subclasses of `Peer` in its `PEERS`. A worker (`worker.py`) makes
-one, calls `prepare` once a case, `convert` for each target (not timed: a user has targets in the library's own type)
-and `solve` (timed).
+An adapter is one file in `adapters/` with subclasses of `Peer`, entered in `roster.py`. A worker (`worker.py`) makes
+one, calls `prepare` once a robot and kind of target, `convert` for each target (not timed: a user has targets in the
+library's own type) and `solve` (timed).
 """
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.metadata import version
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from checker import Checker, make_checker
 
 import ikde
+
+Answer = tuple[float, np.ndarray | None]
+"""Seconds, and joint values [N] if there are any."""
 
 TOOL_WEIGHT_M = 0.1  # m/rad: what an orientation error counts beside a position error, where a peer adds the two
 
@@ -59,12 +61,15 @@ class Setup:
         """Whether joint values [N] keep the limits."""
         return bool(np.all(q >= self.lower) and np.all(q <= self.upper))
 
+    def keeps(self, p_error: np.ndarray, R_error: np.ndarray) -> bool:
+        """Whether an error in m and, for poses, one in rad are within the tolerances; vectors [3] or [1]."""
+        if math.sqrt(p_error @ p_error) > self.position_tolerance_m:
+            return False
+        return not self.is_pose or math.sqrt(R_error @ R_error) <= self.orientation_tolerance_rad
+
     def reaches(self, T_world_tool: np.ndarray, p: np.ndarray, R: np.ndarray) -> bool:
         """Whether a tool pose [4, 4] is within the tolerances of a target."""
-        error = T_world_tool[:3, 3] - p
-        if math.sqrt(error @ error) > self.position_tolerance_m:
-            return False
-        return not self.is_pose or angle_between(T_world_tool[:3, :3], R) <= self.orientation_tolerance_rad
+        return self.keeps(T_world_tool[:3, 3] - p, np.array([angle_between(T_world_tool[:3, :3], R)]))
 
 
 def angle_between(A: np.ndarray, B: np.ndarray) -> float:
@@ -77,19 +82,10 @@ def angle_between(A: np.ndarray, B: np.ndarray) -> float:
 class Peer:
     """One way to solve; adapters say how."""
 
-    name: ClassVar[str]
-    packages: ClassVar[Sequence[str]] = ()
-    """Distributions whose versions go on the record."""
-    use: ClassVar[str]
-    """One line: how it is used and what its documentation advises; the README lists it."""
-    cores: ClassVar[int] = 1
-    batch: ClassVar[bool] = False
-    """True if `solve_batch` takes all targets at once; a target's time is then its share of the batch's."""
-
     setup: Setup
 
     def prepare(self, setup: Setup) -> None:
-        """Load the robot; called once a case, its time is recorded apart."""
+        """Load the robot; its time is recorded apart."""
         self.setup = setup
 
     def convert(self, p: np.ndarray, R: np.ndarray) -> Any:
@@ -100,13 +96,19 @@ class Peer:
         """Joint values [N] in the robot's order, free of self-collision, or None by `deadline` (`perf_counter`)."""
         raise NotImplementedError
 
-    def convert_batch(self, p: np.ndarray, R: np.ndarray) -> Any:
-        """Many targets in the library's own type, from positions [T, 3] and orientations [T, 3, 3]; not timed."""
-        return [self.convert(a.copy(), b.copy()) for a, b in zip(p, R, strict=True)]
-
-    def solve_batch(self, targets: Any, deadline: float) -> Sequence[np.ndarray | None]:
-        """Many at once, for peers with `batch`."""
-        raise NotImplementedError
+    def answer(self, p: np.ndarray, R: np.ndarray, seconds: float, slice_s: float) -> list[Answer]:
+        """Solve targets, positions [T, 3] and orientations [T, 3, 3], until `slice_s` have passed."""
+        targets = [self.convert(a.copy(), b.copy()) for a, b in zip(p, R, strict=True)]
+        answers: list[Answer] = []
+        begun = time.perf_counter()
+        for target in targets:
+            started = time.perf_counter()
+            q = self.solve(target, started + seconds)
+            ended = time.perf_counter()
+            answers.append((ended - started, None if q is None else np.array(q, dtype=float)))
+            if ended - begun > slice_s:
+                break
+        return answers
 
     def restart(self, attempt: Callable[[], np.ndarray | None], deadline: float) -> np.ndarray | None:
         """Reject and restart, for what is blind to collisions: until an answer is inside the limits and free."""
@@ -118,10 +120,12 @@ class Peer:
             if time.perf_counter() > deadline:
                 return None
 
-    @classmethod
-    def versions(cls) -> dict[str, str]:
-        """Version of each distribution."""
-        return {package: version(package) for package in cls.packages}
+
+def to_matrix(p: np.ndarray, R: np.ndarray) -> np.ndarray:
+    """A homogeneous matrix [4, 4]."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, p
+    return T
 
 
 def random_rotation(quat: np.ndarray) -> np.ndarray:

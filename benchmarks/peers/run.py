@@ -1,18 +1,21 @@
 """Run every peer beside ikde, interleaved, one core each, and record how often and how fast they solve.
 
-    python benchmarks/peers/run.py                                  # all cases, all peers
+    python benchmarks/peers/run.py                                  # all cases, all peers: about ten minutes
     python benchmarks/peers/run.py --only ikde rtb --cases pose --targets 20 --out try.json
 
 In each round every peer works on its next targets for at most a slice of time, in a new order; then comes the next
 round, so that a swing of the machine's clock hits all alike. All peers get the same targets from the first on; a peer
-that has used up its share of time for a case stops there, so slow ones answer fewer (the counts are on record). What
-comes back is graded by ikde's plain numpy (`verify_many`) before it counts as solved.
+that has used up its share of time for a case stops there, so slow ones answer fewer (the counts are on record). An
+answer after the time limit does not count; a peer that gives none in more than twice that is stopped, and that is on
+record. What comes back is graded by ikde's plain numpy (`verify_many`) before it counts as solved.
 """
 
 import argparse
 import json
 import re
+import sys
 import tempfile
+import time
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -20,8 +23,9 @@ from typing import Any
 
 import numpy as np
 from cases import NAMES, Case, make_case
-from client import Client, Lost, list_peers
-from protocol import Setup
+from client import Client, Lost
+from protocol import Answer, Setup
+from roster import ROSTER, select
 
 import ikde
 from ikde.batch.machine import describe_machine, describe_versions
@@ -30,6 +34,8 @@ from ikde.solver.verify import verify_many
 RESULTS = Path(__file__).parent.parent / "results" / "peers.json"
 WARM_UP = 4
 CURVE_POINTS = 60
+PERCENTILES = {"median": 50, "p95": 95, "p99": 99, "max": 100}
+STARTED = time.perf_counter()
 
 
 @dataclass
@@ -37,33 +43,38 @@ class Tally:
     """One peer's answers to one case."""
 
     start: dict[str, float]
-    seconds: list[float] = field(default_factory=list)
-    answers: list[np.ndarray | None] = field(default_factory=list)
+    answers: list[Answer] = field(default_factory=list)
     lost: str | None = None
 
     @property
     def spent_s(self) -> float:
         """Time used so far."""
-        return sum(self.seconds)
+        return sum(seconds for seconds, _ in self.answers)
 
 
 def run_case(
-    case: Case, warm_up: Case, clients: list[Client], options: argparse.Namespace, folder: Path
+    case: Case, warm_up: Case, setup: Setup, clients: list[Client], options: argparse.Namespace
 ) -> dict[str, Any]:
     """All peers on one case, after a few targets that do not count."""
-    setup = write_setup(case, options, folder)
-    tallies = {}
-    for client in clients:
-        try:
-            tallies[client.name] = Tally(client.prepare(setup, warm_up.p, warm_up.R, options.limit))
-        except Lost as lost:
-            tallies[client.name] = Tally({}, lost=str(lost))
-        say(case, client, tallies[client.name].lost or "ready")
+    tallies = [prepare(client, case.name, setup, warm_up, options) for client in clients]
     order = np.random.default_rng(options.seed)
-    while waiting := [c for c in clients if is_waiting(tallies[c.name], len(case.p), options)]:
-        for index in order.permutation(len(waiting)):
-            take_turn(waiting[index], tallies[waiting[index].name], case, options)
-    return {name: summarise(case, tally, options) for name, tally in tallies.items()}
+    while waiting := [k for k, tally in enumerate(tallies) if is_waiting(tally, len(case.p), options)]:
+        for k in order.permutation(waiting):
+            take_turn(clients[k], tallies[k], case, options)
+    return {c.entry.name: summarise(case, tally, options) for c, tally in zip(clients, tallies, strict=True)}
+
+
+def prepare(client: Client, case: str, setup: Setup, warm_up: Case, options: argparse.Namespace) -> Tally:
+    """A peer with the case's robot loaded."""
+    began = time.perf_counter()
+    try:
+        tally = Tally(client.prepare(setup, warm_up.p, warm_up.R, options.limit))
+    except Lost as lost:
+        tally = Tally({}, lost=str(lost))
+    took_s = time.perf_counter() - began
+    if took_s > 0.05:  # the robot was not at hand
+        say(f"{case}: {client.entry.name}: {tally.lost or f'ready after {took_s:.1f} s'}")
+    return tally
 
 
 def is_waiting(tally: Tally, count: int, options: argparse.Namespace) -> bool:
@@ -73,17 +84,18 @@ def is_waiting(tally: Tally, count: int, options: argparse.Namespace) -> bool:
 
 
 def take_turn(client: Client, tally: Tally, case: Case, options: argparse.Namespace) -> None:
-    """One peer's next targets."""
+    """One peer's next targets; the one that it was lost at is asked and not solved."""
     first = len(tally.answers)
-    last = min(first + (options.chunk if not client.batch else 10 * options.chunk), len(case.p))
+    last = min(first + (10 * options.chunk if client.entry.batch else options.chunk), len(case.p))
+    began = time.perf_counter()
     try:
-        answers = client.solve(case.p[first:last], case.R[first:last], options.limit, options.slice)
+        tally.answers += client.solve(case.p[first:last], case.R[first:last], options.limit, options.slice)
     except Lost as lost:
+        tally.answers.append((time.perf_counter() - began, None))
         tally.lost = str(lost)
-        say(case, client, tally.lost)
-        return
-    tally.seconds += [seconds for seconds, _ in answers]
-    tally.answers += [q for _, q in answers]
+    if not is_waiting(tally, len(case.p), options):
+        done = f"{len(tally.answers)} targets in {tally.spent_s:.2f} s"
+        say(f"{case.name}: {client.entry.name}: {tally.lost or done}")
 
 
 def write_setup(case: Case, options: argparse.Namespace, folder: Path) -> Setup:
@@ -96,15 +108,16 @@ def write_setup(case: Case, options: argparse.Namespace, folder: Path) -> Setup:
     return Setup(robot=case.robot, urdf=urdf, mjcf=mjcf, kind=case.kind, seed=options.seed, **tolerances)
 
 
-def grade(case: Case, answers: list[np.ndarray | None], options: argparse.Namespace) -> np.ndarray:
-    """Which answers [T] plain numpy accepts; no answer is none."""
+def grade(case: Case, answers: list[Answer], options: argparse.Namespace) -> np.ndarray:
+    """Which answers [T] came in time and are accepted by plain numpy."""
     robot = case.robot
-    Q = np.array([robot.home if q is None or not np.all(np.isfinite(q)) else q for q in answers])
+    returned = np.array([q is not None and bool(np.all(np.isfinite(q))) for _, q in answers])
+    Q = np.array([q if ok else robot.home for (_, q), ok in zip(answers, returned, strict=True)])
     settings = ikde.SolveSettings(
         position_tolerance_m=options.tolerance[0], orientation_tolerance_rad=options.tolerance[1]
     )
     accepted = verify_many(robot, case.targets()[: len(Q)], Q, settings, robot.detector(None)).accepted
-    return accepted & np.array([q is not None for q in answers])
+    return accepted & returned & np.array([seconds <= options.limit for seconds, _ in answers])
 
 
 def summarise(case: Case, tally: Tally, options: argparse.Namespace) -> dict[str, Any]:
@@ -115,12 +128,11 @@ def summarise(case: Case, tally: Tally, options: argparse.Namespace) -> dict[str
     if not tally.answers:
         return record
     solved = grade(case, tally.answers, options)
-    ms = np.array(tally.seconds) * 1e3
+    ms = np.array([seconds for seconds, _ in tally.answers]) * 1e3
     record["solved"] = int(solved.sum())
-    record["returned"] = sum(q is not None for q in tally.answers)
-    record["ms"] = {
-        **{name: shorten(np.percentile(ms, p)) for name, p in (("median", 50), ("p95", 95), ("p99", 99), ("max", 100))},
-        "mean": shorten(ms.mean()),
+    record["returned"] = sum(q is not None for _, q in tally.answers)
+    record["ms"] = {name: shorten(np.percentile(ms, p)) for name, p in PERCENTILES.items()} | {
+        "mean": shorten(ms.mean())
     }
     times = np.sort(ms[solved])
     if times.size:
@@ -134,21 +146,21 @@ def shorten(value: float) -> float:
     return float(f"{value:.4g}")
 
 
-def say(case: Case, client: Client, text: str) -> None:
-    """Progress on stdout."""
-    print(f"{case.name}: {client.name}: {text}", flush=True)
+def say(text: str) -> None:
+    """Progress on stderr."""
+    print(f"[{time.perf_counter() - STARTED:4.0f} s] {text}", file=sys.stderr, flush=True)
 
 
 def read_options() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--targets", type=int, default=1000, help="targets a case")
+    parser.add_argument("--targets", type=int, default=500, help="targets a case")
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES)
     parser.add_argument("--only", nargs="+", default=None, metavar="WORD", help="peers whose name holds a word")
     parser.add_argument("--tolerance", nargs=2, type=float, default=(1e-4, 1e-3), metavar=("M", "RAD"))
-    parser.add_argument("--limit", type=float, default=10.0, help="seconds a target")
-    parser.add_argument("--share", type=float, default=60.0, help="seconds a peer and case")
-    parser.add_argument("--least", type=int, default=20, help="targets that even a slow peer is asked")
+    parser.add_argument("--limit", type=float, default=5.0, help="seconds a target")
+    parser.add_argument("--share", type=float, default=3.0, help="seconds a peer and case")
+    parser.add_argument("--least", type=int, default=3, help="targets that even a slow peer is asked")
     parser.add_argument("--slice", type=float, default=1.0, help="seconds a turn")
     parser.add_argument("--chunk", type=int, default=100, help="targets a turn, at most")
     parser.add_argument("--seed", type=int, default=1)
@@ -156,37 +168,53 @@ def read_options() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def start_workers(words: list[str] | None) -> tuple[list[Client], dict[str, str]]:
+    """A worker a peer; why some have none."""
+    clients, missing = [], {}
+    for index in select(words):
+        try:
+            clients.append(Client(index))
+        except Lost as lost:
+            missing[ROSTER[index].name] = str(lost)
+            say(f"left out: {ROSTER[index].name}: {lost}")
+    return clients, missing
+
+
+def run_cases(clients: list[Client], record: dict[str, Any], options: argparse.Namespace, folder: Path) -> None:
+    """One case after the other into the record, which is written after each; like ones share their set-up."""
+    setups: dict[tuple[str, bytes], Setup] = {}
+    for name in options.cases:
+        drawn, n = make_case(name, options.targets + WARM_UP), options.targets
+        case, warm_up = (replace(drawn, p=drawn.p[rows], R=drawn.R[rows]) for rows in (slice(n), slice(n, None)))
+        key = case.kind, np.array([case.robot.lower, case.robot.upper]).tobytes()
+        if key not in setups:
+            setups[key] = write_setup(case, options, folder)
+        record["cases"][name] = run_case(case, warm_up, setups[key], clients, options)
+        print_case(name, record["cases"][name])
+        options.out.parent.mkdir(parents=True, exist_ok=True)
+        options.out.write_text(format_record(record))
+
+
 def main() -> None:
     """Run, print a line a peer, write the record."""
     options = read_options()
-    words = options.only
-    described = [d for d in list_peers() if words is None or any(w in f"{d.adapter} {d.name}" for w in words)]
-    missing, clients = {}, []
-    for description in described:
-        try:
-            clients.append(Client(description))
-        except Lost as lost:
-            missing[description.name] = str(lost)
-            print(f"left out: {description.name}: {lost}", flush=True)
+    clients, missing = start_workers(options.only)
+    facts = {c.entry.name: {"import_s": c.import_s, "versions": c.versions, "use": c.entry.use} for c in clients}
     record = {
         "made": datetime.now(UTC).isoformat(timespec="seconds"),
         "machine": {**describe_machine(), **describe_versions()},
         "options": {k: v for k, v in vars(options).items() if k not in ("out", "only", "cases")},
-        "peers": {c.name: {"import_s": c.import_s, "versions": c.versions, "use": c.use} for c in clients},
+        "peers": facts,
         "missing": missing,
         "cases": {},
     }
     record["machine"].pop("cpu_flags")
-    with tempfile.TemporaryDirectory() as folder:
-        for name in options.cases:
-            drawn, n = make_case(name, options.targets + WARM_UP), options.targets
-            case, warm_up = (replace(drawn, p=drawn.p[rows], R=drawn.R[rows]) for rows in (slice(n), slice(n, None)))
-            record["cases"][name] = run_case(case, warm_up, clients, options, Path(folder))
-            print_case(name, record["cases"][name])
-            options.out.parent.mkdir(parents=True, exist_ok=True)
-            options.out.write_text(format_record(record))
-    for client in clients:
-        client.close()
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            run_cases(clients, record, options, Path(folder))
+    finally:
+        for client in clients:
+            client.close()
 
 
 def format_record(record: dict[str, Any]) -> str:
@@ -200,10 +228,11 @@ def print_case(name: str, peers: dict[str, Any]) -> None:
     print(f"\n{name}: solved of asked, ms median / p95 / p99 / max")
     for peer, row in sorted(peers.items(), key=lambda item: item[1].get("ms", {}).get("median", np.inf)):
         if "ms" in row:
-            times = " / ".join(f"{row['ms'][k]:.4g}" for k in ("median", "p95", "p99", "max"))
-            print(f"  {peer:42} {row['solved']:6} of {row['asked']:6} ({row['returned']} returned)  {times}")
+            times = " / ".join(f"{row['ms'][k]:.4g}" for k in PERCENTILES)
+            print(f"  {peer:42} {row['solved']:6} of {row['asked']:6}  {times}  {row.get('lost', '')}")
         else:
             print(f"  {peer:42} {row.get('lost')}")
+    sys.stdout.flush()
 
 
 if __name__ == "__main__":

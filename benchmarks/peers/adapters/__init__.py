@@ -1,1 +1,1 @@
-"""One file a library; each lists its peers in `PEERS`."""
+"""One file a library; `roster.py` names its classes."""

@@ -19,13 +19,6 @@ INFLUENCE_M, INSIDE = 0.02, 0.9  # share of each tolerance that the program is t
 class Program(Peer):
     """`InverseKinematics` with a minimum distance, solved by SNOPT."""
 
-    name = "Drake InverseKinematics"
-    packages = ("drake",)
-    use = (
-        "position and orientation constraints, AddMinimumDistanceLowerBoundConstraint (0, influence 2 cm), SNOPT, "
-        "guesses collision-free; restarted"
-    )
-
     def prepare(self, setup: Setup) -> None:
         """From URDF; only the detector's pairs of links are looked at."""
         super().prepare(setup)
@@ -80,6 +73,3 @@ class Program(Peer):
                     return q
             if time.perf_counter() > deadline:
                 return None
-
-
-PEERS = (Program,)

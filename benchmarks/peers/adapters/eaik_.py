@@ -17,10 +17,6 @@ ARM_JOINTS = 6
 class Sampled(Peer):
     """A random base from which the target is in reach, all branches, the first that is inside and free."""
 
-    name = "EAIK, base sampled"
-    packages = ("EAIK",)
-    use = "HPRobot(H, P).IK for the arm from bases drawn within its reach of the target; every branch checked (numba)"
-
     def prepare(self, setup: Setup) -> None:
         """Axes and offsets of the arm at q = 0, seen from the frame that the base moves."""
         super().prepare(setup)
@@ -94,6 +90,3 @@ def make_choice(lower: np.ndarray, upper: np.ndarray, is_free: Callable[..., boo
         return False
 
     return choose
-
-
-PEERS = (Sampled,)

@@ -14,9 +14,6 @@ GENERATIONS, POPULATION, WEIGHT, CROSSOVER = 1000, 50, 0.5, 0.9
 class _Evolution(Peer):
     """What the three share: the objective for one and for a population."""
 
-    name = ""
-    use = ""
-
     def prepare(self, setup: Setup) -> None:
         """Compile the objective."""
         super().prepare(setup)
@@ -52,13 +49,6 @@ class _Evolution(Peer):
 class Scipy(_Evolution):
     """`scipy.optimize.differential_evolution`."""
 
-    name = "SciPy differential_evolution"
-    packages = ("scipy",)
-    use = (
-        "best1bin, popsize 15, tol 1e-8, polish, vectorized, depth of penetration as penalty, stopped once within "
-        "the tolerances; restarted"
-    )
-
     def run(self, p: np.ndarray, R: np.ndarray, deadline: float) -> np.ndarray:
         """Its defaults, vectorised."""
         from scipy.optimize import differential_evolution
@@ -79,13 +69,6 @@ class Scipy(_Evolution):
 
 class Pymoo(_Evolution):
     """pymoo's DE with its constraint handling."""
-
-    name = "pymoo DE"
-    packages = ("pymoo",)
-    use = (
-        "DE(pop_size=50, 'DE/rand/1/bin', F=0.5, CR=0.9), depth of penetration as constraint, stopped once within the "
-        "tolerances; restarted"
-    )
 
     def run(self, p: np.ndarray, R: np.ndarray, deadline: float) -> np.ndarray:
         """A vectorised problem with one constraint."""
@@ -114,10 +97,6 @@ class Pymoo(_Evolution):
 
 class Pygmo(_Evolution):
     """pygmo's DE, with the depth as penalty."""
-
-    name = "pygmo DE"
-    packages = ("pygmo",)
-    use = "de(rand/1/bin, F=0.5, CR=0.9, population 50), depth as penalty, looked at every 50 generations; restarted"
 
     def run(self, p: np.ndarray, R: np.ndarray, deadline: float) -> np.ndarray:
         """Blocks of generations."""
@@ -151,6 +130,3 @@ class _Reach:
         """The joint limits."""
         setup = self.parts[3]
         return setup.lower, setup.upper
-
-
-PEERS = (Scipy, Pymoo, Pygmo)

@@ -4,15 +4,11 @@ from typing import Any
 
 import ikpy.chain
 import numpy as np
-from protocol import Peer, Setup
+from protocol import Peer, Setup, to_matrix
 
 
 class Bounded(Peer):
     """Its default optimiser, from random starts."""
-
-    name = "ikpy"
-    packages = ("ikpy",)
-    use = "Chain.inverse_kinematics_frame(T, initial_position=random, orientation_mode='all'), least_squares; restarted"
 
     def prepare(self, setup: Setup) -> None:
         """From URDF; fixed links are masked out."""
@@ -35,9 +31,7 @@ class Bounded(Peer):
 
     def convert(self, p: np.ndarray, R: np.ndarray) -> np.ndarray:
         """A homogeneous matrix."""
-        T = np.eye(4)
-        T[:3, :3], T[:3, 3] = R, p
-        return T
+        return to_matrix(p, R)
 
     def solve(self, target: Any, deadline: float) -> np.ndarray | None:
         """A random start each time."""
@@ -51,6 +45,3 @@ class Bounded(Peer):
             return q[self.places] if self.setup.reaches(T, target[:3, 3], target[:3, :3]) else None
 
         return self.restart(attempt, deadline)
-
-
-PEERS = (Bounded,)

@@ -24,10 +24,6 @@ SOURCE = Path(__file__).parent / "pinocchio_lm.cpp"
 class InPython(Peer):
     """The loop in Python."""
 
-    name = "Pinocchio, LM loop in Python"
-    packages = ("pin",)
-    use = "computeJointJacobians and log6 in a damped loop, clipped to the limits, from collision-free seeds; restarted"
-
     def prepare(self, setup: Setup) -> None:
         """From URDF."""
         super().prepare(setup)
@@ -75,10 +71,6 @@ class InPython(Peer):
 
 class InCpp(InPython):
     """The loop, the restarts and the sphere check in C++."""
-
-    name = "Pinocchio, LM loop in C++"
-    packages = ("pin", "cmeel-eigen")
-    use = "the same loop, seeds and sphere check compiled with g++ -O3 -march=native against the wheel's headers"
 
     def prepare(self, setup: Setup) -> None:
         """Compile once a machine, a minute or two; hand over joints and spheres."""
@@ -158,6 +150,3 @@ def compile_library() -> Path:
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
-
-
-PEERS = (InPython, InCpp)

@@ -37,15 +37,8 @@ def _descend(
     return solution[variable]
 
 
-class Basic(Peer):
+class Example(Peer):
     """Its example, from collision-free seeds."""
-
-    name = "PyRoki, CPU"
-    packages = ("pyroki", "jaxls", "jax")
-    use = (
-        "its solve_ik example (pose cost 50 / 10, limit cost, float32) from collision-free seeds, JAX on the CPU; "
-        "restarted"
-    )
 
     def prepare(self, setup: Setup) -> None:
         """From URDF."""
@@ -72,6 +65,3 @@ class Basic(Peer):
             return q if self.setup.reaches(ikde.forward(robot, q)[tool], p, R) else None
 
         return self.restart(attempt, deadline)
-
-
-PEERS = (Basic,)

@@ -7,12 +7,8 @@ from protocol import Peer, Setup, random_rotation
 from trac_ik import TracIK
 
 
-class OneCore(Peer):
-    """Both threads on one core, as every other peer has one."""
-
-    name = "TRAC-IK"
-    packages = ("pytracik",)
-    use = "TracIK(...).ik(position, rotation, random seed), Speed, timeout 5 ms, epsilon for the tolerance; restarted"
+class Speed(Peer):
+    """Its documented way."""
 
     def prepare(self, setup: Setup) -> None:
         """From URDF; it has one epsilon for m and rad."""
@@ -31,14 +27,3 @@ class OneCore(Peer):
     def turn(self) -> np.ndarray:
         """A random rotation [3, 3]."""
         return random_rotation(self.random.normal(size=4))
-
-
-class TwoCores(OneCore):
-    """A core for each thread."""
-
-    name = "TRAC-IK, two cores"
-    cores = 2
-    use = "the same with a core for each of its two threads, as it is made for"
-
-
-PEERS = (OneCore, TwoCores)
