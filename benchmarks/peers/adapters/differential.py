@@ -1,6 +1,5 @@
 """What mink and Pink share: Gauss-Newton steps of a quadratic program that keeps limits and distance."""
 
-from abc import abstractmethod
 from typing import Any
 
 import numpy as np
@@ -34,13 +33,13 @@ class Differential(Peer):
             configuration.integrate_inplace(v, DT)
         return None
 
-    @abstractmethod
     def configure(self, q: np.ndarray) -> Any:
         """The library's configuration at joint values [N]."""
+        raise NotImplementedError
 
-    @abstractmethod
     def step(self, configuration: Any) -> np.ndarray | None:
         """The velocity of the next step, None if the program has no answer."""
+        raise NotImplementedError
 
 
 def task_options(setup: Setup) -> dict[str, float]:

@@ -48,7 +48,6 @@ class InPython(Peer):
         model, data, tool, is_pose = self.model, self.data, self.tool, self.setup.is_pose
         rows = 6 if is_pose else 3
         identity = np.eye(rows)
-        p_tolerance, R_tolerance = self.setup.position_tolerance_m, self.setup.orientation_tolerance_rad
         for _ in range(STEPS):
             pin.computeJointJacobians(model, data, q)
             T = pin.updateFramePlacement(model, data, tool)
@@ -56,8 +55,7 @@ class InPython(Peer):
             error[:3] = T.rotation.T @ (target.translation - T.translation)
             if is_pose:
                 error[3:] = pin.log3(T.rotation.T @ target.rotation)
-            distance = np.linalg.norm(error[:3])
-            if distance <= p_tolerance and (not is_pose or np.linalg.norm(error[3:]) <= R_tolerance):
+            if self.setup.keeps(error[:3], error[3:]):
                 return q
             J = pin.getFrameJacobian(model, data, tool, pin.LOCAL)[:rows]
             damping = LEAST_DAMPING + DAMPING * (error @ error)
