@@ -91,22 +91,22 @@ def shrink_tolerances(settings: SolveSettings) -> tuple[float, float]:
 
 def pack_search(problem: Problem) -> SearchArrays:
     """The search's arrays for the kernels."""
-    settings = problem.settings
-    rule = IGNORE if problem.detector is None else {"reject": REJECT, "feasibility": FEASIBILITY}[settings.collision]
+    settings, knob = problem.settings, problem.settings.knob
+    rules = {"reject": REJECT, "feasibility": FEASIBILITY}
     near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
     position, orientation = shrink_tolerances(settings)
     return SearchArrays(
         ranges=np.array([problem.lower, problem.upper, near]),
         first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
-        start_share=float(settings.start_share),
+        start_share=float(knob("start_share")),
         position_tolerance=position,
         orientation_tolerance=orientation,
-        population=int(settings.population),
-        generations=int(settings.generations),
-        strategy=STRATEGIES.index(settings.strategy),
-        weight=float(settings.weight),
-        crossover=float(settings.crossover),
-        repair=REPAIRS.index(settings.bounds),
-        in_place=settings.update == "in_place",
-        collision_rule=rule,
+        population=int(knob("population")),
+        generations=int(knob("generations")),
+        strategy=STRATEGIES.index(knob("strategy")),
+        weight=float(knob("weight")),
+        crossover=float(knob("crossover")),
+        repair=REPAIRS.index(knob("bounds")),
+        in_place=knob("update") == "in_place",
+        collision_rule=IGNORE if problem.detector is None else rules[knob("collision")],
     )

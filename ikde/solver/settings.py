@@ -1,8 +1,9 @@
 """How to search: plain numbers with their defaults, checked once."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -24,58 +25,67 @@ CHOICES = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolveSettings:
-    """Method, tolerances, attempts, and the knobs of the differential evolution (DE).
+    """Method, tolerances, attempts, and the knobs of the differential evolution (DE), whose defaults are `KNOBS`.
 
     Raises:
-        InputError: for a tolerance of 0, a population below 6, an unknown strategy, and so on.
+        InputError: for a tolerance of 0, a population below 6, a knob that the method has not, and so on.
     """
 
     method: Method = "auto"
     """The engine: `lm`, damped least squares from collision-free seeds; `analytic`, the closed form of a UR-type arm;
     `memetic`, a DE that adapts itself and is polished; `de`, that of the papers. `auto` takes the fastest that fits and
-    falls back on `memetic`; if a knob of the DE is set to other than its default, it takes `de`."""
+    falls back on `memetic`; if a knob of the DE is set, it becomes `de`."""
     position_tolerance_m: float = 1e-5
     orientation_tolerance_rad: float = 1e-4
     restarts: int | None = None
     """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`). Under `auto` it is
     that of the engine that comes last."""
-    strategy: str = "rand/1"
+    strategy: str | None = None
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
-    population: int = 50
+    population: int | None = None
     """NP [Qiao2022]."""
-    start_share: float = 1.0
+    start_share: float | None = None
     """Share of each joint's range, about its middle, that the first population is drawn from, (0, 1]."""
-    weight: float = 0.5
+    weight: float | None = None
     """F, the differential weight [Qiao2022]."""
-    crossover: float = 0.9
+    crossover: float | None = None
     """CR, the crossover rate, [0, 1] [Qiao2022]."""
-    generations: int = 1000
+    generations: int | None = None
     """G, generations of one attempt [Qiao2022]."""
-    bounds: str = "redraw"
+    bounds: str | None = None
     """What happens to a coordinate out of its range: drawn again uniformly, clipped, its parent's value, the midpoint
     between parent and bound, or none (then a solution out of range counts as not reached). The paper does not say."""
-    update: Update = "in_place"
+    update: Update | None = None
     """When a better trial replaces its parent: at the end of the generation [Storn1997], or in place."""
-    collision: Collision = "feasibility"
+    collision: Collision | None = None
     """`reject`: search on the pose error alone, test the best, start again until it is free [Qiao2021].
     `feasibility`: Deb's rules with the penetration depth, inside the selection [Deb2000]."""
 
     def __post_init__(self) -> None:
-        for name in ("position_tolerance_m", "orientation_tolerance_rad", "weight"):
+        for name in ("position_tolerance_m", "orientation_tolerance_rad"):
             value = getattr(self, name)
             _require(_is_number(value) and bool(0.0 < value < np.inf), name, "a finite number above 0", value)
-        _require(
-            _is_number(self.crossover) and bool(0.0 <= self.crossover <= 1.0), "crossover", "0 to 1", self.crossover
-        )
-        start = self.start_share
-        _require(_is_number(start) and bool(0.0 < start <= 1.0), "start_share", "above 0, up to 1", start)
-        for name, least in (("population", LARGEST_DRAW + 1), ("generations", 1), ("restarts", 1)):
+        for name, (is_good, expected) in OPTIONAL.items():
             value = getattr(self, name)
-            whole = isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least
-            unsaid = name == "restarts" and value is None
-            _require(bool(whole) or unsaid, name, f"a whole number of at least {least}", value)
+            _require(value is None or is_good(value), name, expected, value)
         for name, choices in CHOICES.items():
-            _require(getattr(self, name) in choices, name, f"one of {', '.join(choices)}", getattr(self, name))
+            value = getattr(self, name)
+            _require(value in choices or (value is None and name in KNOBS), name, f"one of {', '.join(choices)}", value)
+        self._settle_knobs()
+
+    def _settle_knobs(self) -> None:
+        """A knob under `auto` asks for `de`, whose other knobs take their defaults; other engines refuse it."""
+        given = [name for name in KNOBS if getattr(self, name) is not None]
+        if given and self.method == "auto":
+            object.__setattr__(self, "method", "de")
+        if self.method == "de":
+            for name in KNOBS:
+                object.__setattr__(self, name, self.knob(name))
+            return
+        refused = [name for name in given if name not in HEEDED.get(self.method, ())]
+        if refused:
+            own = next((name for name in refused if getattr(self, name) != KNOBS[name]), refused[0])
+            raise InputError(f"{self.method} has no such knob; it is one of the method de", ("settings", own))
 
     @staticmethod
     @lru_cache
@@ -94,10 +104,13 @@ class SolveSettings:
 
     @property
     def evolves(self) -> bool:
-        """True if the DE is asked for: by name, or by one of its knobs."""
-        return self.method == "de" or (
-            self.method == "auto" and any(getattr(self, k) != getattr(PLAIN, k) for k in KNOBS)
-        )
+        """True if the DE is what searches: asked for by name, or by one of its knobs."""
+        return self.method == "de"
+
+    def knob(self, name: str) -> Any:
+        """A knob of the DE, or its default."""
+        value = getattr(self, name)
+        return KNOBS[name] if value is None else value
 
     def budget(self, engine: str) -> int:
         """Attempts of one engine before it gives up."""
@@ -110,6 +123,10 @@ class SolveSettings:
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
+def _is_count(least: int) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= least)
 
 
 def _require(condition: bool, name: str, expected: str, value: object) -> None:
@@ -135,5 +152,26 @@ def choose_settings(settings: SolveSettings | None, method: str) -> SolveSetting
 
 
 RESTARTS = {"de": 40, "lm": 1000, "analytic": 1000, "memetic": 20}
-KNOBS = ("strategy", "population", "start_share", "weight", "crossover", "generations", "bounds", "update", "collision")
-PLAIN = SolveSettings()
+KNOBS: Mapping[str, Any] = {
+    "strategy": "rand/1",
+    "population": 50,
+    "start_share": 1.0,
+    "weight": 0.5,
+    "crossover": 0.9,
+    "generations": 1000,
+    "bounds": "redraw",
+    "update": "in_place",
+    "collision": "feasibility",
+}
+"""Those of the DE, with their defaults."""
+HEEDED = {"memetic": ("bounds", "collision")}
+"""Knobs that another engine heeds as well."""
+OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
+    "restarts": (_is_count(1), "a whole number of at least 1"),
+    "population": (_is_count(LARGEST_DRAW + 1), f"a whole number of at least {LARGEST_DRAW + 1}"),
+    "generations": (_is_count(1), "a whole number of at least 1"),
+    "weight": (lambda value: _is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
+    "crossover": (lambda value: _is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),
+    "start_share": (lambda value: _is_number(value) and 0.0 < value <= 1.0, "above 0, up to 1"),
+}
+"""Numbers that may be left out: what is accepted, and how it is asked for."""

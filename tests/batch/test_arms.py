@@ -76,6 +76,13 @@ def test_an_error_stands_where_it_was_written(qiao):
     assert complaint(make_arms, own, qiao).startswith("arms.a.settings.population: ")
 
 
+def test_a_knob_that_the_method_would_ignore_is_refused_where_it_was_written(qiao):
+    knob, lm = {"settings": {"population": 20}}, {"a": {"method": "lm"}}
+    assert complaint(make_arms, spec(solve=knob, arms=lm), qiao).startswith("solve.settings.population: lm has no such")
+    own = {"a": {"method": "memetic", **knob}}
+    assert complaint(make_arms, spec(arms=own), qiao).startswith("arms.a.settings.population: memetic has no such")
+
+
 def test_names_of_arms_can_name_files(qiao):
     assert "names files" in complaint(make_arms, spec(arms={"a/b": {}}), qiao)
 
@@ -113,4 +120,4 @@ def test_the_description_holds_what_the_answers_hang_on(qiao):
     assert (plain["near"]["q1"], plain["near"]["q_z"]) == (1.0, 0.5)
     assert (plain["ranges"]["d_x"], plain["ranges"]["d_y"]) == ([-1.0, 1.0], [-5.0, 5.0])
     assert plain["detector"]["spheres"] == "improved"
-    assert (plain["method"], plain["settings"]["method"], plain["settings"]["population"]) == ("auto", "auto", 50)
+    assert (plain["method"], plain["settings"]["method"], plain["settings"]["population"]) == ("auto", "auto", None)

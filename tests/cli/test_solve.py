@@ -127,6 +127,14 @@ def test_an_axis_is_met(cli, qiao):
     assert ikde.forward(qiao, outcome.data["q"])["tool"][:3, 2] == pytest.approx([0, 0, -1], abs=2e-4)
 
 
+def test_a_knob_of_the_de_asks_for_it_and_other_engines_refuse_it(cli):
+    assert cli(*SOLVE, "--population", 50, "--json").data["method"] == "de"
+    refused = cli(*SOLVE, "--population", 50, "--method", "lm")
+    assert (refused.code, refused.out) == (2, "")
+    assert "settings.population: lm has no such knob" in refused.err
+    assert refused.err.count("\n") == 1
+
+
 def test_tolerances_are_in_the_units_asked_for(cli):
     options = ("--tolerance", "2", "--orientation-tolerance", "1", "--angles", "deg", "--axis", "0", "0", "1")
     data = cli(*SOLVE_MM, *options, "--json").data

@@ -89,7 +89,7 @@ def test_blocking_pairs_count_at_most_once_an_attempt(qiao):
 
 
 def test_self_collision_names_frozen_joints_if_freeing_them_helps(qiao):
-    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK.with_changes(generations=1000), freeze=PARKED)
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, ikde.SolveSettings(restarts=6), freeze=PARKED)
     assert result.hint.startswith("free d_x, d_y, q_z")
     assert ikde.solve(qiao, INSIDE_THE_PLATFORM).reached
 

@@ -102,12 +102,8 @@ def test_other_ranges_free_the_joints(qiao):
 
 def test_changed_settings_leave_the_rest(qiao):
     problem = make(qiao, freeze=["d_x"])
-    changed = problem.with_settings(collision="reject")
-    assert (changed.settings.collision, changed.frozen, problem.settings.collision) == (
-        "reject",
-        ("d_x",),
-        "feasibility",
-    )
+    changed = problem.with_settings(restarts=3)
+    assert (changed.settings.restarts, changed.frozen, problem.settings.restarts) == (3, ("d_x",), None)
 
 
 @pytest.mark.parametrize(
@@ -128,6 +124,11 @@ def test_numbers_are_packed_as_they_are(qiao):
     assert packed.start_share == 1.0
     assert (STRATEGIES[packed.strategy], REPAIRS[packed.repair], packed.in_place) == ("best/2", "clip", True)
     assert packed.ranges[:2].tolist() == [qiao.lower.tolist(), qiao.upper.tolist()]
+
+
+def test_an_engine_without_knobs_is_packed_with_their_defaults(qiao):
+    packed, asked = (pack_search(make(qiao, ikde.SolveSettings(method=method))) for method in ("memetic", "de"))
+    assert packed._replace(ranges=None) == asked._replace(ranges=None)
 
 
 def test_without_near_the_whole_range_is_searched_at_once(qiao):

@@ -1,6 +1,6 @@
 """Settings: the defaults of each method, and what is refused."""
 
-from dataclasses import FrozenInstanceError, fields
+from dataclasses import FrozenInstanceError, fields, replace
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.solver.settings import HEEDED, KNOBS, choose_settings
 
 GOOD = {
     "method": ("auto", "lm", "analytic", "memetic", "de"),
@@ -24,15 +25,17 @@ GOOD = {
     "position_tolerance_m": (1e-300, 1, 0.5),
     "orientation_tolerance_rad": (1e-300, 4.0),
 }
-NO_NUMBERS = (np.nan, np.inf, -np.inf, -1, "1", None, True)
+NO_NUMBERS = (np.nan, np.inf, -np.inf, -1, "1", True)
 BAD = {
-    **dict.fromkeys(("position_tolerance_m", "orientation_tolerance_rad", "weight"), (0, 0.0, *NO_NUMBERS)),
+    **dict.fromkeys(("position_tolerance_m", "orientation_tolerance_rad"), (None, 0, 0.0, *NO_NUMBERS)),
+    "weight": (0, 0.0, *NO_NUMBERS),
     "crossover": (1.01, *NO_NUMBERS),
     "start_share": (0, 1.01, *NO_NUMBERS),
     "population": (5, 50.0, *NO_NUMBERS),
     "generations": (0, 1.0, *NO_NUMBERS),
-    "restarts": (0, 1.0, *(value for value in NO_NUMBERS if value is not None)),
-    **dict.fromkeys(("method", "strategy", "bounds", "update", "collision"), ("", "Rand/1", None, 0)),
+    "restarts": (0, 1.0, *NO_NUMBERS),
+    "method": ("", "LM", None, 0),
+    **dict.fromkeys(("strategy", "bounds", "update", "collision"), ("", "Rand/1", 0)),
 }
 
 
@@ -54,7 +57,7 @@ def test_the_papers_method_has_the_papers_numbers():
 def test_ikdes_own_method_is_finer():
     settings = ikde.SolveSettings.for_method("auto")
     assert (settings.position_tolerance_m, settings.orientation_tolerance_rad) == (1e-5, 1e-4)
-    assert (settings.collision, settings.update) == ("feasibility", "in_place")
+    assert {getattr(settings, name) for name in KNOBS} == {None}
 
 
 @pytest.mark.parametrize("name", ["ga", "", "DE"])
@@ -75,11 +78,34 @@ def test_bad_values_are_refused_by_name(name, value):
     assert "\n" not in str(caught.value)
 
 
-def test_a_knob_of_the_de_asks_for_it():
-    assert not ikde.SolveSettings(restarts=3, position_tolerance_m=1e-3).evolves
-    assert ikde.SolveSettings(strategy="best/1").evolves
+@pytest.mark.parametrize(("name", "default"), KNOBS.items())
+def test_a_knob_of_the_de_asks_for_it_even_at_its_default(name, default):
+    assert ikde.SolveSettings(**{name: default}) == ikde.SolveSettings(method="de")
+    assert ikde.SolveSettings().with_changes(**{name: default}).evolves
+
+
+def test_what_is_no_knob_of_the_de_leaves_the_method_alone():
+    settings = ikde.SolveSettings(restarts=3, position_tolerance_m=1e-3)
+    assert settings.method == "auto"
+    assert not settings.evolves
+    assert not replace(settings, restarts=4).evolves
     assert ikde.SolveSettings(method="de").evolves
-    assert not ikde.SolveSettings(method="lm", strategy="best/1").evolves
+
+
+@pytest.mark.parametrize("method", ["lm", "analytic", "memetic"])
+@pytest.mark.parametrize(("name", "default"), KNOBS.items())
+def test_an_engine_refuses_the_knobs_that_it_would_ignore(method, name, default):
+    if name in HEEDED.get(method, ()):
+        assert getattr(ikde.SolveSettings(method=method, **{name: default}), name) == default
+        return
+    with pytest.raises(InputError, match=rf"^settings\.{name}: {method} has no such knob"):
+        ikde.SolveSettings(method=method, **{name: default})
+
+
+@pytest.mark.parametrize("method", ["lm", "analytic", "memetic"])
+def test_settings_of_the_de_are_refused_by_another_engine_in_a_call(method):
+    with pytest.raises(InputError, match=rf"^settings\.population: {method} has no such knob"):
+        choose_settings(ikde.SolveSettings(population=8), method)
 
 
 def test_none_changes_nothing():

@@ -42,5 +42,5 @@ def _lanes_per_call(problem: Problem) -> int:
     """How many lanes share a call: one, unless the search is very short."""
     settings = problem.settings
     attempts = min(settings.budget("de"), DifferentialEvolution.attempts_per_call)
-    evaluations = settings.population * (settings.generations + 1) * attempts
+    evaluations = settings.knob("population") * (settings.knob("generations") + 1) * attempts
     return int(np.clip(EVALUATIONS_PER_CALL // evaluations, 1, LANES_PER_CALL))
