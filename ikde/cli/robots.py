@@ -51,7 +51,11 @@ def show(
 
     model = load_robot(name)
     if kernels:
-        print_result(_format_kernels(model, detector, kind))
+        source = _format_kernels(model, detector, kind)
+        if as_json:
+            print_json({"robot": model.name, "kind": kind, "source": source})
+        else:
+            print_result(source)
     elif as_json:
         print_json(robot_json(model))
     else:

@@ -35,6 +35,14 @@ def test_a_robot_as_json_is_in_metres_and_radians(cli, any_robot):
     assert data["default_detector"] == any_robot.default_detector
 
 
+def test_the_kernels_of_a_robot_are_shown_as_source_or_inside_json(cli):
+    asked = ("robots", "show", "ur5", "--kernels", "--kind", "position", "--detector", "none")
+    source = cli(*asked).out
+    compile(source, "ur5", "exec")
+    assert cli(*asked, "--json").data == {"robot": "ur5", "kind": "position", "source": source}
+    assert "expected one of" in cli(*asked[:4], "--kind", "poses", "--json").err
+
+
 def test_a_good_file_is_valid(cli, tmp_path):
     path = tmp_path / "two.yaml"
     path.write_text(GOOD)
