@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.kernels.arrays import REACHED, Ints
+from ikde.kernels.arrays import REACHED, Floats, Ints
 from ikde.kernels.pose_error import POSE
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.reach import reach_excess_m
@@ -74,10 +74,13 @@ def make_engine(name: str, question: Question) -> Engine:
     return Maker(question)
 
 
-def choose_engines(robot: Robot, settings: SolveSettings, *, only_poses: bool, inside: bool = True) -> list[str]:
+def choose_engines(
+    robot: Robot, settings: SolveSettings, *, only_poses: bool, inside: bool = True, free: set[int] | None = None
+) -> list[str]:
     """Engines in the order in which they try; the later ones take over what the first leaves.
 
-    `inside`: the joint ranges are within the limits, where the collision checks of `lm` and `analytic` hold.
+    `inside`: the joint ranges are within the limits, where the collision checks of `lm` and `analytic` hold. `free`:
+    the joints that may move; by default those that the limits leave free.
     """
     if settings.evolves:
         return ["de"]
@@ -85,27 +88,29 @@ def choose_engines(robot: Robot, settings: SolveSettings, *, only_poses: bool, i
         return ["memetic"]
     if settings.method != "auto":
         return [settings.method]
-    is_closed = only_poses and find_ur_arm(robot) is not None and not _has_spare_joints(robot)
+    arm, free = find_ur_arm(robot), _find_free(robot.lower, robot.upper) if free is None else free
+    is_closed = only_poses and arm is not None and free == set(arm.coordinates)
     return ["lm", *(["analytic"] if is_closed else []), "memetic"]
 
 
-def _has_spare_joints(robot: Robot) -> bool:
-    """True if more than the six joints of an arm move the robot: then its closed form is not all there is."""
-    return len(robot.joints) > 6
+def _find_free(lower: Floats, upper: Floats) -> set[int]:
+    """Joints that may move: all but those that are frozen."""
+    return set(np.flatnonzero(upper > lower).tolist())
 
 
 def _plan(problem: Problem, question: Question, attempts: int | None) -> list[tuple[str, int]]:
-    """Engines, each with its attempts."""
-    robot, settings = problem.robot, problem.settings
+    """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""
+    robot, settings, arm = problem.robot, problem.settings, find_ur_arm(problem.robot)
     inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
     only_poses = bool((question.targets.kind == POSE).all())
-    names = choose_engines(robot, settings, only_poses=only_poses, inside=inside)
+    free = _find_free(problem.lower, problem.upper)
+    names = choose_engines(robot, settings, only_poses=only_poses, inside=inside, free=free)
     if attempts == 0:
         return [(names[0], 0)]
     budgets = {name: attempts or settings.budget(name) for name in names}
     if len(names) > 1:
         budgets["lm"] = attempts or FIRST_ATTEMPTS
-    if not _has_spare_joints(robot):
+    if arm is not None and free <= set(arm.coordinates):
         budgets["analytic"] = 1
     return [(name, budgets[name]) for name in names]
 

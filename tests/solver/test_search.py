@@ -12,7 +12,7 @@ from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.engines.found import ENGINES
 from ikde.solver.problem import make_problem
-from ikde.solver.search import search, usable_cores
+from ikde.solver.search import choose_engines, search, usable_cores
 from tests.solver.test_solve import free_q, make_target
 
 CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=3)
@@ -97,6 +97,34 @@ def test_short_searches_share_a_call_and_long_ones_do_not(qiao):
     assert lanes(generations=7, restarts=1) == 50
 
 
+FROZEN_BASE, BASE_AND_ELBOW = {"d_x", "d_y", "q_z"}, {"d_x", "d_y", "q_z", "q3"}
+
+
+@pytest.mark.parametrize(
+    ("frozen", "engines"),
+    [
+        (set(), ["lm", "memetic"]),
+        ({"d_x", "d_y"}, ["lm", "memetic"]),
+        ({"q1", "q2", "q3"}, ["lm", "memetic"]),
+        (FROZEN_BASE, ["lm", "analytic", "memetic"]),
+        (BASE_AND_ELBOW, ["lm", "memetic"]),
+    ],
+)
+def test_auto_takes_the_closed_form_where_the_arm_alone_may_move(qiao, frozen, engines):
+    free = {k for k, name in enumerate(qiao.joint_names) if name not in frozen}
+    auto = ikde.SolveSettings()
+    assert choose_engines(qiao, auto, only_poses=True, free=free) == engines
+    assert choose_engines(qiao, auto, only_poses=False, free=free) == ["lm", "memetic"]
+
+
+@pytest.mark.parametrize(("frozen", "attempts"), [(FROZEN_BASE, 1), (BASE_AND_ELBOW, 1), ({"d_x"}, 20)])
+def test_the_branches_of_an_arm_on_a_frozen_base_are_enumerated_once(qiao, frozen, attempts):
+    target, settings = make_target(qiao, qiao.home, "pose"), ikde.SolveSettings(method="analytic", restarts=20)
+    always_colliding = {"detector": "single", "near": None, "freeze": dict.fromkeys(frozen, 0.0)}
+    found = search(make_problem(qiao, settings, **always_colliding), [target], seed=1, streams=[0])
+    assert found.counts[0, [REACHED, ATTEMPTS]].tolist() == [0, attempts]
+
+
 def test_streams_and_seeds_are_different_searches(problem):
     same_target = run(problem, [TARGETS[0]] * 3, range(3)).q
     assert len({q.tobytes() for q in same_target}) == 3
@@ -175,15 +203,17 @@ def test_there_is_a_core_to_use():
     assert usable_cores() >= 1
 
 
-def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collision(qiao, rng, monkeypatch):
+@pytest.mark.parametrize(("kind", "later"), [("axis", "memetic"), ("pose", "analytic")])
+def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collision(qiao, rng, monkeypatch, kind, later):
     monkeypatch.setattr(module, "FIRST_ATTEMPTS", 1)
     taken_over = 0
     for stream in range(40):
         q = free_q(qiao, rng)
         frozen = dict(zip(qiao.joint_names[:3], q[:3].tolist(), strict=True))
         problem = make_problem(qiao, ikde.SolveSettings(), detector=None, near=None, freeze=frozen)
-        found = search(problem, [make_target(qiao, q, "pose")], seed=1, streams=[stream])
-        if ENGINES[found.engine[0]] == "memetic" and found.counts[0, COLLIDING] and found.counts[0, REACHED]:
+        found = search(problem, [make_target(qiao, q, kind)], seed=1, streams=[stream])
+        assert found.counts[0, REACHED]
+        if ENGINES[found.engine[0]] == later and found.counts[0, COLLIDING]:
             taken_over += 1
             assert not ikde.check(qiao, found.q[0]).collision
     assert taken_over > 0

@@ -13,7 +13,7 @@ from ikde.solver.engines.pool import load_kernels, make_seeds
 
 
 class Analytic:
-    """Poses only; an arm without a base that moves is done with one attempt: it has no other branches."""
+    """Poses only; an arm on a base that cannot move is done with one attempt: it has no other branches."""
 
     name = "analytic"
     rows_per_call = 1024
