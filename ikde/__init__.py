@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.check import CheckResult as CheckResult
     from ikde.solver.check import check as check
     from ikde.solver.distinct import solve_distinct as solve_distinct
+    from ikde.solver.families import family as family
     from ikde.solver.forward import forward as forward
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
@@ -65,6 +66,7 @@ _HOME = {
     "solve": "ikde.solver.solve",
     "solve_many": "ikde.solver.solve",
     "solve_distinct": "ikde.solver.distinct",
+    "family": "ikde.solver.families",
     "forward": "ikde.solver.forward",
     "check": "ikde.solver.check",
     "check_surface": "ikde.solver.surface",

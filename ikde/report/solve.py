@@ -10,7 +10,6 @@ from ikde.model.robot import Robot
 from ikde.report.numbers import seconds
 from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
-from ikde.solver.families import family
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
@@ -34,7 +33,7 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "self_collision": result.self_collision,
         "outside_limits": list(result.verification.outside_limits),
         "method": result.method,
-        "family": family(robot, result.q),
+        "family": result.family,
         "settings": asdict(result.settings),
         "detector": result.detector,
         "seed": result.seed,
@@ -116,8 +115,7 @@ def _figure_table(robot: Robot, result: SolveResult, units: Units) -> Any:
     if result.compile_seconds:
         table.add_row("compiled first", f"{result.compile_seconds:.1f} s")
     table.add_row("engine", describe_engine(result))
-    held = family(robot, result.q)
-    if held:
-        table.add_row("family", f"{held} (shoulder, elbow, wrist)")
+    if result.family:
+        table.add_row("family", f"{result.family} (shoulder, elbow, wrist)")
     table.add_row("repeat with", f"the same command, seed {result.seed}: the same bits")
     return table

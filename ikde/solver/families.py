@@ -28,12 +28,25 @@ FAMILIES = tuple(name_family(code) for code in range(BRANCHES))
 
 
 def family(robot: Robot, q: JointValues, convention: str | None = None) -> str | None:
-    """The label of one configuration [N], m and rad; None for a robot whose last six joints are no UR-type arm.
+    """How a UR-type arm holds itself: shoulder/elbow/wrist, such as `left/up/no flip`.
+
+    Args:
+        robot: the robot.
+        q: joint values [N] or a mapping by joint name; m and rad.
+        convention: how `q` is counted; None for the robot's own.
+
+    Returns:
+        One of the eight `solver.families.FAMILIES`; None for a robot whose last six joints are no UR-type arm.
 
     Raises:
         InputError: for a wrong count, an unknown joint or convention, NaN or infinity.
     """
-    codes = compute_families(robot, read_configuration(robot, q, convention))
+    return label_family(robot, read_configuration(robot, q, convention))
+
+
+def label_family(robot: Robot, q: Floats) -> str | None:
+    """As `family`, of a configuration [N] in the robot's own convention that is known to be one."""
+    codes = compute_families(robot, q)
     return None if codes is None else FAMILIES[int(codes)]
 
 

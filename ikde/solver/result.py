@@ -84,6 +84,11 @@ class SolveResult:
         """The grade of plain numpy, on exactly this `q`; computed when it is first asked for."""
         return self.verify(self.target, self.q)
 
+    @property
+    def family(self) -> str | None:
+        """How a UR-type arm holds itself, such as `left/up/no flip`; None for other arms and what is not reached."""
+        return self.verification.family if self.reached else None
+
 
 def reached_reason(detector: Detector | None) -> str:
     """One line for a target that was reached."""

@@ -10,6 +10,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
 from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import AXIS, POSE, Target, Targets
+from ikde.solver.families import label_family
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.settings import SolveSettings
@@ -34,6 +35,8 @@ class Verification:
     within_tolerance: bool
     accepted: bool
     """Within both tolerances, inside all limits, free of self-collision."""
+    family: str | None
+    """How a UR-type arm holds itself: shoulder/elbow/wrist, such as `left/up/no flip`; None for other arms."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -42,6 +45,7 @@ class Verdicts:
 
     robot: Robot
     detector: Detector | None
+    Q: Floats  # [T, N]
     position_error_m: Floats  # [T]
     orientation_error_rad: Floats  # [T]
     gaps_m: Floats  # [T, P] clearance of every pair; no columns without a detector
@@ -72,6 +76,7 @@ class Verdicts:
             outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
             within_tolerance=bool(self.within_tolerance[index]),
             accepted=bool(self.accepted[index]),
+            family=label_family(self.robot, self.Q[index]),
         )
 
 
@@ -120,6 +125,7 @@ def verify_many(
     return Verdicts(
         robot=robot,
         detector=detector,
+        Q=Q,
         position_error_m=position,
         orientation_error_rad=orientation,
         gaps_m=gaps,

@@ -67,6 +67,19 @@ def test_at_the_borders_it_is_up_and_no_flip():
     assert family(QIAO, dict.fromkeys(QIAO.joint_names, 0.0) | {"q2": -0.5}).endswith("up/no flip")
 
 
+def test_a_result_tells_its_family_if_it_is_reached():
+    target = ikde.Target((0.8, 0.5, 1.0))
+    alone, rows = ikde.solve(QIAO, target, seed=3), ikde.solve_many(QIAO, [target] * 5, seed=3)
+    for result in (alone, *rows):
+        assert result.reached
+        assert result.family == result.verification.family == ikde.family(QIAO, result.q)
+    missed = ikde.solve(QIAO, ikde.Target((50.0, 0.0, 1.0)))
+    assert missed.family is None
+    assert missed.verification.family == ikde.family(QIAO, missed.q)
+    panda = ikde.load_robot("panda")
+    assert ikde.solve(panda, ikde.Target((0.4, 0.1, 0.5))).family is None
+
+
 @pytest.mark.parametrize("robot", [ikde.load_robot("panda"), random_robot(4)], ids=lambda robot: robot.name)
 def test_other_robots_have_no_families(robot):
     assert family(robot, robot.home) is None
