@@ -220,6 +220,8 @@ class SettingsEntry(Entry):
     """Generations of one attempt."""
     restarts: int | None = None
     """Attempts before the budget is spent."""
+    timeout_s: Number | None = None
+    """Seconds after which no further attempt at a target is begun. The answers may then depend on the machine."""
     bounds: str | None = Field(default=None, json_schema_extra={"enum": [*REPAIRS, None]})
     """What happens to a coordinate out of its range."""
     update: Update | None = None

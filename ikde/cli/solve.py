@@ -102,6 +102,14 @@ def solve(
     restarts: Annotated[
         int | None, typer.Option(help="Attempts before the budget is spent.", rich_help_panel=SEARCH)
     ] = None,
+    timeout: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            help="Begin no further attempt after so long; the answer may then depend on the machine.",
+            rich_help_panel=SEARCH,
+        ),
+    ] = None,
     bounds: Annotated[
         str | None,
         typer.Option(
@@ -130,6 +138,7 @@ def solve(
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     check_positive(tolerance, "--tolerance")
     check_positive(orientation_tolerance, "--orientation-tolerance")
+    check_positive(timeout, "--timeout")
     settings = SolveSettings.for_method(method).with_changes(
         position_tolerance_m=None if tolerance is None else tolerance * LENGTHS_M[unit],
         orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * ANGLES_RAD[angles],
@@ -140,6 +149,7 @@ def solve(
         crossover=crossover,
         generations=generations,
         restarts=restarts,
+        timeout_s=timeout,
         bounds=bounds,
         update=update,
     )

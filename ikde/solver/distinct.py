@@ -1,5 +1,6 @@
 """Several solutions of one target, far enough apart to be a choice, best first by a stated cost."""
 
+import time
 from collections.abc import Callable
 from typing import Any, Literal, get_args
 
@@ -38,7 +39,8 @@ def solve_distinct(
 ) -> list[SolveResult]:
     """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
 
-    The list is shorter if no more are found; unreached, it holds one result with the reason.
+    The list is shorter if no more are found; unreached, it holds one result with the reason. A timeout is that of the
+    whole call.
 
     Args:
         robot: the robot.
@@ -70,6 +72,28 @@ def solve_distinct(
     return sort_solutions(problem, solutions, rank)[:count]
 
 
+class Clock:
+    """The time that solving takes after the first result, whose search is counted, too; without compiling."""
+
+    def __init__(self, problem: Problem, first: SolveResult) -> None:
+        self._started = time.perf_counter() - first.solve_seconds
+        self._timeout_s = problem.settings.timeout_s
+
+    def leave_out(self, seconds: float) -> None:
+        """Do not count so much of it."""
+        self._started += seconds
+
+    @property
+    def spent_s(self) -> float:
+        """Seconds until now."""
+        return time.perf_counter() - self._started
+
+    @property
+    def is_up(self) -> bool:
+        """True if there is a timeout, and it has passed."""
+        return self._timeout_s is not None and self.spent_s >= self._timeout_s
+
+
 def sort_solutions(problem: Problem, solutions: list[SolveResult], rank: Rank) -> list[SolveResult]:
     """Best first; equals stay in the order in which they were found."""
     if rank == "motion":
@@ -91,14 +115,18 @@ def _sample(
     problem: Problem, target: Target, count: int, first: SolveResult, options: dict[str, Any]
 ) -> list[SolveResult]:
     """Distinct solutions of many solves side by side, each on a stream of its own."""
-    solutions, size = [first], SAMPLES * count
+    solutions, size, clock = [first], SAMPLES * count, Clock(problem, first)
     begin = 0 if problem.near is None else 1  # attempt 0 is `near` itself, on every stream
-    for stream in range(1, 1 + ROUNDS * size, size):
-        rows = solve_rows(problem, [target] * size, first_stream=stream, first_attempt=begin, probe=False, **options)
+    several = size if problem.settings.timeout_s is None else 1
+    for stream in range(1, 1 + ROUNDS * size, several):
+        told = {"first_stream": stream, "first_attempt": begin, "probe": False, "spent_s": clock.spent_s}
+        rows = solve_rows(problem, [target] * several, **told, **options)
         for row in np.flatnonzero(rows.reached).tolist():
             if all(are_distinct(problem.robot, rows.q[row], other.q) for other in solutions):
                 solutions.append(rows.row(row))
-        if len(solutions) >= count:
+        clock.leave_out(rows.compile_seconds)
+        is_round = (stream + several - 1) % size == 0
+        if clock.is_up or (is_round and len(solutions) >= count):
             break
     return solutions
 
@@ -107,11 +135,13 @@ def _go_on(
     problem: Problem, target: Target, count: int, first: SolveResult, options: dict[str, Any]
 ) -> list[SolveResult]:
     """Distinct solutions of one stream: the search goes on where it has found one."""
-    solutions, attempt = [first], first.attempts
+    solutions, attempt, clock = [first], first.attempts, Clock(problem, first)
     most = count * problem.settings.budget(first.method)
-    while len(solutions) < count and attempt < most:
-        result = solve_rows(problem, [target], first_attempt=attempt, probe=False, **options).row(0)
+    while len(solutions) < count and attempt < most and not clock.is_up:
+        told = {"first_attempt": attempt, "probe": False, "spent_s": clock.spent_s}
+        result = solve_rows(problem, [target], **told, **options).row(0)
         attempt += result.attempts
+        clock.leave_out(result.compile_seconds)
         if not result.reached:
             break
         if all(are_distinct(problem.robot, result.q, other.q) for other in solutions):

@@ -21,8 +21,11 @@ COUNTED = 64  # attempts whose collisions are counted pair by pair
 WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
 
-_OUT_OF_REACH, _SELF_COLLISION, _BUDGET = map(
-    STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.SELF_COLLISION, StopReason.BUDGET)
+MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and looks into what is in the way"
+
+_OUT_OF_REACH, _SELF_COLLISION, _BUDGET, _TIMED_OUT = map(
+    STOP_REASONS.index,
+    (StopReason.OUT_OF_REACH, StopReason.SELF_COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT),
 )
 
 
@@ -42,19 +45,26 @@ def count_blocking_pairs(pairs: Pairs, pair_counts: np.ndarray) -> dict[tuple[st
     return dict(sorted(blocking.items(), key=lambda item: -item[1]))
 
 
-def stop_from_counts(found: Found) -> Ints:
+def stop_from_counts(found: Found, timeout_s: float | None) -> Ints:
     """What the counts of the search alone tell, at no cost: index [T] into `STOP_REASONS` of rows not reached."""
-    colliding = np.where(found.counts[:, COLLIDING] > 0, _SELF_COLLISION, _BUDGET)
-    return np.where(found.excess_m > 0.0, _OUT_OF_REACH, colliding)
+    stops = np.where(found.counts[:, COLLIDING] > 0, _SELF_COLLISION, _BUDGET)
+    if timeout_s is not None:
+        stops[found.seconds >= timeout_s] = _TIMED_OUT
+    return np.where(found.excess_m > 0.0, _OUT_OF_REACH, stops)
 
 
-def reason_from_counts(stop: StopReason, excess_m: float, attempts: int, colliding: int) -> str:
+def reason_from_counts(
+    stop: StopReason, excess_m: float, attempts: int, colliding: int, timeout_s: float | None
+) -> str:
     """One line that says it."""
     if stop is StopReason.OUT_OF_REACH:
         return _out_of_reach(excess_m)
     if stop is StopReason.SELF_COLLISION:
         return f"only colliding solutions found, {colliding} of them"
-    return f"{attempts} attempt{'s' if attempts != 1 else ''} spent"
+    if stop is StopReason.TIMED_OUT:
+        met = f", {colliding} of them in collision at the target" if colliding else ""
+        return f"timed out after {timeout_s:g} s and {_count(attempts)}{met}"
+    return f"{_count(attempts)} spent"
 
 
 def explain(problem: Problem, target: Target, found: Found, graded: Verification, seed: int) -> Explanation:
@@ -63,16 +73,19 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
         reason, hint = _out_of_reach(float(found.excess_m[0])), _reach_hint(problem, target)
         return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
     colliding, pairs = int(found.counts[0, COLLIDING]), problem.robot.pairs(problem.detector)
-    blocking = count_blocking_pairs(pairs, found.pair_counts[0])
-    if colliding > 0 and not problem.settings.evolves:
+    blocking, timeout_s = count_blocking_pairs(pairs, found.pair_counts[0]), problem.settings.timeout_s
+    if stop_from_counts(found, timeout_s)[0] == _TIMED_OUT:
+        return _timed_out(found, graded, timeout_s, blocking)
+    if colliding > 0 and not problem.settings.evolves and timeout_s is None:
         counted = _count_pairs(problem, target, seed)
         colliding, blocking = counted if counted[0] else (colliding, blocking)
+    probe = _Probe(target, seed, float(found.seconds[0]))
     if colliding == 0 and problem.detector is not None and problem.settings.evolves:
-        probe = _probe(problem.with_settings(collision="reject"), target, seed)
-        colliding, blocking = int(probe.counts[0, COLLIDING]), count_blocking_pairs(pairs, probe.pair_counts[0])
-        if probe.counts[0, REACHED]:
+        tested = probe.run(problem.with_settings(collision="reject"))
+        colliding, blocking = int(tested.counts[0, COLLIDING]), count_blocking_pairs(pairs, tested.pair_counts[0])
+        if tested.counts[0, REACHED]:
             return _spent(found, graded, "more restarts: a search that only tests the best (reject) found a solution")
-    remedy = _try_remedies(problem, target, seed)
+    remedy = _try_remedies(problem, probe)
     if colliding > 0:
         worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])
         return Explanation(
@@ -96,18 +109,45 @@ def _out_of_reach(excess_m: float) -> str:
 
 
 def _spent(found: Found, graded: Verification, hint: str | None) -> Explanation:
-    attempts = int(found.counts[0, ATTEMPTS])
-    reason = f"{attempts} attempt{'s' if attempts != 1 else ''} spent; {_best(graded)}"
+    reason = f"{_count(int(found.counts[0, ATTEMPTS]))} spent; {_best(graded)}"
     return Explanation(stop_reason=StopReason.BUDGET, reason=reason, hint=hint, blocking_pairs={})
+
+
+def _timed_out(
+    found: Found, graded: Verification, timeout_s: float | None, blocking: Mapping[tuple[str, str], int]
+) -> Explanation:
+    attempts, colliding = found.counts[0, [ATTEMPTS, COLLIDING]].tolist()
+    reason = reason_from_counts(StopReason.TIMED_OUT, 0.0, attempts, colliding, timeout_s)
+    return Explanation(
+        stop_reason=StopReason.TIMED_OUT,
+        reason=f"{reason}; {_best(graded)}",
+        hint=MORE_TIME,
+        blocking_pairs=blocking,
+    )
+
+
+def _count(attempts: int) -> str:
+    return f"{attempts} attempt{'s' if attempts != 1 else ''}"
 
 
 def _best(graded: Verification) -> str:
     return f"the best is off by {graded.position_error_m:.3g} m and {graded.orientation_error_rad:.3g} rad"
 
 
-def _probe(problem: Problem, target: Target, seed: int) -> Found:
-    brief = problem.with_settings(restarts=PROBE_ATTEMPTS[problem.settings.evolves])
-    return search(brief, [target], seed=seed, streams=[0])
+@dataclass(slots=True)
+class _Probe:
+    """Short searches for one target, within what is left of its time."""
+
+    target: Target
+    seed: int
+    spent_s: float
+
+    def run(self, problem: Problem) -> Found:
+        """A few attempts at a question that may have been changed."""
+        brief = problem.with_settings(restarts=PROBE_ATTEMPTS[problem.settings.evolves])
+        found = search(brief, [self.target], seed=self.seed, streams=[0], spent_s=self.spent_s)
+        self.spent_s += float(found.seconds[0])
+        return found
 
 
 def _count_pairs(problem: Problem, target: Target, seed: int) -> tuple[int, dict[tuple[str, str], int]]:
@@ -132,15 +172,15 @@ def _widened(problem: Problem) -> tuple[Floats, Floats]:
     return wide_lower, wide_upper
 
 
-def _try_remedies(problem: Problem, target: Target, seed: int) -> str | None:
+def _try_remedies(problem: Problem, probe: _Probe) -> str | None:
     """The first single change with which a short search succeeds."""
     robot = problem.robot
     if problem.frozen:
         free = problem.with_ranges(robot.lower, robot.upper)
-        if _probe(free, target, seed).counts[0, REACHED]:
+        if probe.run(free).counts[0, REACHED]:
             return f"free {', '.join(problem.frozen)}: a solution was found without freezing"
     lower, upper = _widened(problem)
-    found = _probe(problem.with_ranges(lower, upper), target, seed)
+    found = probe.run(problem.with_ranges(lower, upper))
     if found.counts[0, REACHED]:
         outside = (found.q[0] < problem.lower) | (found.q[0] > problem.upper)
         names = [joint.name for joint, out in zip(robot.joints, outside, strict=True) if out]

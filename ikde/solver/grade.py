@@ -93,7 +93,7 @@ def grade(
         place=place,
         verified=verified,
         reached=reached,
-        stop_reasons=_stop_reasons(found, reached, explanations),
+        stop_reasons=_stop_reasons(problem, found, reached, explanations),
         explanations=explanations,
     )
 
@@ -112,8 +112,9 @@ def _refuse(gaps: Floats, Q: Floats) -> None:
         raise VerificationError(f"kernels and verify disagree by {gaps[worst]:.3g} on q = {Q[worst].tolist()}")
 
 
-def _stop_reasons(found: Found, reached: Bools, explanations: Mapping[int, Explanation]) -> Ints:
-    codes = np.where(reached, STOP_REASONS.index(StopReason.REACHED), stop_from_counts(found))
+def _stop_reasons(problem: Problem, found: Found, reached: Bools, explanations: Mapping[int, Explanation]) -> Ints:
+    unreached = stop_from_counts(found, problem.settings.timeout_s)
+    codes = np.where(reached, STOP_REASONS.index(StopReason.REACHED), unreached)
     for row, story in explanations.items():
         codes[row] = STOP_REASONS.index(story.stop_reason)
     return codes

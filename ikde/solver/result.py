@@ -24,6 +24,8 @@ class StopReason(StrEnum):
     """The pose was met only outside the joint limits (or with a frozen joint set free)."""
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
+    TIMED_OUT = "timed_out"
+    """The time was up (`SolveSettings.timeout_s`) before the attempts were spent."""
     UNVERIFIED = "unverified"
     """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
 

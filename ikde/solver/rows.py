@@ -108,7 +108,8 @@ class Rows:
         if stop is StopReason.REACHED:
             return reached_reason(self.problem.detector)
         excess_m = float(self.found.excess_m[index])
-        return reason_from_counts(stop, excess_m, int(self.attempts[index]), int(self.rejected[index]))
+        counts = int(self.attempts[index]), int(self.rejected[index])
+        return reason_from_counts(stop, excess_m, *counts, self.problem.settings.timeout_s)
 
     def explanation(self, index: int) -> Explanation:
         """Why, and what would help: of a row that was not looked into what its counts tell, made now."""
@@ -178,6 +179,7 @@ def solve_rows(
     probe: bool = True,
     strict: bool = False,
     verify: Verify = "all",
+    spent_s: float = 0.0,
     announce_compile: Callable[[], None] | None = None,
 ) -> Rows:
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
@@ -193,6 +195,7 @@ def solve_rows(
         strict: raise where the graders disagree, instead of recording it.
         verify: which rows plain numpy grades too: `"all"`, `"sample"` (one stream in 64), or `"none"`; beyond those,
             every unreached row that is probed.
+        spent_s: what is gone of each target's time, if the settings have a timeout.
         announce_compile: called once if kernels must be compiled first.
 
     Raises:
@@ -202,7 +205,15 @@ def solve_rows(
     streams = range(first_stream, first_stream + len(targets))
     with compile_clock(announce_compile) as clock:
         search(problem, targets[:1], seed=0, streams=[0][: len(targets)], attempts=0)
-        found = search(problem, targets, seed=seed, streams=streams, first_attempt=first_attempt, threads=threads)
+        found = search(
+            problem,
+            targets,
+            seed=seed,
+            streams=streams,
+            first_attempt=first_attempt,
+            threads=threads,
+            spent_s=spent_s,
+        )
         graded = grade(
             problem,
             targets,

@@ -23,6 +23,7 @@ from ikde.solver.stopping import get_brake
 
 FIRST_ATTEMPTS = 300  # of `lm` under `auto`, before `memetic` takes over
 FEW = {"de": 4, "lm": 64, "analytic": 64, "memetic": 1}  # attempts after which who is unreached is asked for proof
+HASTY = {"de": 1, "lm": 64, "analytic": 64, "memetic": 1}  # attempts between two looks at the clock: milliseconds
 
 
 def search(
@@ -34,24 +35,27 @@ def search(
     first_attempt: int = 0,
     attempts: int | None = None,
     threads: int | None = None,
+    spent_s: float = 0.0,
 ) -> Found:
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
     `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach;
-    0 searches nothing and only compiles or loads the first engine's kernel.
+    0 searches nothing and only compiles or loads the first engine's kernel. `spent_s`: what is gone of each target's
+    time, if the settings have a timeout.
 
     The answer for a target hangs on (seed, stream, attempt) only: not on the other targets, the number of threads, or
-    how the attempts are cut into calls.
+    how the attempts are cut into calls; with a timeout also on the clock.
     """
     targets = Targets.of(targets)
     found = make_found(problem, len(targets))
+    left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
     question = Question(problem, targets, found, seed=seed, streams=streams)
     for name, budget in _plan(problem, question, attempts):
-        rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0))
+        rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0) & (found.seconds < left_s))
         if not len(rows):
             break
         before = found.score[rows].copy()
-        lanes = _Lanes(make_engine(name, question), found, threads or usable_cores())
+        lanes = _Lanes(make_engine(name, question), found, threads or usable_cores(), left_s)
         few = min(FEW[name], budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         if attempts is None:
@@ -124,11 +128,13 @@ def _prove(problem: Problem, targets: Targets, found: Found) -> None:
 
 
 class _Lanes:
-    """One engine on all rows, piece by piece; it may go on where it stopped."""
+    """One engine on all rows, piece by piece, each until its time `left_s` is up; it may go on where it stopped."""
 
-    def __init__(self, engine: Engine, found: Found, threads: int) -> None:
-        self._engine, self._found, self._threads = engine, found, threads
+    def __init__(self, engine: Engine, found: Found, threads: int, left_s: float) -> None:
+        self._engine, self._found, self._threads, self._left_s = engine, found, threads, left_s
         engine.prepare()
+        if left_s < np.inf:
+            _hurry(engine, len(found.q))
 
     def run(self, first: int, last: Ints) -> None:
         """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet."""
@@ -139,15 +145,25 @@ class _Lanes:
 
         def run(rows: range) -> None:
             inside = slice(rows.start, rows.stop)
-            started = time.perf_counter()
-            for begin in range(first, int(last[inside].max()), self._engine.attempts_per_call):
-                if stop.is_set() or reached[inside].all():
+            wanted, seconds = last[inside], self._found.seconds[inside]
+            for begin in range(first, int(wanted.max()), self._engine.attempts_per_call):
+                searched = (reached[inside] == 0) & (wanted > begin) & (seconds < self._left_s)
+                if stop.is_set() or not searched.any():
                     break
                 brake()
+                wanted[~searched] = first
+                started = time.perf_counter()
                 self._engine.call(rows, begin, last)
-            self._found.seconds[inside] += (time.perf_counter() - started) / len(rows)
+                seconds[searched] += (time.perf_counter() - started) / np.count_nonzero(searched)
 
         _on_threads(run, pieces, self._threads, stop)
+
+
+def _hurry(engine: Engine, count: int) -> None:
+    """Cut the calls so short that the clock is looked at often, and compile what the last of `count` rows need."""
+    engine.rows_per_call = size = min(engine.rows_per_call, HASTY[engine.name])
+    engine.attempts_per_call = min(engine.attempts_per_call, max(1, HASTY[engine.name] // min(size, count)))
+    engine.call(range((count - 1) // size * size, count), 0, np.zeros(count, dtype=np.int64))
 
 
 def _cut(open_rows: NDArray[np.bool_], size: int) -> list[range]:

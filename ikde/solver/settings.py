@@ -40,6 +40,9 @@ class SolveSettings:
     restarts: int | None = None
     """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`). Under `auto` it is
     that of the engine that comes last."""
+    timeout_s: float | None = None
+    """Seconds of search, compiling not counted, after which no further attempt at a target is begun; what is reached by
+    then stays. Answers may then hang on the machine and on what else it does. None: on nothing but the attempts."""
     strategy: str | None = None
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
     population: int | None = None
@@ -168,6 +171,7 @@ HEEDED = {"memetic": ("bounds", "collision")}
 """Knobs that another engine heeds as well."""
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "restarts": (_is_count(1), "a whole number of at least 1"),
+    "timeout_s": (lambda value: _is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
     "population": (_is_count(LARGEST_DRAW + 1), f"a whole number of at least {LARGEST_DRAW + 1}"),
     "generations": (_is_count(1), "a whole number of at least 1"),
     "weight": (lambda value: _is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),

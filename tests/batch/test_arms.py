@@ -28,7 +28,7 @@ def complaint(call, *arguments, **keys):
 def test_units_become_metres_and_radians(qiao):
     problem = arm(
         qiao,
-        settings={"position_tolerance": 0.05, "orientation_tolerance": 1},
+        settings={"position_tolerance": 0.05, "orientation_tolerance": 1, "timeout_s": 2},
         ranges={"d_x": [-60, 60], "q1": [-90, 90]},
         near={"d_y": 100, "q2": 45},
         freeze={"q_z": 30, "d_x": None},
@@ -36,6 +36,7 @@ def test_units_become_metres_and_radians(qiao):
     )
     named = dict(zip(qiao.joint_names, zip(problem.lower, problem.upper, strict=True), strict=True))
     assert problem.settings.position_tolerance_m == pytest.approx(5e-5)
+    assert problem.settings.timeout_s == 2
     assert problem.settings.orientation_tolerance_rad == pytest.approx(np.pi / 180)
     assert named["q1"] == pytest.approx((-np.pi / 2, np.pi / 2))
     assert named["q_z"] == pytest.approx((np.pi / 6, np.pi / 6))

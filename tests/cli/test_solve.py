@@ -135,6 +135,15 @@ def test_a_knob_of_the_de_asks_for_it_and_other_engines_refuse_it(cli):
     assert refused.err.count("\n") == 1
 
 
+def test_a_timeout_ends_the_search(cli):
+    endless = (*SOLVE, "--detector", "single", "--restarts", 10**6, "--timeout", 1e-9)
+    outcome = cli(*endless, "--json")
+    assert (outcome.code, outcome.data["stop_reason"]) == (1, "timed_out")
+    assert outcome.data["settings"]["timeout_s"] == 1e-9
+    assert "what would help: a longer timeout" in cli(*endless).out
+    assert "--timeout: expected a finite number above 0, got 0" in cli(*SOLVE, "--timeout", 0).err
+
+
 def test_tolerances_are_in_the_units_asked_for(cli):
     options = ("--tolerance", "2", "--orientation-tolerance", "1", "--angles", "deg", "--axis", "0", "0", "1")
     data = cli(*SOLVE_MM, *options, "--json").data

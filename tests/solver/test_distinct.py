@@ -1,5 +1,8 @@
 """`solve_distinct`: solutions far enough apart, best first."""
 
+from itertools import count
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -42,6 +45,22 @@ def test_more_solutions_than_there_are_come_as_fewer(qiao, rng):
 def test_without_a_solution_there_is_one_result_with_the_reason(qiao):
     found = ikde.solve_distinct(qiao, ikde.Target((0.0, 0.0, 9.0)), 3, CHEAP)
     assert [result.stop_reason for result in found] == ["out_of_reach"]
+
+
+@pytest.mark.parametrize("method", ["auto", "memetic"])
+def test_a_timeout_is_that_of_the_whole_call(qiao, method, monkeypatch):
+    def answer(timeout_s):
+        settings = ikde.SolveSettings(method=method, timeout_s=timeout_s)
+        return ikde.solve_distinct(qiao, TARGET, 3, settings, seed=2)
+
+    plain, timed = ([result.q.tobytes() for result in answer(timeout_s)] for timeout_s in (None, 1e6))
+    assert plain == timed
+    assert len(plain) == 3
+    assert len(answer(1e-9)) == 1
+    seconds = count()
+    monkeypatch.setattr("ikde.solver.distinct.time", SimpleNamespace(perf_counter=seconds.__next__))
+    answer(10.0)
+    assert next(seconds) <= 12
 
 
 @pytest.mark.parametrize("count", [0, -1])

@@ -8,6 +8,7 @@ import pytest
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.reach import reach_excess_m
+from ikde.solver.engines.found import make_found
 from ikde.solver.search import Found
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=6, generations=500)
@@ -167,3 +168,45 @@ def test_an_explanation_repeats(qiao):
 def test_a_reason_and_a_hint_are_one_line(qiao, position):
     result = ikde.solve(qiao, ikde.Target(position), QUICK, freeze=PARKED)
     assert "\n" not in result.reason + result.hint
+
+
+def test_a_target_that_runs_out_of_time_says_how_long_and_how_often_it_was_tried(qiao):
+    timed = ikde.SolveSettings(restarts=10**6, timeout_s=1e-9)  # so that one call of the engine is made
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, timed, freeze=PARKED)
+    assert (result.reached, result.stop_reason) == (False, "timed_out")
+    assert result.reason.startswith(f"timed out after 1e-09 s and {result.attempts} attempts, ")
+    assert f"{result.rejected} of them in collision at the target; the best is off by" in result.reason
+    assert result.hint.startswith("a longer timeout, or none")
+    assert result.blocking_pairs
+    asked = {"freeze": PARKED, "explain_failures": False}
+    row = ikde.solve_many(qiao, [INSIDE_THE_PLATFORM], timed, **asked)[0]
+    assert row.stop_reason == "timed_out"
+    assert result.reason.startswith(row.reason)
+
+
+def test_what_is_proved_or_reached_does_not_run_out_of_time(qiao):
+    timed = ikde.SolveSettings(timeout_s=1e-9)
+    assert ikde.solve(qiao, ikde.Target((20.0, 0.0, 1.0)), timed).stop_reason == "out_of_reach"
+    assert ikde.solve(qiao, TARGET, timed).reached
+
+
+def test_with_time_to_spare_the_reason_is_looked_for(qiao):
+    timed = ikde.SolveSettings(restarts=6, timeout_s=1e6)
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, timed, freeze=PARKED)
+    assert result.stop_reason == "self_collision"
+    assert result.hint.startswith("free d_x, d_y, q_z")
+
+
+def test_short_searches_share_what_is_left_of_the_time(qiao, monkeypatch):
+    spent = []
+
+    def probe(problem, targets, spent_s, **options):
+        spent.append(spent_s)
+        found = make_found(problem, len(targets))
+        found.seconds[:] = 2.0
+        return found
+
+    monkeypatch.setattr("ikde.solver.explain.search", probe)
+    timed = ikde.SolveSettings(population=6, generations=1, restarts=1, timeout_s=1e6)
+    searched_s = ikde.solve(qiao, TARGET, timed, freeze=PARKED | {"q1": 0.0}).solve_seconds
+    assert spent == [searched_s, searched_s + 2.0, searched_s + 4.0]

@@ -1,6 +1,8 @@
 """The one place that calls the search kernels: bits do not hang on threads or calls, and Ctrl-C gets through."""
 
 import threading
+from itertools import count
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -217,3 +219,58 @@ def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collisi
             taken_over += 1
             assert not ikde.check(qiao, found.q[0]).collision
     assert taken_over > 0
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock that says that every call of an engine takes a second."""
+    monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=count().__next__))
+
+
+def make_endless(robot, method, **settings):
+    """A question that is never answered: every configuration collides."""
+    settings = ikde.SolveSettings(method=method, **{"restarts": 10**6, "timeout_s": 5.0, **settings})
+    return make_problem(robot, settings, detector="single", near=None, freeze=None)
+
+
+BRIEF = {"population": 6, "generations": 1}
+
+
+@pytest.mark.parametrize(("method", "knobs", "attempts"), [("de", BRIEF, 1), ("lm", {}, 64), ("memetic", {}, 1)])
+def test_no_attempt_is_begun_when_the_time_is_up(qiao, clock, method, knobs, attempts):
+    problem = make_endless(qiao, method, **knobs)
+    found = search(problem, TARGETS[:1], seed=1, streams=[0])
+    assert found.counts[0, [REACHED, ATTEMPTS]].tolist() == [0, 5 * attempts]
+    assert found.seconds.tolist() == [5.0]
+    found = search(problem, TARGETS[:1], seed=1, streams=[0], spent_s=3.5)
+    assert found.counts[0, ATTEMPTS] == 2 * attempts
+
+
+def test_every_target_has_its_own_time(qiao, clock):
+    found = search(make_endless(qiao, "de", **BRIEF), TARGETS, seed=1, streams=range(5), threads=1)
+    assert found.counts[:, ATTEMPTS].tolist() == [5] * 5
+    found = search(make_endless(qiao, "lm"), TARGETS, seed=1, streams=range(5), threads=1)
+    assert (
+        found.counts[:, ATTEMPTS].tolist() == [64 + 19 * (64 // 5)] * 5
+    )  # 25 calls that they share; the 6th ends at 64
+    assert found.seconds == pytest.approx(np.full(5, 5.0))
+
+
+def test_an_engine_that_has_no_time_left_is_not_even_made(qiao, clock, monkeypatch):
+    made, honest = [], module.make_engine
+    monkeypatch.setattr(module, "make_engine", lambda name, question: made.append(name) or honest(name, question))
+    search(make_endless(qiao, "auto", timeout_s=1.0), TARGETS[:1], seed=1, streams=[0])
+    assert made == ["lm"]
+
+
+@pytest.mark.parametrize(("method", "targets"), [("auto", 1), ("auto", 70), ("memetic", 2), ("de", 3)])
+def test_a_timeout_that_is_not_reached_changes_no_bits(qiao, rng, method, targets):
+    kinds = ("pose", "axis", "position")
+    asked = [make_target(qiao, free_q(qiao, rng), kinds[k % 3]) for k in range(targets)]
+
+    def run(timeout_s):
+        settings = ikde.SolveSettings(method=method, restarts=3, timeout_s=timeout_s)
+        problem = make_problem(qiao, settings, detector=None, near=None, freeze=None)
+        return search(problem, asked, seed=1, streams=range(targets))
+
+    assert bits(run(None)) == bits(run(1e6))

@@ -19,6 +19,7 @@ GOOD = {
     "population": (6, 1000),
     "generations": (1,),
     "restarts": (1, None),
+    "timeout_s": (1e-9, 5, 1e9, None),
     "crossover": (0.0, 0, 1.0, 1),
     "start_share": (1e-9, 0.5, 1, 1.0),
     "weight": (1e-9, 1, 2.5),
@@ -34,6 +35,7 @@ BAD = {
     "population": (5, 50.0, *NO_NUMBERS),
     "generations": (0, 1.0, *NO_NUMBERS),
     "restarts": (0, 1.0, *NO_NUMBERS),
+    "timeout_s": (0, 0.0, *NO_NUMBERS),
     "method": ("", "LM", None, 0),
     **dict.fromkeys(("strategy", "bounds", "update", "collision"), ("", "Rand/1", 0)),
 }
