@@ -45,16 +45,9 @@ class Target:
         R_world_tool: ArrayLike | None = None,
         axis_world_tool: ArrayLike | None = None,
     ) -> None:
-        if R_world_tool is not None and axis_world_tool is not None:
-            raise InputError(NOT_BOTH)
-        kind: TargetKind = "position"
-        R = np.eye(3)
-        if R_world_tool is not None:
-            kind, R = "pose", _read(R_world_tool, "R_world_tool")
-            check_rotation(R)
-        elif axis_world_tool is not None:
-            kind, R = "axis", rotation_with_z(_unit(_read_vector(axis_world_tool, "axis_world_tool", LONGEST)))
-        self._set(kind, _read_vector(p_world_tool, "p_world_tool", FARTHEST), R)
+        kind, R = _read_orientation(R_world_tool, axis_world_tool, rows=())
+        p = _read_vectors(p_world_tool, "p_world_tool", FARTHEST, rows=())
+        self._set(KINDS[kind], p, R)
 
     @property
     def axis_world_tool(self) -> Floats:
@@ -93,16 +86,10 @@ class Targets:
         R_world_tool: ArrayLike | None = None,
         axis_world_tool: ArrayLike | None = None,
     ) -> None:
-        if R_world_tool is not None and axis_world_tool is not None:
-            raise InputError(NOT_BOTH)
-        p = _read_rows(p_world_tool, "p_world_tool", (3,), FARTHEST)
-        kind, R = POSITION, np.broadcast_to(np.eye(3), (len(p), 3, 3))
-        if R_world_tool is not None:
-            kind, R = POSE, _read_rotations(R_world_tool)
-        elif axis_world_tool is not None:
-            axes = _read_rows(axis_world_tool, "axis_world_tool", (3,), LONGEST)
-            _refuse_row(length(axes) > SHORTEST, "axis_world_tool", lambda row: NO_DIRECTION)
-            kind, R = AXIS, rotation_with_z(_unit(axes))
+        kind, R = _read_orientation(R_world_tool, axis_world_tool, rows=("T",))
+        p = _read_vectors(p_world_tool, "p_world_tool", FARTHEST, rows=("T",))
+        if kind == POSITION:
+            R = np.broadcast_to(R, (len(p), 3, 3))
         if len(R) != len(p):
             name = "R_world_tool" if kind == POSE else "axis_world_tool"
             raise InputError(f"expected {len(p)} rows, as many as positions, got {len(R)}", (name,))
@@ -174,60 +161,65 @@ class Targets:
         object.__setattr__(self, "T_world_tool", T_world_tool)
 
 
-def _read(values: ArrayLike, name: str) -> Floats:
-    try:
-        return np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"expected numbers, got {values!r}", (name,)) from None
+Rows = tuple[()] | tuple[str]
+"""What stands before the axes of one target: nothing, or the axis of the rows."""
 
 
-def _read_vector(values: ArrayLike, name: str, farthest: float) -> Floats:
-    vector = _read(values, name)
-    if vector.shape != (3,):
-        raise InputError(
-            f"expected 3 numbers, got {'shape ' + str(vector.shape) if vector.ndim != 1 else vector.size}", (name,)
-        )
-    if not np.all(np.abs(vector) <= farthest):  # False for NaN
-        raise InputError(f"expected finite numbers up to {farthest:g}, got {vector.tolist()}", (name,))
-    return vector
+def _read_orientation(R: ArrayLike | None, axis: ArrayLike | None, rows: Rows) -> tuple[int, Floats]:
+    """Index into `KINDS`, and rotations [*rows, 3, 3]; one identity if nothing is asked for."""
+    if R is not None and axis is not None:
+        raise InputError(NOT_BOTH)
+    if R is not None:
+        return POSE, _read_rotations(R, rows)
+    if axis is not None:
+        return AXIS, rotation_with_z(_read_axes(axis, rows))
+    return POSITION, np.eye(3)
 
 
-def _unit(axes: Floats) -> Floats:
-    """Directions [..., 3] of vectors that have one."""
-    lengths = length(axes)
-    if not np.all(lengths > SHORTEST):
-        raise InputError(NO_DIRECTION, ("axis_world_tool",))
-    return axes / lengths[..., None]
-
-
-def _read_rows(values: ArrayLike, name: str, shape: tuple[int, ...], farthest: float) -> Floats:
-    """Arrays [T, *shape] of finite numbers up to `farthest`."""
-    rows = _read(values, name)
-    if rows.shape[1:] != shape or rows.ndim != len(shape) + 1:
-        expected = ", ".join(["T", *map(str, shape)])
-        raise InputError(f"expected an array [{expected}], got shape {rows.shape}", (name,))
-    good = np.all(np.abs(rows) <= farthest, axis=tuple(range(1, rows.ndim)))  # False for NaN
-    _refuse_row(good, name, lambda row: f"expected finite numbers up to {farthest:g}, got {rows[row].tolist()}")
-    return rows
-
-
-def _read_rotations(values: ArrayLike) -> Floats:
-    R = _read(values, "R_world_tool")
-    if R.shape[1:] != (3, 3):
-        raise InputError(f"expected an array [T, 3, 3], got shape {R.shape}", ("R_world_tool",))
+def _read_rotations(values: ArrayLike, rows: Rows) -> Floats:
+    """Rotations [*rows, 3, 3]."""
+    R = _read(values, "R_world_tool", (*rows, 3, 3))
     with np.errstate(all="ignore"):
-        good = np.isfinite(R).all(axis=(1, 2)) & are_rotations(R)
-    _refuse_row(good, "R_world_tool", lambda row: check_rotation(R[row]))
+        good = np.isfinite(R).all(axis=(-2, -1)) & are_rotations(R)
+    _refuse(good, "R_world_tool", lambda row: check_rotation(R[row]))
     return R
 
 
-def _refuse_row(good: NDArray[np.bool_], name: str, complain: Callable[[int], str | None]) -> None:
-    """Raise `InputError` for the first row that is not good."""
+def _read_axes(values: ArrayLike, rows: Rows) -> Floats:
+    """Directions [*rows, 3] of vectors that have one."""
+    axes = _read_vectors(values, "axis_world_tool", LONGEST, rows)
+    lengths = length(axes)
+    _refuse(lengths > SHORTEST, "axis_world_tool", lambda row: NO_DIRECTION)
+    return axes / lengths[..., None]
+
+
+def _read_vectors(values: ArrayLike, name: str, farthest: float, rows: Rows) -> Floats:
+    """Vectors [*rows, 3] of finite numbers up to `farthest`."""
+    vectors = _read(values, name, (*rows, 3))
+    good = np.all(np.abs(vectors) <= farthest, axis=-1)  # False for NaN
+    _refuse(good, name, lambda row: f"expected finite numbers up to {farthest:g}, got {vectors[row].tolist()}")
+    return vectors
+
+
+def _read(values: ArrayLike, name: str, shape: tuple[int | str, ...]) -> Floats:
+    """A copy as an array of this shape, where `T` stands for any count."""
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"expected numbers, got {values!r}", (name,)) from None
+    if array.ndim != len(shape) or any(n != m for n, m in zip(array.shape, shape, strict=True) if m != "T"):
+        expected = ", ".join(map(str, shape))
+        raise InputError(f"expected an array [{expected}], got shape {array.shape}", (name,))
+    return array
+
+
+def _refuse(good: NDArray[np.bool_], name: str, complain: Callable[[tuple[int, ...]], str | None]) -> None:
+    """Raise `InputError` for the first row that is not good; a single target is no row."""
     if good.all():
         return
-    row = int(np.argmin(good))
+    row = (int(np.argmin(good)),) if good.ndim else ()
     try:
         message = complain(row)
     except InputError as error:
         message = error.message
-    raise InputError(str(message), (name, row))
+    raise InputError(str(message), (name, *row))
