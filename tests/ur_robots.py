@@ -69,13 +69,14 @@ def solve_all(arm, ranges, poses, out_q, out_branch, out_count):
         out_count[k] = solve_ur_arm(arm, ranges, poses[k], work, out_q[k], out_branch[k])
 
 
-def solve(robot, poses, ranges=None):
-    """Lists of solutions [n, 6] and codes [n] for tool poses [T, 4, 4] in the carrier."""
+def solve(robot, poses, limits=None, near=None):
+    """Lists of solutions [n, 6] and codes [n] for tool poses [T, 4, 4] in the carrier, in the turns nearest `near`."""
     poses = np.ascontiguousarray(poses[:, :3])
     out_q, out_branch = np.full((len(poses), BRANCHES, 6), np.nan), np.full((len(poses), BRANCHES), -1)
     count = np.zeros(len(poses), dtype=int)
-    limits = np.array([robot.lower, robot.upper]) if ranges is None else ranges
-    solve_all(pack_ur_arm(find_ur_arm(robot)), limits, poses, out_q, out_branch, count)
+    lower, upper = (robot.lower, robot.upper) if limits is None else limits
+    ranges = np.array([lower, upper, 0.5 * (lower + upper) if near is None else near])
+    solve_all(pack_ur_arm(find_ur_arm(robot)), ranges, poses, out_q, out_branch, count)
     return [q[:n] for q, n in zip(out_q, count, strict=True)], [b[:n] for b, n in zip(out_branch, count, strict=True)]
 
 

@@ -44,10 +44,9 @@ def find_base_wrist_row(arm, row, T_carrier_tool):
 
 
 @inline_kernel
-def find_middle(arm, ranges):
-    """Theta1 in the middle of its range."""
-    k = arm.coordinates[0]
-    return arm.angles[0, 0] * 0.5 * (ranges[0, k] + ranges[1, k]) + arm.angles[1, 0]
+def find_centre(arm, ranges):
+    """Theta1 where joint 1 is at ranges[2]."""
+    return arm.angles[0, 0] * ranges[2, arm.coordinates[0]] + arm.angles[1, 0]
 
 
 @inline_kernel
@@ -113,7 +112,7 @@ def write_shoulder(arm, ranges, rows, square, right, radius, out_sides):
     """Sides of the ten angles of one shoulder: `ANGLES` tells where. `radius`: of the wrist centre along x1, signed."""
     d4, a4, d5 = arm.lengths[D4], arm.lengths[A4], arm.lengths[D5]
     px, py, height = rows[0][3], rows[1][3], rows[2][3]
-    s1, c1 = find_shoulder(px, py, radius, d4, square, find_middle(arm, ranges))
+    s1, c1 = find_shoulder(px, py, radius, d4, square, find_centre(arm, ranges))
     ahead = radius - arm.lengths[A1]
     # A free turn puts the wrist centre in line with axes 2 and 4: as near and as far as the links can be asked to go.
     s_free, c_free = height * a4 + ahead * d5, ahead * a4 - height * d5
@@ -130,11 +129,13 @@ def write_shoulder(arm, ranges, rows, square, right, radius, out_sides):
 
 @inline_kernel
 def fit_joint(arm, ranges, joint, angle):
-    """(joint value for an angle of the model, in the turn nearest the middle of its range; whether it is inside)."""
+    """(joint value for an angle of the model, in the turn inside its range nearest ranges[2]; whether there is one)."""
     k = arm.coordinates[joint]
     lower, upper = ranges[0, k], ranges[1, k]
     value = arm.angles[0, joint] * (angle - arm.angles[1, joint])
-    value -= TWO_PI * np.rint((value - 0.5 * (lower + upper)) * (1.0 / TWO_PI))
+    value -= TWO_PI * np.rint((value - ranges[2, k]) * (1.0 / TWO_PI))
+    value -= TWO_PI if value > upper + SLACK else 0.0
+    value += TWO_PI if value < lower - SLACK else 0.0
     inside = (value >= lower - SLACK) & (value <= upper + SLACK)
     return min(max(value, lower), upper), inside
 
@@ -143,13 +144,14 @@ def fit_joint(arm, ranges, joint, angle):
 def solve_ur_arm(arm, ranges, T_carrier_tool, work, out_q, out_branch):
     """Write every configuration of the arm that puts its tool at a pose, and return how many there are.
 
-    `ranges` [2 or more, N]: rows lower and upper limit of all the robot's joints, rad; what is beyond them is left out,
-    and a joint stands in the turn nearest the middle. `T_carrier_tool` [3, 4] m: the tool in the body that carries
-    joint 1. `work` [2, ANGLES]. `out_q` [8, 6]: the six joints; `out_branch` [8] int64: the code of each row. Left
-    comes before right, no flip before flip, up before down; two shoulders or elbows that coincide count once.
+    `ranges` [3, N]: rows lower and upper limit of all the robot's joints, rad, and the centre, `near` or the middle:
+    what is beyond the limits is left out, and a joint stands in the turn nearest the centre. `T_carrier_tool` [3, 4] m:
+    the tool in the body that carries joint 1. `work` [2, ANGLES]. `out_q` [8, 6]: the six joints; `out_branch` [8]
+    int64: the code of each row. Left comes before right, no flip before flip, up before down; two shoulders or elbows
+    that coincide count once.
 
-    If joint 1 is free (the wrist centre on axis 1), it takes the middle of its range; if joint 6 is (axes 4 and 6
-    parallel), the wrist centre takes its place in line with axes 2 and 4, on either side.
+    If joint 1 is free (the wrist centre on axis 1), it takes the centre; if joint 6 is (axes 4 and 6 parallel),
+    the wrist centre takes its place in line with axes 2 and 4, on either side.
     """
     rows = (
         find_base_wrist_row(arm, X, T_carrier_tool),

@@ -74,10 +74,10 @@ def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None,
     return outputs
 
 
-def list_branches(robot, T):
-    """All solutions [n, 6] of a robot that is an arm and nothing else, for a tool pose [4, 4]."""
+def list_branches(robot, T, near):
+    """All solutions [n, 6] of a robot that is just an arm, for a tool pose [4, 4], in the turns nearest `near`."""
     work, out_q = np.empty((2, ANGLES)), np.empty((BRANCHES, 6))
-    ranges = np.array([robot.lower, robot.upper])
+    ranges = np.array([robot.lower, robot.upper, near])
     count = plain(solve_ur_arm)(pack_ur_arm(find_ur_arm(robot)), ranges, T[:3], work, out_q, np.empty(BRANCHES, int))
     return out_q[:count]
 
@@ -128,7 +128,7 @@ def test_near_a_configuration_the_nearest_free_branch_is_taken(rng):
         near = random_q(UR5, rng)
         T = compute_frames(UR5, q)[UR5.tool]
         targets = Targets.of([Target(T[:3, 3], R_world_tool=T[:3, :3])])
-        branches = list_branches(UR5, T)
+        branches = list_branches(UR5, T, near)
         free = (find_gaps(UR5, detector, branches) > detector.safe_distance_m).all(axis=1)
         distance = (((branches - near) / width) ** 2).sum(axis=1)
         expected = branches[free][distance[free].argmin()]

@@ -68,6 +68,28 @@ def test_limits_leave_out_what_no_turn_brings_inside(seed, rng):
         np.testing.assert_array_equal(codes[k], every_code[k][fits])
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_joint_stands_in_the_turn_nearest_to_where_it_should(seed, rng):
+    robot = random_ur_robot(seed)
+    arm = find_ur_arm(robot)
+    joints = list(arm.coordinates)
+    limits = np.array([rng.uniform(-7.0, -4.0, len(robot.joints)), rng.uniform(4.0, 7.0, len(robot.joints))])
+    _, poses = random_arm_q(robot, rng, 50)
+    middle, lower, upper = solve(robot, poses, limits)[0], *limits[:, joints]
+    turns = 2 * np.pi * np.arange(-3, 4)[:, None]
+    changed = 0
+    for near in rng.uniform(*limits, (5, len(robot.joints))):
+        for rows, others in zip(solve(robot, poses, limits, near)[0], middle, strict=True):
+            assert len(rows) == len(others)
+            for q, other in zip(rows, others, strict=True):
+                every = other + turns
+                distances = np.where((every >= lower) & (every <= upper), np.abs(every - near[joints]), np.inf)
+                nearest = every[distances.argmin(axis=0), range(6)]
+                np.testing.assert_allclose(q, nearest, rtol=0, atol=1e-13)
+                changed += np.any(np.abs(q - other) > 6.0)
+    assert changed > 0
+
+
 def test_a_joint_at_its_limit_is_set_on_it(rng):
     robot = random_ur_robot(1)
     arm = find_ur_arm(robot)
@@ -124,7 +146,7 @@ def test_a_wrist_as_near_to_the_first_axis_as_can_be_keeps_the_pose(robot, besid
 
 @pytest.mark.parametrize("radius", [0.0, 1e-13, 1e-6])
 def test_a_wrist_on_the_first_axis_keeps_the_pose(radius, rng):
-    """Without d4 the wrist centre can be on axis 1: joint 1 is free and takes the middle of its range."""
+    """Without d4 the wrist centre can be on axis 1: joint 1 is free and takes the middle of its range, or is near."""
     robot = robot_without_d4()
     arm = find_ur_arm(robot)
     assert arm.d4 == pytest.approx(0.0, abs=1e-15)
@@ -137,6 +159,8 @@ def test_a_wrist_on_the_first_axis_keeps_the_pose(radius, rng):
         assert np.abs(pose(arm, rows) - T).max() < 3e-12
         if radius < 1e-12:
             np.testing.assert_allclose(rows[:, 0], 0.5, rtol=0, atol=1e-15)
+            near = solve(robot, T[None], near=np.full(6, -1.25))[0][0]
+            np.testing.assert_allclose(near[:, 0], -1.25, rtol=0, atol=1e-15)
 
 
 def robot_without_d4():

@@ -6,6 +6,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.solver.engines.analytic import Analytic, check_closed_form
 from tests.solver.engines.questions import assert_solved, make_question, run
+from tests.solver.test_solve import free_q, make_target
 
 
 @pytest.mark.parametrize("name", ["qiao2021", "ur5"])
@@ -16,6 +17,14 @@ def test_poses_are_solved_exactly(name, rng):
     result = ikde.solve(ikde.load_robot(name), targets[0], method="analytic")
     assert result.position_error_m < 1e-12
     assert result.orientation_error_rad < 1e-7
+
+
+def test_joints_stay_in_the_turns_that_they_are_near_to(rng):
+    robot = ikde.load_robot("ur5")
+    for _ in range(10):
+        q = free_q(robot, rng)
+        result = ikde.solve(robot, make_target(robot, q, "pose"), method="analytic", near=q)
+        assert result.q == pytest.approx(q, abs=1e-9)
 
 
 def test_positions_are_refused(qiao):
