@@ -71,11 +71,17 @@ def test_what_changes_an_answer_changes_the_hash(qiao, keys):
 
 @pytest.mark.parametrize(
     "keys",
-    [{"name": "x"}, {"arms": {"auto": {"method": "auto"}}}, {"solve": {"settings": {"population": 50}}}],
+    [{"name": "x"}, {"arms": {"auto": {"method": "auto"}}}, {"solve": {"settings": {"position_tolerance": 1e-5}}}],
     ids=str,
 )
 def test_what_changes_nothing_keeps_the_hash(qiao, keys):
     assert make(qiao, **keys).hash == make(qiao).hash
+
+
+def test_a_knob_at_its_default_changes_the_engine_under_auto_and_nothing_under_de(qiao):
+    knob, de = {"settings": {"population": 50}}, {"method": "de"}
+    assert make(qiao, solve=knob).hash != make(qiao).hash
+    assert make(qiao, solve=knob | de).hash == make(qiao, solve=de).hash
 
 
 @pytest.mark.parametrize(
