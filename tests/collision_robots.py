@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from itertools import combinations
-from types import SimpleNamespace
 
 import numpy as np
 
@@ -34,11 +33,6 @@ SHIPPED = [
 RANDOM = [(robot, robot.detector(None)) for robot in map(loosen, map(random_robot, range(20)))]
 CASES = [*SHIPPED, *RANDOM]
 CONTACT = 1e-9  # m: what is nearer to contact than this is left out
-
-
-def tell(safe_distance):
-    """All that a generated collision check is told of its detector."""
-    return SimpleNamespace(safe_distance=safe_distance)
 
 
 def name_case(case):

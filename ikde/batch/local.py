@@ -15,6 +15,7 @@ from ikde.batch.plan import Batch
 from ikde.batch.task import make_task, solve_task
 from ikde.solver.search import usable_cores
 from ikde.solver.stopping import stoppable
+from ikde.solver.warmup import SEVERAL
 
 AHEAD = 1  # parts that may wait to be written, beyond one a thread: memory stays flat
 
@@ -40,9 +41,9 @@ def solve_parts(
 
 
 def _warm_up(batch: Batch, part: Part, announce_compile: Announce | None) -> None:
-    """Solve one target of an arm: kernels are compiled or loaded once, and who waits for that is told."""
-    one = replace(part, last=part.first + 1)
-    solve_task(replace(make_task(batch, one), explain=False), 1, announce_compile)
+    """Solve a few targets of an arm: kernels are compiled or loaded once, and who waits for that is told."""
+    few = replace(part, last=min(part.last, part.first + SEVERAL))
+    solve_task(replace(make_task(batch, few), explain=False), 1, announce_compile)
 
 
 def _solve_side_by_side(

@@ -65,7 +65,7 @@ def show(
 def _format_kernels(model: "Robot", detector: str | None, kind: str) -> str:
     from ikde.errors import InputError
     from ikde.model.generate.assemble import format_module
-    from ikde.model.generate.module import KINDS
+    from ikde.model.target import KINDS
 
     if kind not in KINDS:
         raise InputError(f"expected one of {', '.join(KINDS)}, got {kind!r}", ("kind",))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import DescentArrays, DetectorArrays, Floats, Ints, RobotArrays, SeedArrays
+from ikde.kernels.arrays import DescentArrays, DetectorArrays, Floats, Indices, Ints, RobotArrays, SeedArrays
 from ikde.kernels.jit import kernel
 
 
@@ -34,7 +34,7 @@ def flatten_grader(robot: RobotArrays, detector: DetectorArrays, terms: Terms) -
     return _flatten(sizes, *robot, *detector, *terms)
 
 
-def _flatten(*values: Floats | Ints | float) -> tuple[Floats, Ints]:
+def _flatten(*values: Floats | Ints | Indices | float) -> tuple[Floats, Ints]:
     """All numbers and all whole numbers, each in the order of the values; read-only."""
     arrays = [np.asarray(value) for value in values]
     numbers = np.concatenate([array.ravel() for array in arrays if array.dtype.kind == "f"])

@@ -35,9 +35,8 @@ class Target:
     """
 
     kind: TargetKind
-    p_world_tool: Floats
-    R_world_tool: Floats
-    """[3, 3]: the pose asked for; of an axis target only the last column; of a position target nothing."""
+    T_world_tool: Floats
+    """[3, 4]: R and p side by side, as the kernels take them."""
 
     def __init__(
         self,
@@ -47,19 +46,27 @@ class Target:
     ) -> None:
         kind, R = _read_orientation(R_world_tool, axis_world_tool, rows=())
         p = _read_vectors(p_world_tool, "p_world_tool", FARTHEST, rows=())
-        self._set(KINDS[kind], p, R)
+        self._set(KINDS[kind], np.concatenate([R, p[:, None]], axis=1))
+
+    @property
+    def p_world_tool(self) -> Floats:
+        """Position [3] in m."""
+        return self.T_world_tool[:, 3]
+
+    @property
+    def R_world_tool(self) -> Floats:
+        """Orientation [3, 3]; of an axis target only the last column is asked for, of a position target nothing."""
+        return self.T_world_tool[:, :3]
 
     @property
     def axis_world_tool(self) -> Floats:
         """Direction asked of the tool's z axis [3]."""
-        return self.R_world_tool[:, 2]
+        return self.T_world_tool[:, 2]
 
-    def _set(self, kind: TargetKind, p_world_tool: Floats, R_world_tool: Floats) -> None:
-        p_world_tool.setflags(write=False)
-        R_world_tool.setflags(write=False)
+    def _set(self, kind: TargetKind, T_world_tool: Floats) -> None:
+        T_world_tool.setflags(write=False)
         object.__setattr__(self, "kind", kind)
-        object.__setattr__(self, "p_world_tool", p_world_tool)
-        object.__setattr__(self, "R_world_tool", R_world_tool)
+        object.__setattr__(self, "T_world_tool", T_world_tool)
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -102,8 +109,7 @@ class Targets:
             return targets
         T_world_tool = np.empty((len(targets), 3, 4))
         for row, target in zip(T_world_tool, targets, strict=True):
-            row[:, :3] = target.R_world_tool
-            row[:, 3] = target.p_world_tool
+            row[:] = target.T_world_tool
         return cls.packed(np.array([KINDS.index(target.kind) for target in targets], dtype=np.int64), T_world_tool)
 
     @classmethod
@@ -148,7 +154,7 @@ class Targets:
         if isinstance(index, slice):
             return Targets.packed(self.kind[index], self.T_world_tool[index])
         T, target = self.T_world_tool[index], Target.__new__(Target)
-        target._set(KINDS[self.kind[index]], T[:, 3].copy(), T[:, :3].copy())
+        target._set(KINDS[self.kind[index]], T.copy())
         return target
 
     def __reduce__(self) -> tuple:

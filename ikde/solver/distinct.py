@@ -8,6 +8,7 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
+from ikde.kernels.seeds import LUCKY_ATTEMPTS
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
 from ikde.solver.joints import JointValues
@@ -116,7 +117,8 @@ def _sample(
 ) -> list[SolveResult]:
     """Distinct solutions of many solves side by side, each on a stream of its own."""
     solutions, size, clock = [first], SAMPLES * count, Clock(problem, first)
-    begin = 0 if problem.near is None else 1  # attempt 0 is `near` itself, on every stream
+    # Early attempts of `lm` begin near the target, where all find the same; with `near`, attempt 0 is `near` itself.
+    begin = LUCKY_ATTEMPTS if problem.near is None else 1
     several = size if problem.settings.timeout_s is None else 1
     for stream in range(1, 1 + ROUNDS * size, several):
         told = {"first_stream": stream, "first_attempt": begin, "probe": False, "spent_s": clock.spent_s}

@@ -59,8 +59,9 @@ def compute_figures(
     Without `settings` there are no tolerances.
     """
     figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
-    asked = (*pack_grader(robot, detector, settings), *pack_targets(targets))
-    kernels.compute_figures(*asked, np.ascontiguousarray(Q), figures, pairs, accepted)
+    (numbers, whole), asked = pack_grader(robot, detector, settings), pack_targets(targets)
+    out = (np.ascontiguousarray(Q), figures, pairs, accepted)
+    kernels.compute_figures(numbers, whole, asked.kind, asked.T_world_tool, *out)
     return Figures(
         position_error_m=figures[:, kernels.POSITION_ERROR],
         orientation_error_rad=figures[:, kernels.ORIENTATION_ERROR],

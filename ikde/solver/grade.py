@@ -18,7 +18,7 @@ from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, compute_figures
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, StopReason
-from ikde.solver.verify import Bools, Verdicts, verify_many
+from ikde.solver.verify import Bools, verify_many
 
 Verify = Literal["all", "sample", "none"]
 SAMPLE = 64  # one stream in so many, wherever a batch is cut
@@ -29,10 +29,6 @@ class Graded:
     """The grades of T rows, whether they agree, and why rows ended."""
 
     figures: Figures
-    verdicts: Verdicts | None
-    """Plain numpy's, of the rows that it graded, if any."""
-    place: Ints
-    """[T] where a row stands in `verdicts`; -1 if plain numpy has not graded it."""
     verified: Bools
     """[T] False where plain numpy disagrees."""
     reached: Bools
@@ -70,27 +66,24 @@ def grade(
     streams = np.arange(first_stream, first_stream + len(targets))
     rows = np.flatnonzero(_choose(verify, streams) | (~figures.accepted if probe else False))
     verified, reached = np.ones(len(targets), dtype=bool), figures.accepted
-    verdicts, explanations = None, {}
-    place = np.full(len(targets), -1)
+    explanations: dict[int, Explanation] = {}
     if rows.size:
         asked, Q = targets.take(rows), found.q[rows]
         verdicts = verify_many(problem.robot, asked, Q, problem.settings, problem.detector)
         gaps = compute_disagreement(asked, figures.take(rows), verdicts)
         if strict:
             _refuse(gaps, Q)
-        place[rows] = np.arange(len(rows))
         verified[rows] = gaps <= AGREEMENT  # False for NaN
         reached = figures.accepted & verified
         reached[rows] &= verdicts.accepted
-        explanations = {int(row): _unverified(float(gaps[place[row]])) for row in np.flatnonzero(~verified)}
+        told = zip(rows.tolist(), gaps.tolist(), strict=True)
+        explanations = {row: _unverified(gap) for row, gap in told if not verified[row]}
         if probe:
-            for row in np.flatnonzero(verified & ~reached).tolist():
-                graded = verdicts.row(int(place[row]))
+            for place in np.flatnonzero((verified & ~reached)[rows]).tolist():
+                row, graded = int(rows[place]), verdicts.row(place)
                 explanations[row] = explain(problem, targets[row], found.row(row), graded, seed)
     return Graded(
         figures=figures,
-        verdicts=verdicts,
-        place=place,
         verified=verified,
         reached=reached,
         stop_reasons=_stop_reasons(problem, found, reached, explanations),

@@ -72,9 +72,7 @@ class Quick:
 
     def _try(self, target: Target, seed: int, stream: int) -> SolveResult | None:
         started = time.perf_counter()
-        T_world_tool = np.empty((1, 3, 4))
-        T_world_tool[0, :, :3], T_world_tool[0, :, 3] = target.R_world_tool, target.p_world_tool
-        T_world_tool.setflags(write=False)
+        T_world_tool = target.T_world_tool[None]
         q, score = np.empty(self._joints), self._no_score.copy()
         counts, blocked = np.zeros(COUNTS, dtype=np.int64), np.zeros(len(self._pairs), dtype=np.int64)
         lane = (np.uint64(seed), stream, 0, self._last, q, score, counts, blocked)

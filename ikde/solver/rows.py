@@ -13,7 +13,7 @@ from ikde.solver.grade import Graded, Verify, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason, reached_reason
 from ikde.solver.search import search
-from ikde.solver.verify import Bools, Verification, verify, verify_many
+from ikde.solver.verify import Bools, verify
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -124,14 +124,6 @@ class Rows:
             ),
         )
 
-    def verification(self, index: int) -> Verification:
-        """The grade of plain numpy; if it has not graded this row, it does so now."""
-        graded, problem = self.graded, self.problem
-        if graded.verdicts is not None and graded.place[index] >= 0:
-            return graded.verdicts.row(int(graded.place[index]))
-        rows = slice(index, index + 1)
-        return verify_many(problem.robot, self.targets[rows], self.q[rows], problem.settings, problem.detector).row(0)
-
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
         problem, story, figures = self.problem, self.explanation(index), self.graded.figures
@@ -204,7 +196,6 @@ def solve_rows(
     targets = Targets.of(targets)
     streams = range(first_stream, first_stream + len(targets))
     with compile_clock(announce_compile) as clock:
-        search(problem, targets[:1], seed=0, streams=[0][: len(targets)], attempts=0)
         found = search(
             problem,
             targets,

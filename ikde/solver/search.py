@@ -39,9 +39,8 @@ def search(
 ) -> Found:
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
-    `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach;
-    0 searches nothing and only compiles or loads the first engine's kernel. `spent_s`: what is gone of each target's
-    time, if the settings have a timeout.
+    `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach. `spent_s`: what
+    is gone of each target's time, if the settings have a timeout.
 
     The answer for a target hangs on (seed, stream, attempt) only: not on the other targets, the number of threads, or
     how the attempts are cut into calls; with a timeout also on the clock.
@@ -109,8 +108,6 @@ def _plan(problem: Problem, question: Question, attempts: int | None) -> list[tu
     only_poses = bool((question.targets.kind == POSE).all())
     free = _find_free(problem.lower, problem.upper)
     names = choose_engines(robot, settings, only_poses=only_poses, inside=inside, free=free)
-    if attempts == 0:
-        return [(names[0], 0)]
     budgets = {name: attempts or settings.budget(name) for name in names}
     if len(names) > 1:
         budgets["lm"] = attempts or FIRST_ATTEMPTS

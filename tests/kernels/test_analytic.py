@@ -15,7 +15,7 @@ from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import verify_many
-from tests.collision_robots import find_gaps, tell
+from tests.collision_robots import find_gaps
 from tests.conftest import random_q
 from tests.kernels.seeding import no_seeds, pack_seeds
 from tests.uncompiled import plain, plain_module, quietly, run_text
@@ -54,7 +54,7 @@ def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None,
     packed, arrays = pack_detector(robot, detector), pack_robot(robot)
     tables = (arrays, packed._replace(safe_distance=packed.safe_distance + 1e-12))
     safe_distance_m = detector.safe_distance_m if detector else 0.0
-    tables = tables if module is PLAIN else (0, tell(safe_distance_m + 1e-12))
+    tables = tables if module is PLAIN else (0, safe_distance_m + 1e-12)
     outputs = SimpleNamespace(
         q=np.zeros((count, len(robot.joints))),
         score=np.full((count, 2), np.inf),

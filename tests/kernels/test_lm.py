@@ -14,13 +14,13 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHE
 from ikde.kernels.blocks import flatten_question
 from ikde.kernels.tables import LANES
 from ikde.model.generate.assemble import format_module
-from ikde.model.generate.module import KINDS, load_module
+from ikde.model.generate.module import load_module
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.reach import arm_length_m
-from ikde.model.target import Target, Targets
+from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import verify_many
-from tests.collision_robots import RANDOM, find_gaps, tell
+from tests.collision_robots import RANDOM, find_gaps
 from tests.conftest import random_q
 from tests.kernels.seeding import no_seeds, pack_seeds
 from tests.uncompiled import plain_module, quietly, run_text
@@ -264,28 +264,28 @@ def test_compiled_kernels_of_a_large_robot_give_the_same_bits(kind):
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 def test_the_pool_is_free_and_the_same_for_everybody(robot):
-    module, told = generated(robot, "position"), tell(robot.detector(None).safe_distance_m + 1e-12)
+    module, told = generated(robot, "position"), robot.detector(None).safe_distance_m + 1e-12
     pools = [np.full((40, len(robot.joints)), np.nan) for _ in range(2)]
     with quietly():
         found = [module.fill_pool(0, told, robot.lower, robot.upper, pool) for pool in pools]
     assert found == [40, 40]
     assert pools[0].tobytes() == pools[1].tobytes()
     assert np.all((robot.lower <= pools[0]) & (pools[0] <= robot.upper))
-    assert (find_gaps(robot, robot.detector(None), pools[0]) > told.safe_distance).all()
+    assert (find_gaps(robot, robot.detector(None), pools[0]) > told).all()
 
 
 def test_a_pool_that_cannot_be_filled_says_how_far_it_came(qiao):
     module = generated(qiao, "position")
     out_q = np.full((2, 9), np.nan)
     with quietly():
-        assert module.fill_pool(0, tell(0.0999), qiao.lower, qiao.upper, out_q) <= 2
+        assert module.fill_pool(0, 0.0999, qiao.lower, qiao.upper, out_q) <= 2
         stuck = np.full(9, 0.0)
         stuck[:] = next(q for q in random_q(qiao, np.random.default_rng(2), 50) if collides(module, q))
-        assert module.fill_pool(0, tell(0.0), stuck, stuck, out_q) == 0
+        assert module.fill_pool(0, 0.0, stuck, stuck, out_q) == 0
 
 
 def collides(module, q):
-    return module.find_collision(0, tell(0.0), q, 0) >= 0
+    return module.find_collision(0, 0.0, q, 0) >= 0
 
 
 # ---- the rules of an attempt

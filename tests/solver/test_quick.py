@@ -49,7 +49,7 @@ def test_what_is_not_reached_goes_the_long_way(qiao):
 
 @pytest.mark.parametrize("settings", [SolveSettings(method="memetic"), SolveSettings(strategy="best/1")])
 def test_other_engines_have_no_quick_way(qiao, settings):
-    assert find_quick(qiao, settings, qiao.detector(None), "pose") is None
+    assert find_quick(qiao, settings, "auto", None, "pose") is None
 
 
 def test_a_fixed_arm_falls_back_on_its_closed_form():

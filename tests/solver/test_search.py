@@ -141,12 +141,6 @@ def test_attempts_and_evaluations_are_counted(problem):
     assert np.all(counts[:, EVALUATIONS] >= 3 * 8 * 5)
 
 
-def test_no_attempts_search_nothing(problem):
-    found = run(problem, attempts=0)
-    assert not found.q.any()
-    assert not found.counts.any()
-
-
 def test_later_attempts_are_other_attempts(problem):
     first, second = (run(problem, first_attempt=k, attempts=1) for k in (0, 1))
     assert first.q.tobytes() != second.q.tobytes()

@@ -17,8 +17,6 @@ from ikde.model.generate.proofs import proof_margin
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.robot import Detector, Robot
 
-KINDS = ("position", "axis", "pose")
-
 
 @lru_cache(maxsize=256)
 def load_module(robot: Robot, detector: Detector | None, kind: str) -> ModuleType:

@@ -4,10 +4,10 @@ import numpy as np
 
 from ikde.kernels.arrays import Ints
 from ikde.kernels.blocks import flatten_question
+from ikde.model.target import KINDS
 from ikde.solver.engines.engine import Question, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 
-KIND_NAMES = ("position", "axis", "pose")  # by `TargetArrays.kind`
 FEW = 4  # targets: so few are solved one after the other, more side by side
 
 
@@ -22,7 +22,7 @@ class DampedLeastSquares:
         self._question, problem = question, question.problem
         self._settings = make_ranges(problem), make_descent(problem)
         kinds = np.unique(question.targets.kind).tolist()
-        names = {kind: KIND_NAMES[kind] for kind in kinds}
+        names = {kind: KINDS[kind] for kind in kinds}
         self._kernels = {kind: load_kernels(problem.robot, problem.detector, names[kind]) for kind in kinds}
         self._seeds = {kind: make_seeds(problem, names[kind]) for kind in kinds}
 

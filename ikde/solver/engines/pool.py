@@ -123,7 +123,7 @@ def _sort(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) -> S
         scale[:, 0] = values.min(axis=1)
         scale[:, 1] = bins / np.maximum(values.max(axis=1) - scale[:, 0], ROUNDING)
         places = ((values.T - scale[:, 0]) * scale[:, 1]).astype(np.int64).clip(0, bins - 1)
-        cells = np.ravel_multi_index(tuple(places.T), tuple(bins))
+        cells = np.asarray(np.ravel_multi_index(tuple(places.T), tuple(bins)))
         kept = _keep_few(cells)
         q, T_world_tool = np.ascontiguousarray(q[kept]), np.ascontiguousarray(T_world_tool[:, kept])
         starts = np.searchsorted(cells[kept], np.arange(len(starts)))

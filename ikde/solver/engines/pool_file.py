@@ -3,6 +3,7 @@
 import io
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,16 +15,17 @@ def load_pool(path: Path) -> SeedArrays | None:
     """What `save_pool` wrote, or None if there is nothing whole."""
     try:
         with path.open("rb") as file, np.load(file) as arrays:
-            fields = {name: arrays[name] for name in SeedArrays._fields}
+            fields: dict[str, Any] = {name: arrays[name] for name in SeedArrays._fields}
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
         return None
-    for array in fields.values():
+    for name, array in fields.items():
         array.setflags(write=False)
-    return SeedArrays(**{name: array if array.ndim else float(array) for name, array in fields.items()})
+        fields[name] = array if array.ndim else float(array)
+    return SeedArrays(**fields)
 
 
 def save_pool(path: Path, seeds: SeedArrays) -> None:
     """Write a pool, whole or not at all."""
     content = io.BytesIO()
-    np.savez(content, **{name: np.asarray(field) for name, field in seeds._asdict().items()})
+    np.savez(content, allow_pickle=False, **{name: np.asarray(field) for name, field in seeds._asdict().items()})
     write_whole(path, content.getvalue())

@@ -15,10 +15,11 @@ import ikde
 from ikde.kernels import analytic, lm
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.generate import assemble, module
+from ikde.model.target import KINDS
 from tests.collision_robots import SHIPPED, name_case
 
 ROOT = Path(__file__).parents[3]
-each_kind = pytest.mark.parametrize("kind", module.KINDS)
+each_kind = pytest.mark.parametrize("kind", KINDS)
 OWN = ["make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes"]
 
 

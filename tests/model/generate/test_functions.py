@@ -21,7 +21,6 @@ from tests.collision_robots import (
     find_gaps,
     make_row,
     name_case,
-    tell,
     two_arms,
 )
 from tests.conftest import random_q
@@ -47,7 +46,7 @@ def make_checks(robot, detector, margin=MARGIN):
 
 def find_pairs(robot, detector, Q, safe_distance, margin=MARGIN):
     """The generated answer for each row of `Q`."""
-    find, told = make_checks(robot, detector, margin).find_collision, tell(safe_distance)
+    find, told = make_checks(robot, detector, margin).find_collision, safe_distance
     return np.array([find(0, told, q, 0) for q in Q.tolist()])
 
 
@@ -88,7 +87,7 @@ def test_lanes_judge_as_one_at_a_time(case, rng):
     robot, detector = case
     Q, free = random_q(robot, rng, LANES), np.zeros(LANES, dtype=bool)
     for safe_distance in (0.0, 0.02):
-        make_checks(robot, detector).judge_lanes(tell(safe_distance), Q.T.ravel().tolist(), free)
+        make_checks(robot, detector).judge_lanes(safe_distance, Q.T.ravel().tolist(), free)
         clear = away_from_contact(find_gaps(robot, detector, Q), safe_distance)
         found = find_pairs(robot, detector, Q, safe_distance)
         np.testing.assert_array_equal(free[clear], found[clear] < 0)
@@ -147,9 +146,9 @@ def test_reaches_that_almost_agree_are_kept_apart():
 def test_without_tests_nothing_collides(qiao):
     arrays = pack_robot(qiao)
     checks = run_text(format_find(arrays, [], qiao.lower, qiao.upper) + format_judge(arrays, []))
-    assert checks.find_collision(0, tell(0.1), qiao.home, 0) == -1
+    assert checks.find_collision(0, 0.1, qiao.home, 0) == -1
     free = np.zeros(LANES, dtype=bool)
-    checks.judge_lanes(tell(0.1), np.zeros(9 * LANES), free)
+    checks.judge_lanes(0.1, np.zeros(9 * LANES), free)
     assert free.all()
 
 

@@ -16,6 +16,7 @@ import ikde
 from ikde.kernels import jit
 from ikde.model.generate import assemble, module
 from ikde.model.robot import Detector
+from ikde.model.target import KINDS
 from tests.collision_robots import find_gaps
 from tests.random_robots import make_frame, make_robot, random_robot
 
@@ -76,7 +77,7 @@ def variants(robot):
 
 @pytest.mark.parametrize("robot", [ikde.load_robot("qiao2021"), random_robot(3)], ids=lambda robot: robot.name)
 def test_what_differs_has_a_name_of_its_own(robot):
-    names = [module.module_name(*case, kind) for case in variants(robot) for kind in module.KINDS]
+    names = [module.module_name(*case, kind) for case in variants(robot) for kind in KINDS]
     assert len(set(names)) == len(names)
     assert all(name.isidentifier() for name in names)
 
