@@ -35,6 +35,7 @@ from ikde.kernels.blocks import flatten_question
 from ikde.kernels.clearance import judge_centres
 from ikde.model.generate import assemble as generator
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.solver.engines import pool
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import NO_BASE, make_seeds
 from ikde.solver.problem import ROUNDING, make_problem
@@ -116,12 +117,41 @@ def list_variants() -> list[Variant]:
         Variant("all ideas"),
         Variant("tables instead of generated code", seeds="tables"),
         Variant("every test: nothing implied or proved", every_test=True),
-        Variant("seeds: the nearest of 64 tool poses, base not set", seeds="pool"),
+        Variant("seeds: from around the tool pose, base not set", seeds="pool"),
+        Variant("seeds: drawn evenly, not from every cell alike", seeds="even"),
         Variant("seeds: uniform", seeds="uniform"),
         Variant("limits by clipping, no active set", lambda text: FREE.sub(r"\1 = 1.0", text)),
         Variant("sine and cosine of libm", lambda text: text.replace(TRIG, LIBM)),
         Variant("fused multiply and add allowed", lambda text: text.replace(LEAF, FUSED)),
+        Variant("check in lanes in single precision", single_precision),
     ]
+
+
+def single_precision(text: str) -> str:
+    """`judge_lanes` of single-precision numbers, with a sine and cosine to match; the rest stays."""
+    begin = text.index("@leaf_kernel\ndef judge_lanes")
+    end = text.index("\n\n\n", begin)
+    names: dict[str, str] = {}
+    judge = NUMBER.sub(lambda found: names.setdefault(found[0], f"F{len(names)}"), SINGLE_TRIG + text[begin:end])
+    constants = "\n".join(f"{name} = np.float32({value})" for value, name in names.items())
+    judge = judge.replace("sin_cos(", "sin_cos_single(")
+    return f"{text[:begin]}{constants}\nONE, TWO = np.int32(1), np.int32(2)\n\n\n{judge}{text[end:]}"
+
+
+SINGLE_TRIG = """@inline_kernel
+def sin_cos(x):
+    k = np.rint(x * 0.6366197723675814)
+    r = ((x - k * 1.5703125) - k * 4.837512969970703e-04) - k * 7.549789948768648e-08
+    u = r * r
+    s = r + r * u * (-0.16666654611 + u * (8.3321608736e-03 - u * 1.9515295891e-04))
+    c = 1.0 - 0.5 * u + u * u * (4.166664568298827e-02 + u * (-1.388731625493765e-03 + u * 2.443315711809948e-05))
+    quadrant = np.int32(k)
+    if quadrant & ONE:
+        s, c = c, s
+    return s * np.float32(ONE - (quadrant & TWO)), c * np.float32(ONE - ((quadrant + ONE) & TWO))
+
+
+"""
 
 
 TRIG = "from ikde.kernels.trig import sin_cos\n"
@@ -182,21 +212,24 @@ def change_seeds(seeds: SeedArrays, how: str) -> SeedArrays:
         return seeds._replace(q=seeds.q[:0], T_world_tool=seeds.T_world_tool[:, :0].copy(), base=NO_BASE)
     if how == "pool":
         return draw_whole_pool(seeds)
-    return seeds
+    return draw_evenly(len(seeds.q)) if how == "even" else seeds
 
 
 def draw_whole_pool(seeds: SeedArrays) -> SeedArrays:
     """The same arms, the bases drawn from their ranges."""
-    from ikde.kernels.seeds import fill_poses
-
-    robot = ikde.load_robot("qiao2021")
-    rng = np.random.default_rng(0)
-    order = rng.permutation(len(seeds.q))
-    q = seeds.q[order].copy()
+    robot, rng = ikde.load_robot("qiao2021"), np.random.default_rng(0)
+    q = seeds.q.copy()
     q[:, seeds.base] = rng.uniform(robot.lower, robot.upper, q.shape)[:, seeds.base]
-    T = np.empty_like(seeds.T_world_tool)
-    fill_poses(pack_robot(robot), q, T)
-    return seeds._replace(q=q, T_world_tool=T, base=NO_BASE)
+    return pool.sort_pool(robot, "pose", q, NO_BASE, 1.0)
+
+
+def draw_evenly(count: int) -> SeedArrays:
+    """As many as are kept of each cell, but from the first that are free."""
+    robot = ikde.load_robot("qiao2021")
+    kept, pool.PER_CELL = pool.PER_CELL, count
+    seeds = pool.draw_pool(robot, robot.detector(None), "pose", robot.lower, robot.upper, count)
+    pool.PER_CELL = kept
+    return seeds
 
 
 def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: Variant) -> dict[str, Callable[[], Any]]:
@@ -268,13 +301,17 @@ def make_check_jobs(problem: Any, variant: Variant, first: tuple[Any, ...]) -> d
             for k in range(rows.shape[0]):
                 judge(detector, rows[k], free[k])
 
-        packed = np.ascontiguousarray(qs.reshape(-1, LANES, qs.shape[1]).transpose(0, 2, 1)).reshape(
-            len(qs) // LANES, -1
-        )
+        single = "ONE" in vars(variant.module)
+        real = np.float32 if single else np.float64
+        by_lane = qs.astype(real).reshape(-1, LANES, qs.shape[1]).transpose(0, 2, 1)
+        packed, told = np.ascontiguousarray(by_lane).reshape(len(qs) // LANES, -1), real(first[1])
         free = np.empty((len(packed), LANES), dtype=np.bool_)
-        jobs["check lanes ns"] = lambda: timed(lambda: loop_lanes(first[1], packed, free)) / len(qs)
-        loop_lanes(first[1], packed, free)
-        assert (free.ravel() == ~hits).all()
+        jobs["check lanes ns"] = lambda: timed(lambda: loop_lanes(told, packed, free)) / len(qs)
+        loop_lanes(told, packed, free)
+        wrong = float((free.ravel() == hits).mean())
+        assert wrong == 0.0 or single
+        if single:
+            jobs["wrong in single precision"] = lambda: wrong
     assert loop(*first, qs) == hits.sum()
     return jobs
 

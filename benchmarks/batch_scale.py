@@ -70,7 +70,7 @@ def time_bare_search(spec: dict[str, Any], threads: int | None) -> float:
     """Seconds a row of the search alone, without reading, grading and writing."""
     batch = load_batch(spec)
     problem, targets = batch.arms[0].problem, batch.source.read(0, min(SAMPLE, batch.source.count))
-    search(problem, targets[:1], seed=0, streams=[0], attempts=0)
+    search(problem, targets[:8], seed=0, streams=range(8))
     started = time.perf_counter()
     search(problem, targets, seed=1, streams=range(len(targets)), threads=threads)
     return (time.perf_counter() - started) / len(targets)

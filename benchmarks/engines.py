@@ -30,6 +30,7 @@ from ikde.kernels.blocks import flatten_question
 from ikde.model.pack import pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
+from ikde.solver.figures import compute_figures
 from ikde.solver.problem import make_problem
 
 sys.path.insert(0, str(Path(__file__).parent / "peers"))
@@ -87,6 +88,7 @@ def measure(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) ->
         record[name] = {"reached": int(rows.reached.sum()), "bulk_us": time_bulk(robot, targets, tight, rounds)}
     record["python_us"] = spread(time_python(robot, list(targets)[: min(len(targets), 3000)], rounds))
     record["kernel_us"] = spread(time_kernel(robot, targets, kind, rounds))
+    record["grader_us"] = time_grader(robot, targets, rows.q, rounds)
     return record
 
 
@@ -131,6 +133,16 @@ def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int
         for row in times:
             run(*tables, *pack_targets(targets), *block, np.uint64(SEED), pairs, row)
     return np.median(times, axis=0)
+
+
+def time_grader(robot: ikde.Robot, targets: ikde.Targets, q: np.ndarray, rounds: int) -> float:
+    """Microseconds a configuration that the grader takes in bulk; median of rounds."""
+    detector, settings, times = robot.detector(None), ikde.SolveSettings(), []
+    for _ in range(rounds):
+        began = time.perf_counter()
+        compute_figures(robot, detector, targets, q, settings)
+        times.append((time.perf_counter() - began) / len(q) * 1e6)
+    return float(np.median(times))
 
 
 def make_loop(solve_target: Any) -> Callable[..., None]:

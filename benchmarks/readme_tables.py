@@ -20,7 +20,9 @@ def load(name: str) -> dict[str, Any]:
 
 def format_machine(machine: dict[str, Any]) -> str:
     """One line about what the figures were taken on."""
-    return f"{machine['cpu']}, one core, Python {machine['python']}, numba {machine['numba']}"
+    clock = machine.get("empty_array_us")
+    speed = f"; at that moment it took {clock:.2f} µs to make an empty array (0.1 where nothing slows it down)"
+    return f"{machine['cpu']}, one core, Python {machine['python']}, numba {machine['numba']}{speed if clock else ''}"
 
 
 def format_search(record: dict[str, Any]) -> str:
@@ -96,7 +98,8 @@ def format_engines(record: dict[str, Any]) -> str:
         "`ikde.solve` and `ikde.solve_many` with default settings (1e-5 m, 1e-4 rad unless said otherwise), every "
         "answer graded; microseconds a target on one core. *Kernel*: a clock in compiled code around each target of "
         "the engine `lm`; *Python*: `ikde.solve` in a loop, with its result object and grade; *bulk*: `solve_many`. "
-        "*Hard*: low targets of which at least nine answers in ten collide:",
+        "*Hard*: low targets of which at least nine answers in ten collide. Kernel and Python: for each target the "
+        f"median of {record['rounds']} rounds. Of *bulk*, the grader takes {record['sets'][0]['grader_us']:.2f} µs:",
         "",
         "| set | reached | at 1e-9 m, rad | kernel median / p95 / p99 / max | Python median / p95 / p99 / max | bulk | "
         "bulk at 1e-6 |",

@@ -43,8 +43,11 @@ def main() -> None:
             "ikde solve, the first on a machine": [run(program, SOLVE, cache)],
             "ikde --help": [],
             "ikde solve": [],
+            "import numba, of it": [],
         }
+        python = str(Path(program).resolve().parent / "python")
         for _ in range(ROUNDS):
+            times["import numba, of it"].append(run(python, ("-c", "import numba"), cache))
             times["ikde --help"].append(run(program, ("--help",), cache))
             times["ikde solve"].append(run(program, SOLVE, cache))
     table = Table("command", "wall s median / max", "process s median / max")

@@ -10,7 +10,7 @@ from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import SolveSettings
-from ikde.solver.solve import solve_many
+from ikde.solver.solve import solve, solve_many
 
 SEVERAL = 5  # targets: as many are solved side by side
 
@@ -41,13 +41,16 @@ def list_stages(robot: Robot, detector: str | Detector | None = None) -> list[St
     }
     lm, closed, memetic = (SolveSettings(method=m, restarts=1) for m in ("lm", "analytic", "memetic"))
     paper = SolveSettings.for_method("de").with_changes(restarts=1, generations=1)
-    asked = []
+    one, many = partial(solve, robot, detector=detector), partial(_solve_many, robot, detector)
+    stages = {}
     for kind, target in targets.items():
-        asked += [(f"lm, one {kind}", [target], lm), (f"lm, many of {kind}", [target] * SEVERAL, lm)]
+        stages[f"lm, one {kind}"] = partial(one, target, lm)
+        stages[f"lm, many of {kind}"] = partial(many, [target] * SEVERAL, lm)
     if find_ur_arm(robot) is not None:
-        asked.append(("analytic", [targets["pose"]], closed))
-    asked += [("memetic", [targets["position"]], memetic), ("de", [targets["position"]], paper)]
-    return [_stage(name, robot, several, settings, detector) for name, several, settings in asked]
+        stages["analytic"] = partial(many, [targets["pose"]], closed)
+    stages |= {"memetic": partial(many, [targets["position"]], memetic)}
+    stages |= {"de": partial(many, [targets["position"]], paper)}
+    return [Stage(name=name, run=run) for name, run in stages.items()]
 
 
 def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None = None) -> list[Compiled]:
@@ -62,9 +65,8 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
     return done
 
 
-def _stage(
-    name: str, robot: Robot, targets: list[Target], settings: SolveSettings, detector: str | Detector | None
-) -> Stage:
-    """A solve whose answer nobody is going to read: no search for reasons."""
-    options = {"detector": detector, "explain_failures": False}
-    return Stage(name=name, run=partial(solve_many, robot, targets, settings, **options))
+def _solve_many(
+    robot: Robot, detector: str | Detector | None, targets: list[Target], settings: SolveSettings
+) -> object:
+    """Solves whose answers nobody is going to read: no search for reasons."""
+    return solve_many(robot, targets, settings, detector=detector, explain_failures=False)

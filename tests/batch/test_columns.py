@@ -78,7 +78,8 @@ def test_each_grader_adds_its_columns(rows):
         seen = ikde.check(ROBOT, rows.q[k], "typical")
         assert row["typical_clearance_m"] == pytest.approx(seen.clearance_m, abs=1e-11)
         assert row["typical_collides"] == seen.collision
-        assert row["typical_closest_pair"] == f"{seen.pairs[0].a}-{seen.pairs[0].b}"
+        nearest = [pair for pair in seen.pairs if pair.clearance_m <= seen.pairs[0].clearance_m + 1e-11]  # may be two
+        assert row["typical_closest_pair"] in [f"{pair.a}-{pair.b}" for pair in nearest]
 
 
 def test_without_a_detector_there_is_no_clearance():

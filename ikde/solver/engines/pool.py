@@ -69,7 +69,7 @@ def _load_tables() -> SimpleNamespace:
 def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     """Where attempts start: about `near` if there is one, else from the pool of the problem's ranges."""
     if problem.near is not None:
-        return _sort(problem.robot, kind, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
+        return sort_pool(problem.robot, kind, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
     ranges = tuple(zip(problem.lower.tolist(), problem.upper.tolist(), strict=True))
     return _find_pool(problem.robot, problem.detector, kind, ranges)
 
@@ -82,11 +82,11 @@ def _find_pool(
     lower, upper = np.array(ranges).T.copy()
     whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
     if not whole or runs_on_tables():
-        return _draw_pool(robot, detector, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
+        return draw_pool(robot, detector, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
     path = CACHE_FOLDER / "robots" / f"{module_name(robot, detector, kind)}_{_own_digest()}.npz"
     seeds = load_pool(path)
     if seeds is None:
-        seeds = _draw_pool(robot, detector, kind, lower, upper, DRAWN)
+        seeds = draw_pool(robot, detector, kind, lower, upper, DRAWN)
         save_pool(path, seeds)
     return seeds
 
@@ -97,7 +97,7 @@ def _own_digest() -> str:
     return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:8]
 
 
-def _draw_pool(
+def draw_pool(
     robot: Robot, detector: Detector | None, kind: str, lower: Floats, upper: Floats, count: int
 ) -> SeedArrays:
     """Draw `count` free configurations; a tenth of a second for 2^16."""
@@ -109,10 +109,10 @@ def _draw_pool(
     q = np.empty((count, len(lower)))
     with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
         found = module.fill_pool(*tables, lower, upper, q)
-    return _sort(robot, kind, q[: found if found >= COMPARED else 0], base, 1.0)
+    return sort_pool(robot, kind, q[: found if found >= COMPARED else 0], base, 1.0)
 
 
-def _sort(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) -> SeedArrays:
+def sort_pool(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) -> SeedArrays:
     """Lay a grid over the tool poses of configurations [K, N], and keep a few of each of its cells."""
     T_world_tool = np.empty((12, len(q)))
     fill_poses(pack_robot(robot), q, T_world_tool)
