@@ -32,6 +32,7 @@ from ikde.solver.search import search
 RESULTS = Path(__file__).parent / "results" / "batch_scale.json"
 SAMPLE = 20_000  # lanes of the bare search
 GOALS = ("position", "pose")
+ROUNDS = 3  # interleaved; recorded is the run of the median time
 THREADS = {"1 thread": 1, "all threads": None}
 
 
@@ -118,11 +119,15 @@ def main() -> None:
     robot, target = ikde.load_robot("qiao2021"), ikde.Target((0.8, 0.5, 1.0))
     ikde.solve_many(robot, [target] * 8)  # kernels are compiled and cached
     ikde.solve_many(robot, [ikde.Target(target.p_world_tool, R_world_tool=np.eye(3))] * 8)
-    cells = [measure(goal, count, label) for goal in GOALS for count in (most // 2, most) for label in THREADS]
-    for one, several in zip(cells[::2], cells[1::2], strict=True):
-        assert one["digest"] == several["digest"], "the number of threads changed an answer"
-        several["times_one_thread"] = one["wall_s"] / several["wall_s"]
-        print(f"{several['run']}: {several['times_one_thread']:.2f} times one thread, the same bytes")
+    rounds = [[[measure(goal, most, label) for label in THREADS] for goal in GOALS] for _ in range(ROUNDS)]
+    cells = []
+    for turns in zip(*rounds, strict=True):
+        assert len({cell["digest"] for turn in turns for cell in turn}) == 1, "the number of threads changed an answer"
+        one, several = (sorted(cells, key=lambda cell: cell["wall_s"]) for cells in zip(*turns, strict=True))
+        gains = [turn[0]["wall_s"] / turn[1]["wall_s"] for turn in turns]
+        middle = several[ROUNDS // 2] | {"times_one_thread": float(np.median(gains)), "gains": gains}
+        print(f"{middle['run']}: {', '.join(f'{gain:.2f}' for gain in gains)} times one thread, the same bytes")
+        cells += [one[ROUNDS // 2], middle]
     print_table(cells)
     if most >= 1_000_000:
         RESULTS.write_text(json.dumps({"machine": describe(), "cells": cells}, indent=1))
