@@ -37,6 +37,7 @@ def flatten_grader(robot: RobotArrays, detector: DetectorArrays, terms: Terms) -
 def _flatten(*values: Floats | Ints | Indices | float) -> tuple[Floats, Ints]:
     """All numbers and all whole numbers, each in the order of the values; read-only."""
     arrays = [np.asarray(value) for value in values]
+    assert all(array.dtype.kind in "fiu" for array in arrays)
     numbers = np.concatenate([array.ravel() for array in arrays if array.dtype.kind == "f"])
     whole = np.concatenate([array.ravel().astype(np.int64) for array in arrays if array.dtype.kind in "iu"])
     for block in (numbers, whole):

@@ -32,7 +32,11 @@ def draw_seed(seeds, target, index, ranges, state, attempt, out_q):
         return
     drives = seeds.base[0] >= 0
     first, count = draw_window(seeds, target, index, state, attempt)
-    best = find_tilt(seeds, target, index, first, count) if drives else find_pose(seeds, target, index, first, count)
+    best = (
+        find_height_and_tilt(seeds, target, index, first, count)
+        if drives
+        else find_pose(seeds, target, index, first, count)
+    )
     for k in range(out_q.size):
         out_q[k] = seeds.q[best, k]
     if drives:
@@ -79,8 +83,8 @@ def draw_uniform(ranges, first_box, state, attempt, out_q):
 
 
 @inline_kernel
-def find_tilt(seeds, target, index, first, count):
-    """The one of `count` configurations from `first` on whose tool leans most like the target's."""
+def find_height_and_tilt(seeds, target, index, first, count):
+    """The one of `count` configurations from `first` on whose tool is nearest in height and lean to the target."""
     T, P, kind = target.T_world_tool[index], seeds.T_world_tool, target.kind[index]
     length = seeds.rotation_length * seeds.rotation_length
     best, smallest = first, np.inf

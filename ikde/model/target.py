@@ -63,7 +63,18 @@ class Target:
         """Direction asked of the tool's z axis [3]."""
         return self.T_world_tool[:, 2]
 
+    @classmethod
+    def packed(cls, kind: TargetKind, T_world_tool: Floats) -> Self:
+        """A target from a kind and a pose [3, 4] that are known to be right."""
+        target = cls.__new__(cls)
+        target._set(kind, T_world_tool)
+        return target
+
+    def __reduce__(self) -> tuple:
+        return Target.packed, (self.kind, self.T_world_tool)  # arrays that travel arrive writable
+
     def _set(self, kind: TargetKind, T_world_tool: Floats) -> None:
+        T_world_tool = np.ascontiguousarray(T_world_tool)  # kernels compile once more for any other layout
         T_world_tool.setflags(write=False)
         object.__setattr__(self, "kind", kind)
         object.__setattr__(self, "T_world_tool", T_world_tool)
@@ -116,7 +127,7 @@ class Targets:
     def packed(cls, kind: Ints, T_world_tool: Floats) -> Self:
         """Targets from arrays that are known to be right: kinds [T] and poses [T, 3, 4]. They become read-only."""
         targets = cls.__new__(cls)
-        targets._set(np.ascontiguousarray(kind), np.ascontiguousarray(T_world_tool))
+        targets._set(kind, T_world_tool)
         return targets
 
     @property
@@ -153,14 +164,13 @@ class Targets:
     def __getitem__(self, index: int | slice) -> "Target | Targets":
         if isinstance(index, slice):
             return Targets.packed(self.kind[index], self.T_world_tool[index])
-        T, target = self.T_world_tool[index], Target.__new__(Target)
-        target._set(KINDS[self.kind[index]], T.copy())
-        return target
+        return Target.packed(KINDS[self.kind[index]], self.T_world_tool[index].copy())
 
     def __reduce__(self) -> tuple:
         return Targets.packed, (self.kind, self.T_world_tool)  # arrays that travel arrive writable
 
     def _set(self, kind: Ints, T_world_tool: Floats) -> None:
+        kind, T_world_tool = np.ascontiguousarray(kind), np.ascontiguousarray(T_world_tool)
         kind.setflags(write=False)
         T_world_tool.setflags(write=False)
         object.__setattr__(self, "kind", kind)

@@ -36,7 +36,7 @@ class Quick:
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
         self._search, self._question = module.solve_target, (*tables, self._kind)
-        self._block, self._last = question, min(FEW["lm"], settings.budget("lm"))
+        self._block, self._last = question, min(FEW["lm"], int(settings.budget("lm")))
         self._grader = pack_grader(robot, detector, settings)
         self._joints, self._pairs = len(robot.joints), robot.pairs(detector)
         self._no_score = np.full(2, np.inf)

@@ -25,7 +25,7 @@ class StopReason(StrEnum):
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
     TIMED_OUT = "timed_out"
-    """The time was up (`SolveSettings.timeout_s`) before the attempts were spent."""
+    """The time was up (`SolveSettings.timeout_s`) and the target not reached."""
     UNVERIFIED = "unverified"
     """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
 

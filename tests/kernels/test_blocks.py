@@ -16,6 +16,7 @@ def assert_same(ours, theirs):
     for name, a, b in zip(ours._fields, ours, theirs, strict=True):
         assert np.shape(a) == np.shape(b), name
         assert np.array_equal(a, b), name
+        assert np.asarray(a).dtype == np.asarray(b).dtype, name
 
 
 @pytest.mark.parametrize("robot", ROBOTS[::3], ids=lambda robot: robot.name)

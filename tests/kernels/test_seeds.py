@@ -119,7 +119,7 @@ def test_the_cell_of_a_target_is_the_one_that_its_pose_lies_in(qiao, pool, rng):
 def test_height_and_tilt_chosen_are_the_nearest_of_those_compared(qiao, pool, kind, rng):
     for target in spread(qiao, rng, 15, kind):
         with quietly():
-            best = PLAIN.find_tilt(pool, pack_targets([target]), 0, 100, 50)
+            best = PLAIN.find_height_and_tilt(pool, pack_targets([target]), 0, 100, 50)
         T = pool.T_world_tool.reshape(3, 4, -1)[:, :, 100:150]
         compared = {"position": [], "axis": [2], "pose": [0, 1, 2]}[kind]
         tilt = np.sum((T[2, compared].T - target.R_world_tool[2, compared]) ** 2, axis=1)

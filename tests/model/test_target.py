@@ -1,5 +1,6 @@
 """Targets: what is accepted, what is made of it, and one line for what is not."""
 
+import copy
 import pickle
 
 import numpy as np
@@ -178,3 +179,15 @@ def test_bad_rows_are_refused_in_one_line_with_their_number(arguments, message):
         Targets(**arguments)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("again", [lambda target: pickle.loads(pickle.dumps(target)), copy.deepcopy, copy.copy])
+def test_poses_are_c_ordered_and_read_only_however_they_came(again):
+    """Numba compiles once more for any other layout."""
+    R = rotation_from_rpy([0.1, 0.2, 0.3])
+    one, many = Target([1.0, 2.0, 3.0], R_world_tool=R.T), Targets(np.ones((2, 3)), R_world_tool=np.stack([R, R]).mT)
+    for target in (one, again(one), many, again(many), many[0], many[:1]):
+        assert target.T_world_tool.flags.c_contiguous
+        assert not target.T_world_tool.flags.writeable
+    assert (again(one).T_world_tool == one.T_world_tool).all()
+    assert again(one).kind == one.kind

@@ -1,17 +1,28 @@
 """The quick way gives the bits of the long way, and leaves to it what it cannot answer."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 import ikde
 from ikde.solver.problem import make_problem
-from ikde.solver.quick import find_quick
+from ikde.solver.quick import Quick, find_quick
 from ikde.solver.rows import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
 from tests.solver.test_solve import KINDS, free_q, make_target
 
 AUTO = SolveSettings.for_method("auto")
+
+
+def solve_quick(robot, target, seed, stream):
+    """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
+    quick = Quick(robot, AUTO, robot.detector(None), target.kind)
+    quick.solve(target, seed, stream, None)
+    return quick.solve(target, seed, stream, None)
 
 
 def solve_long(robot, target, settings, seed, stream):
@@ -23,7 +34,7 @@ def solve_long(robot, target, settings, seed, stream):
 def test_quick_and_long_give_the_same_result(qiao, rng, kind):
     for stream in range(5):
         target = make_target(qiao, free_q(qiao, rng), kind)
-        quick, long = ikde.solve(qiao, target, seed=4, stream=stream), solve_long(qiao, target, AUTO, 4, stream)
+        quick, long = solve_quick(qiao, target, 4, stream), solve_long(qiao, target, AUTO, 4, stream)
         assert quick.q.tobytes() == long.q.tobytes()
         assert quick.verification == long.verification
         told = [vars(result) for result in (quick, long)]
@@ -34,7 +45,7 @@ def test_quick_and_long_give_the_same_result(qiao, rng, kind):
 
 
 def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
-    result = ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0)))
+    result = solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0)
     with pytest.raises(ValueError, match="read-only"):
         result.q[0] = 1.0
     with pytest.raises(AttributeError):
@@ -42,14 +53,44 @@ def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
 
 
 def test_what_is_not_reached_goes_the_long_way(qiao):
+    assert solve_quick(qiao, ikde.Target((0.0, 0.0, 9.0)), 0, 0) is None
     result = ikde.solve(qiao, ikde.Target((0.0, 0.0, 9.0)))
     assert (result.reached, result.stop_reason) == (False, "out_of_reach")
     assert result.hint
 
 
 @pytest.mark.parametrize("settings", [SolveSettings(method="memetic"), SolveSettings(strategy="best/1")])
-def test_other_engines_have_no_quick_way(qiao, settings):
+def test_other_engines_have_no_quick_way(qiao, settings, monkeypatch):
+    monkeypatch.setattr("ikde.solver.quick.runs_on_tables", lambda: False)
+    assert find_quick(qiao, SolveSettings(restarts=7), "auto", None, "pose") is not None
     assert find_quick(qiao, settings, "auto", None, "pose") is None
+
+
+WITH_WRITTEN_KERNELS = """
+import pickle
+import numpy as np
+import ikde
+robot = ikde.load_robot("qiao2021")
+target = ikde.Target((0.8, 0.5, 1.0), R_world_tool=np.diag([1.0, -1.0, -1.0]).T)
+results = [ikde.solve(robot, target, seed=3), ikde.solve(robot, pickle.loads(pickle.dumps(target)), seed=3)]
+rows = ikde.solve_many(robot, [target] * 8, seed=3)
+print([result.compile_seconds for result in results], rows.compile_seconds, results[1].solve_seconds < 1.0)
+print(results[0].q.tobytes().hex(), results[0].q.tobytes() == results[1].q.tobytes() == rows.q[0].tobytes())
+"""
+
+
+@pytest.mark.slow
+def test_written_kernels_and_their_pool_serve_the_next_process_with_the_same_bits(tmp_path):
+    kept = {name: value for name, value in os.environ.items() if name != "IKDE_KERNELS"}
+    command, own = [sys.executable, "-c", WITH_WRITTEN_KERNELS], {**kept, "IKDE_CACHE_DIR": str(tmp_path)}
+    first, second = (
+        subprocess.run(command, env=own, capture_output=True, text=True, check=True).stdout.splitlines()
+        for _ in range(2)
+    )
+    assert second[0] == "[0.0, 0.0] 0.0 True"
+    assert first[1] == second[1]
+    assert second[1].endswith("True")
+    assert len(list(tmp_path.rglob("*.npz"))) == 1
 
 
 def test_a_fixed_arm_falls_back_on_its_closed_form():

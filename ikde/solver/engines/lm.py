@@ -39,7 +39,7 @@ class DampedLeastSquares:
             attempts = asked.attempts(rows, first, stop, kind)
             settings = (*self._settings, self._seeds[kind])
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-                if len(rows) > FEW:
+                if len(asked.streams) > FEW:
                     where = (asked.targets, np.array([rows.start, rows.stop]))
                     which = (asked.seed, asked.streams, attempts)
                     module.solve_targets(robot, detector, *where, *settings, *which, *asked.outputs)

@@ -11,18 +11,18 @@ import numpy as np
 
 from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Floats, Ints, SeedArrays
 from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
-from ikde.kernels.seeds import COMPARED, fill_poses
+from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
 from ikde.model.generate.module import load_module, module_name
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import arm_length_m
 from ikde.model.robot import Detector, Robot
-from ikde.solver.engines.pool_file import load_pool, save_pool
+from ikde.solver.engines import pool_file
 from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem
 
-DRAWN, DRAWN_NARROW = 2**16, 2**14  # configurations: within the joint limits, within ranges of a problem's own
+DRAWN, DRAWN_NARROW = 2**16, 2**13  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
-Z, TILT_X, TILT_Y, TILT_Z = 11, 8, 9, 10  # entries of the transform [3, 4] that a base which turns cannot change
-X, Y, AXIS_X, AXIS_Y = 3, 7, 2, 6
+TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # entries of the transform [3, 4] that a base which turns cannot change, beside Z
+AXIS_X, AXIS_Y = 2, 6
 GRIDS_DRIVING = {  # entry, bins
     "position": ((Z, 64),),
     "axis": ((Z, 32), (TILT_Z, 16)),
@@ -36,6 +36,7 @@ GRIDS = {
 ROOMY_M = 2.0  # a base must have so much room in x and in y for it to be set freely
 SHORTEST_M = 1e-3
 NO_BASE = np.array([-1, -1, -1])
+NO_BASE.setflags(write=False)
 
 
 Kernels = tuple[Any, Any, Any]
@@ -83,18 +84,26 @@ def _find_pool(
     whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
     if not whole or runs_on_tables():
         return draw_pool(robot, detector, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
-    path = CACHE_FOLDER / "robots" / f"{module_name(robot, detector, kind)}_{_own_digest()}.npz"
-    seeds = load_pool(path)
+    path = CACHE_FOLDER / "robots" / f"{pool_name(robot, detector, kind)}.npz"
+    seeds = pool_file.load_pool(path)
     if seeds is None:
         seeds = draw_pool(robot, detector, kind, lower, upper, DRAWN)
-        save_pool(path, seeds)
+        pool_file.save_pool(path, seeds)
     return seeds
 
 
+def pool_name(robot: Robot, detector: Detector | None, kind: str) -> str:
+    """Name of the pool within the joint limits: unlike that of any pool with other contents."""
+    digest = hashlib.sha256(_own_source())
+    base, (_, _, told) = find_base(robot, robot.lower, robot.upper), load_kernels(robot, detector, kind)
+    digest.update(f"{told!r} {base.tolist()} {rotation_length_m(robot)!r}".encode())
+    return f"{module_name(robot, detector, kind)}_{digest.hexdigest()[:12]}"
+
+
 @lru_cache(maxsize=1)
-def _own_digest() -> str:
-    """Of this file: another one draws other pools."""
-    return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:8]
+def _own_source() -> bytes:
+    """The code that draws and stores pools: other code draws others."""
+    return Path(__file__).read_bytes() + Path(pool_file.__file__).read_bytes()
 
 
 def draw_pool(
@@ -127,7 +136,7 @@ def sort_pool(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) 
         kept = _keep_few(cells)
         q, T_world_tool = np.ascontiguousarray(q[kept]), np.ascontiguousarray(T_world_tool[:, kept])
         starts = np.searchsorted(cells[kept], np.arange(len(starts)))
-    for array in (q, T_world_tool, grid, scale, starts):
+    for array in (q, T_world_tool, base, grid, scale, starts):  # as loaded ones are: numba tells the two apart
         array.setflags(write=False)
     return SeedArrays(
         q=q,

@@ -2,6 +2,8 @@
 
 import io
 import zipfile
+import zlib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ def load_pool(path: Path) -> SeedArrays | None:
     try:
         with path.open("rb") as file, np.load(file) as arrays:
             fields: dict[str, Any] = {name: arrays[name] for name in SeedArrays._fields}
-    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
+    except (OSError, EOFError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error):
         return None
     for name, array in fields.items():
         array.setflags(write=False)
@@ -25,7 +27,8 @@ def load_pool(path: Path) -> SeedArrays | None:
 
 
 def save_pool(path: Path, seeds: SeedArrays) -> None:
-    """Write a pool, whole or not at all."""
+    """Write a pool, whole or not at all; not at all if the disk is full: it can be drawn again."""
     content = io.BytesIO()
     np.savez(content, allow_pickle=False, **{name: np.asarray(field) for name, field in seeds._asdict().items()})
-    write_whole(path, content.getvalue())
+    with suppress(OSError):
+        write_whole(path, content.getvalue())

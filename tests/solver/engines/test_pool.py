@@ -1,5 +1,7 @@
 """Seeds: free, the same for everybody, drawn where the joints may be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from ikde.kernels.seeds import find_cell
 from ikde.model.pack import pack_targets
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Targets
-from ikde.solver.engines.pool import DRAWN, PER_CELL, find_base, load_kernels, make_seeds, rotation_length_m
+from ikde.solver.engines.pool import DRAWN, PER_CELL, find_base, load_kernels, make_seeds, pool_name, rotation_length_m
 from ikde.solver.problem import make_problem
 
 
@@ -67,6 +69,13 @@ def test_a_base_is_one_that_drives_turns_has_room_and_carries_all(qiao):
 
 def test_a_radian_counts_as_a_part_of_the_arm(any_robot):
     assert 0.05 < rotation_length_m(any_robot) < 1.0
+
+
+def test_pools_of_other_detectors_have_other_names(qiao):
+    detector = qiao.detector(None)
+    wider = replace(detector, safe_distance_m=detector.safe_distance_m + 1e-3)
+    names = {pool_name(qiao, each, kind) for each in (None, detector, wider) for kind in KINDS}
+    assert len(names) == 9
 
 
 def test_tables_take_the_place_of_modules_if_asked(qiao, monkeypatch):

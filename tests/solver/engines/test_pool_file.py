@@ -1,10 +1,18 @@
 """The pool on disk: what was saved comes back bit for bit, and what is not whole is drawn again."""
 
+import numba
 import numpy as np
 import pytest
 
 from ikde.solver.engines.pool_file import load_pool, save_pool
 from tests.solver.engines.test_pool import pool
+
+
+def test_kernels_take_all_seeds_alike(qiao, tmp_path):
+    """Drawn, loaded, near something or frozen: one type, one compilation."""
+    save_pool(tmp_path / "pool.npz", pool(qiao))
+    every = [pool(qiao), load_pool(tmp_path / "pool.npz"), pool(qiao, near=qiao.home), pool(qiao, freeze={"q1": 0.1})]
+    assert len({numba.typeof(seeds) for seeds in every}) == 1
 
 
 def test_what_was_saved_comes_back(qiao, tmp_path):
@@ -24,6 +32,25 @@ def test_a_file_that_was_cut_is_none(qiao, tmp_path, share):
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
     assert load_pool(path) is None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_file_of_which_bytes_have_changed_is_whole_or_none(qiao, tmp_path, seed):
+    path, rng = tmp_path / "pool.npz", np.random.default_rng(seed)
+    save_pool(path, pool(qiao))
+    content = np.frombuffer(path.read_bytes(), dtype=np.uint8).copy()
+    content[rng.integers(-2000, 200, 3)] ^= 255  # headers at the beginning, directory at the end
+    path.write_bytes(content.tobytes())
+    loaded = load_pool(path)
+    assert loaded is None or loaded.q.tobytes() == pool(qiao).q.tobytes()
+
+
+def test_a_full_disk_is_no_error(qiao, tmp_path, monkeypatch):
+    def fail(path, content):
+        raise OSError("no space left")
+
+    monkeypatch.setattr("ikde.solver.engines.pool_file.write_whole", fail)
+    save_pool(tmp_path / "pool.npz", pool(qiao))
 
 
 def test_no_file_is_none(tmp_path):
