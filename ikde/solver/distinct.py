@@ -11,11 +11,13 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.seeds import LUCKY_ATTEMPTS
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
+from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.result import SolveResult
 from ikde.solver.rows import solve_rows
 from ikde.solver.settings import SolveSettings, check_seed, choose_settings
+from ikde.solver.solve import solve
 
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
 SAMPLES = 16  # solves for each solution that is wanted, to choose from
@@ -65,7 +67,8 @@ def solve_distinct(
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
     options = {"seed": check_seed(seed), "strict": True, "announce_compile": announce_compile}
-    first = solve_rows(problem, [target], **options).row(0)
+    told = {"seed": seed, "detector": detector, "near": near, "freeze": freeze, "announce_compile": announce_compile}
+    first = confirm(solve(robot, target, chosen, **told))
     if not first.reached or count == 1:
         return [first]
     look = _go_on if chosen.evolves or chosen.method == "memetic" else _sample

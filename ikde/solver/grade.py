@@ -17,7 +17,7 @@ from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, compute_figures
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, StopReason
+from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
 from ikde.solver.verify import Bools, verify_many
 
 Verify = Literal["all", "sample", "none"]
@@ -89,6 +89,16 @@ def grade(
         stop_reasons=_stop_reasons(problem, found, reached, explanations),
         explanations=explanations,
     )
+
+
+def confirm(result: SolveResult) -> SolveResult:
+    """The result itself; raises `VerificationError` if plain numpy does not see on its `q` what it says."""
+    plain, farthest = result.verification, max(1.0, float(np.abs(result.target.p_world_tool).max()))
+    names = ["position_error_m", "orientation_error_rad", *(["clearance_m"] if result.clearance_m is not None else [])]
+    gap = max(abs(getattr(result, name) - getattr(plain, name)) for name in names) / farthest
+    if not (gap <= AGREEMENT and (plain.accepted or not result.reached)):
+        raise VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {result.q.tolist()}")
+    return result
 
 
 def _choose(verify: Verify, streams: Ints) -> Bools:

@@ -10,6 +10,7 @@ from ikde.errors import VerificationError
 from ikde.kernels.arrays import COUNTS, REACHED
 from ikde.solver import grade as module
 from ikde.solver.figures import AGREEMENT
+from ikde.solver.grade import confirm
 from ikde.solver.search import Found
 from ikde.solver.verify import verify
 
@@ -79,3 +80,13 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
 def test_the_figures_are_of_exactly_the_returned_q(qiao):
     result = ikde.solve(qiao, TARGETS[0], QUICK)
     assert result.verification == verify(qiao, TARGETS[0], result.q, settings=QUICK)
+
+
+def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
+    result = ikde.solve(qiao, TARGETS[0], seed=7)
+    assert confirm(result) is result
+    for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
+        with pytest.raises(VerificationError, match="disagree by"):
+            confirm(replace(result, **{name: getattr(result, name) + 1e-9}))
+    with pytest.raises(VerificationError, match="disagree by"):
+        confirm(replace(result, q=result.q + 1e-3))
