@@ -43,9 +43,8 @@ def solve_parts(
 def _warm_up(batch: Batch, part: Part, announce_compile: Announce | None) -> None:
     """Solve a few targets of an arm: kernels are compiled or loaded once, and who waits for that is told."""
     task = make_task(batch, replace(part, last=min(part.last, part.first + SEVERAL)))
-    problem = task.arm.problem
-    once = replace(problem, settings=problem.settings.with_changes(restarts=1))
-    solve_task(replace(task, arm=replace(task.arm, problem=once), explain=False), 1, announce_compile)
+    once = replace(task.arm, problem=task.arm.problem.with_settings(restarts=1))
+    solve_task(replace(task, arm=once, explain=False), 1, announce_compile)
 
 
 def _solve_side_by_side(

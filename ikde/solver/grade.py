@@ -95,9 +95,9 @@ def confirm(result: SolveResult) -> SolveResult:
     """The result itself; raises `VerificationError` if plain numpy does not see on its `q` what it says."""
     plain, farthest = result.verification, max(1.0, float(np.abs(result.target.p_world_tool).max()))
     names = ["position_error_m", "orientation_error_rad", *(["clearance_m"] if result.clearance_m is not None else [])]
-    gap = max(abs(getattr(result, name) - getattr(plain, name)) for name in names) / farthest
+    gap = float(np.max([abs(getattr(result, name) - getattr(plain, name)) for name in names])) / farthest  # keeps NaN
     if not (gap <= AGREEMENT and (plain.accepted or not result.reached)):
-        raise VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {result.q.tolist()}")
+        raise _disagreement(gap, result.q)
     return result
 
 
@@ -112,7 +112,11 @@ def _refuse(gaps: Floats, Q: Floats) -> None:
     agree = gaps <= AGREEMENT
     if not agree.all():
         worst = int(np.argmin(agree))
-        raise VerificationError(f"kernels and verify disagree by {gaps[worst]:.3g} on q = {Q[worst].tolist()}")
+        raise _disagreement(gaps[worst], Q[worst])
+
+
+def _disagreement(gap: float, q: Floats) -> VerificationError:
+    return VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
 
 
 def _stop_reasons(problem: Problem, found: Found, reached: Bools, explanations: Mapping[int, Explanation]) -> Ints:
