@@ -7,11 +7,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ikde.batch.placed import placed
 from ikde.batch.plan import Batch
 from ikde.batch.resolve import make_batch
 from ikde.batch.spec import BatchSpec
 from ikde.errors import FileError, InputError
+from ikde.files.placed import placed
 from ikde.io.robots import is_file_name, load_robot
 from ikde.io.schema import Given, as_file_error
 from ikde.io.yaml_file import Document, read_yaml
