@@ -15,7 +15,7 @@ Orientation = Mapping[str, Floats]
 """Keyword of `Target` -> its value; empty for a position target."""
 
 
-def read_position(key: str, values: ArrayLike, units: UnitsEntry) -> Floats:
+def read_position(key: str | int, values: ArrayLike, units: UnitsEntry) -> Floats:
     """A point in m that a target can stand at."""
     try:
         return Target(np.array(values) * units.length_m).p_world_tool

@@ -117,9 +117,9 @@ def _condition(node: ast.expr) -> Condition:
 
 def _constant(value: float, node: ast.expr) -> Number:
     try:
-        number = np.float64(value)
+        number = np.array(value, dtype=float)
     except OverflowError:
-        number = np.float64(math.inf)
+        number = np.array(math.inf)
     if not np.isfinite(number):
         raise InputError(f"{_quote(ast.unparse(node))} is too large a number")
     return lambda at: number
@@ -129,9 +129,9 @@ def _name(name: str) -> Number:
     if name == "k":
         return lambda at: at.k
     if name == "N":
-        return lambda at: np.float64(at.N)
+        return lambda at: np.array(float(at.N))
     if name == "pi":
-        return lambda at: np.float64(math.pi)
+        return lambda at: np.array(math.pi)
     if name in NAMES:
         raise InputError(f"{name} is a function; expected {name}(...)")
     raise InputError(f"{_quote(name)} is not known{nearest(name, NAMES)}; {ALLOWED}")

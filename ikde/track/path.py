@@ -47,7 +47,7 @@ class ToolPath:
             message = f"expected 1 to {MOST_SAMPLES:,} samples after the start, got {len(targets) - 1}"
             raise InputError(message, ("p_world_tool",))
         p, R = targets.p_world_tool, targets.R_world_tool
-        middles = np.arange(len(p) - 1) + 0.5
+        middles = np.arange(0.5, len(p) - 1)
         p_half = 0.5 * (p[:-1] + p[1:]) if self.p_half is None else self.p_half
         R_half = self._between(R, middles) if self.R_half is None else self.R_half
         half = self._read("half", p_half, R_half)
@@ -93,7 +93,7 @@ class ToolPath:
     @property
     def times_s(self) -> Floats:
         """When each sample is due [K + 1], s."""
-        return np.arange(self.samples + 1) * self.dt_s
+        return np.arange(self.samples + 1.0) * self.dt_s
 
     def targets(self) -> Targets:
         """What is asked at the samples 0 .. K."""

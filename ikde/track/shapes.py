@@ -83,7 +83,7 @@ def _natural_bends(points: Floats, chords: Floats) -> Floats:
     for i in range(1, count - 1):
         matrix[i, i - 1 : i + 2] = chords[i - 1], 2.0 * (chords[i - 1] + chords[i]), chords[i]
         right[i] = 6.0 * (slopes[i] - slopes[i - 1])
-    return np.linalg.solve(matrix, right)
+    return np.linalg.solve(matrix, right).astype(float)
 
 
 def make_polyline(points: Floats) -> Curve:
