@@ -15,7 +15,7 @@ from ikde.model.robot import Detector, Robot
 from ikde.solver.joints import joints_outside
 from ikde.track.make_path import make_path
 from ikde.track.path import ToolPath
-from ikde.track.spec import Drive, TrackMethod, TrackSpec
+from ikde.track.spec import Drive, LimitsEntry, TrackMethod, TrackSpec
 
 KINDS = ("prismatic", "revolute")
 
@@ -24,11 +24,19 @@ KINDS = ("prismatic", "revolute")
 class AskedLimits:
     """Limits that a track file asks for; joints that it leaves out have none here and keep their defaults."""
 
+    ranges: bool = True
+    """Whether joints must stay in their ranges."""
     speed: Mapping[str, float] = field(default_factory=dict)
     """Joint -> m/s or rad/s; infinite where the file says null."""
     acceleration: Mapping[str, float] = field(default_factory=dict)
     """Joint -> m/s^2 or rad/s^2."""
     wheel_speed_rad_s: float | None = None
+    farthest_m: float | None = None
+    """Of the tool from the origin of the frame `center`."""
+    center: str | None = None
+    position_error_m: float | None = None
+    """Along each axis."""
+    orientation_error_rad: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -83,15 +91,35 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
 
 
 def _read_limits(spec: TrackSpec, robot: Robot) -> AskedLimits:
-    limits, wheels = spec.limits, spec.limits.wheel_speed
+    limits, units = spec.limits, spec.units
     with placed("limits"):
-        if wheels is not None and spec.drive == "omnidirectional":
+        if limits.wheel_speed is not None and spec.drive == "omnidirectional":
             raise InputError("an omnidirectional drive has no such wheels", ("wheel_speed",))
+        _check_center(limits, robot)
         return AskedLimits(
-            speed=_by_joint(robot, "speed", limits.speed, spec.units),
-            acceleration=_by_joint(robot, "acceleration", limits.acceleration, spec.units),
-            wheel_speed_rad_s=None if wheels is None else wheels * spec.units.angle_rad,
+            ranges=limits.ranges,
+            speed=_by_joint(robot, "speed", limits.speed, units),
+            acceleration=_by_joint(robot, "acceleration", limits.acceleration, units),
+            wheel_speed_rad_s=_scaled(limits.wheel_speed, units.angle_rad),
+            farthest_m=_scaled(limits.farthest, units.length_m),
+            center=limits.center,
+            position_error_m=_scaled(limits.position_error, units.length_m),
+            orientation_error_rad=_scaled(limits.orientation_error, units.angle_rad),
         )
+
+
+def _check_center(limits: LimitsEntry, robot: Robot) -> None:
+    """A distance and the frame that it is measured from go together."""
+    frames = [frame.name for frame in robot.frames]
+    if limits.center is not None and limits.center not in frames:
+        raise InputError(f"{robot.name} has no frame {limits.center!r}{nearest(limits.center, frames)}", ("center",))
+    if (limits.farthest is None) != (limits.center is None):
+        missing = "center" if limits.center is None else "farthest"
+        raise InputError("`farthest` and `center` go together: one of them is missing", (missing,))
+
+
+def _scaled(value: float | None, unit: float) -> float | None:
+    return None if value is None else value * unit
 
 
 def _by_joint(robot: Robot, key: str, given: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:

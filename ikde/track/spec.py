@@ -23,6 +23,7 @@ DRIVES: tuple[Drive, ...] = get_args(Drive)
 TRACK_METHODS: tuple[TrackMethod, ...] = get_args(TrackMethod)
 
 Positive = Annotated[Number, Field(gt=0.0)]
+NotNegative = Annotated[Number, Field(ge=0.0)]
 Share = Annotated[float, Field(strict=True, ge=0.0, le=1.0)]
 
 
@@ -152,14 +153,24 @@ Orientation = Annotated[
 
 
 class LimitsEntry(Entry):
-    """How fast the robot may move; what is left out stays as it is by default."""
+    """What the motion must keep; what is left out stays as it is by default."""
 
-    speed: dict[Name, Positive | None] = {}
-    """Joint, or `prismatic` or `revolute` for all others of that kind: units a second; null: no limit."""
+    ranges: bool = Field(default=True, strict=True)
+    """Whether joints must stay in their ranges."""
+    speed: dict[Name, NotNegative | None] = {}
+    """Joint, or `prismatic` or `revolute` for all others of that kind: units a second; 0: frozen, null: no limit."""
     acceleration: dict[Name, Positive | None] = {}
     """Likewise, units a second squared (default: no limits)."""
     wheel_speed: Positive | None = None
     """Of the wheels of a differential drive, angle a second (default: what the base's speeds imply)."""
+    farthest: Positive | None = None
+    """Of the tool from the frame `center`, at every sample (default: any distance)."""
+    center: Name | None = None
+    """The frame that `farthest` is measured from: the platform's centre."""
+    position_error: Positive | None = None
+    """Accepted error of the tool's position along each axis, at every sample."""
+    orientation_error: Positive | None = None
+    """Accepted error of its orientation, at every sample."""
 
 
 class TrackSpec(Entry):
@@ -184,7 +195,7 @@ class TrackSpec(Entry):
     method: TrackMethod = "continuation"
     """ikde's own, or one of the paper's two."""
     limits: LimitsEntry = LimitsEntry()
-    """How fast the robot may move."""
+    """What the motion must keep."""
     detector: DetectorChoice | None = None
     """What counts as self-collision: a name, `none`, or a detector of your own (default: the robot's)."""
     ranges: dict[Name, Interval] = {}

@@ -50,6 +50,14 @@ def test_limits_are_by_joint_and_a_joints_own_comes_first(qiao):
     assert limits.wheel_speed_rad_s == pytest.approx(2 * np.pi)
 
 
+def test_the_other_limits_are_in_metres_and_radians(qiao):
+    asked = {"ranges": False, "farthest": 1400, "center": "Oc", "position_error": 0.01, "orientation_error": 1}
+    limits = plan(qiao, limits={**asked, "speed": {"q1": 0}}).limits
+    assert (limits.ranges, limits.center, limits.speed) == (False, "Oc", {"q1": 0.0})
+    assert (limits.farthest_m, limits.position_error_m) == pytest.approx((1.4, 1e-5))
+    assert limits.orientation_error_rad == pytest.approx(np.pi / 180)
+
+
 def test_ranges_detector_and_start_are_those_of_the_file(qiao):
     made = plan(qiao, ranges={"d_x": [-1000, 1000]}, detector="none", start={"d_x": -500, "q2": 45}, method="typical")
     assert (made.robot.joints[0].lower, made.detector, made.method) == (-1.0, None, "typical")
@@ -68,6 +76,8 @@ def test_ranges_detector_and_start_are_those_of_the_file(qiao):
             {"limits": {"wheel_speed": 1}, "drive": "omnidirectional"},
             "limits.wheel_speed: an omnidirectional drive has",
         ),
+        ({"limits": {"farthest": 1}}, "limits.center: `farthest` and `center` go together"),
+        ({"limits": {"farthest": 1, "center": "O0"}}, "limits.center: qiao2021 has no frame 'O0'"),
         ({"start": {"q1": 175}}, "start.q1: 3.05433 is outside the range"),
         ({"start": {"elbow": 0}}, "start.elbow: qiao2021 has no joint 'elbow'"),
         ({"dt_s": 1e9}, "dt_s: expected a time above 0"),
