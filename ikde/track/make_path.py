@@ -111,7 +111,7 @@ def _along_curve(entry: CurveEntry, spec: TrackSpec) -> Way:
     segments = make_segments(entry, spec.units, spec.dt_s)
     samples = sum(segment.samples for segment in segments)
     if samples > MOST_SAMPLES:
-        raise InputError(f"expected up to {MOST_SAMPLES:,} samples in all, got {samples:,}", ("segments",))
+        raise InputError(f"expected up to {MOST_SAMPLES:,} samples in all", ("segments",))
     if spec.samples not in (None, samples):
         raise InputError(f"these take {samples} samples, not {spec.samples}: leave `samples` out", ("segments",))
     return Way(samples=samples, positions=partial(follow_segments, segments))

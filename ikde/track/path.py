@@ -12,7 +12,7 @@ from ikde.model.target import Targets
 from ikde.track.turning import PathOrientation, turn_between
 
 MOST_SAMPLES = 10**6
-LONGEST_STEP_S = 1e6
+SHORTEST_STEP_S, LONGEST_STEP_S = 1e-9, 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -40,8 +40,9 @@ class ToolPath:
     """[K, 3, 3]: how it should be turned there; by default on the shortest way."""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.dt_s <= LONGEST_STEP_S:
-            raise InputError(f"expected a time above 0 and up to {LONGEST_STEP_S:g} s, got {self.dt_s}", ("dt_s",))
+        if not SHORTEST_STEP_S <= self.dt_s <= LONGEST_STEP_S:
+            message = f"expected {SHORTEST_STEP_S:g} to {LONGEST_STEP_S:g} s, got {self.dt_s}"
+            raise InputError(message, ("dt_s",))
         targets = self._read("", self.p_world_tool, self.R_world_tool)
         if not 2 <= len(targets) <= MOST_SAMPLES + 1:
             message = f"expected 1 to {MOST_SAMPLES:,} samples after the start, got {len(targets) - 1}"

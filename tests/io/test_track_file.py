@@ -1,10 +1,13 @@
 """Track files: the shipped ones are the paper's tasks, and what is wrong is said with file, line and key."""
 
+import copy
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from ikde.errors import FileError, InputError
 from ikde.io.track_file import load_track
@@ -121,3 +124,53 @@ def test_what_is_wrong_is_one_line_with_its_place(tmp_path, old, new, place, wor
 def test_what_is_neither_path_nor_mapping_is_refused(bad):
     with pytest.raises(InputError, match="expected the path of a track file or a mapping"):
         load_track(bad)
+
+
+FULL = {
+    "robot": "qiao2021",
+    "units": {"length": "mm", "angle": "deg"},
+    "dt_s": 0.1,
+    "path": {
+        "curve": {
+            "from": [800, 0, 900],
+            "segments": [
+                {"duration_s": 1, "pace": "smooth", "line": {"to": [800, 100, 900]}},
+                {"duration_s": 1, "arc": {"center": [800, 0, 900], "normal": [0, 0, 1], "angle": 90}},
+                {"duration_s": 1, "arc_through": {"via": [700, 50, 900], "to": [800, 100, 900]}},
+                {"duration_s": 1, "spline": {"through": [[800, 0, 900], [800, 0, 1000]]}},
+            ],
+        }
+    },
+    "orientation": {"keyframes": [{"at": 0, "rpy": [0, 0, 0]}, {"at": 1, "quat_wxyz": [1, 0, 0, 1]}]},
+    "limits": {"speed": {"q1": 90}, "farthest": 1400, "center": "Oc"},
+    "detector": "improved",
+    "ranges": {"d_x": [-1000, 1000]},
+    "start": {"q1": 0},
+}
+
+
+def places(data, where=()):
+    """Paths of every value in nested data."""
+    children = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, child in children:
+        yield (*where, key)
+        yield from places(child, (*where, key))
+
+
+scalars = st.none() | st.booleans() | st.integers(-(10**30), 10**30) | st.floats() | st.text(max_size=8)
+anything = scalars | st.lists(scalars, max_size=4) | st.dictionaries(st.text(max_size=5), scalars, max_size=2)
+
+
+@settings(derandomize=True, deadline=None, max_examples=300)
+@given(whole=st.sampled_from([FULL, yaml.safe_load(GOOD)]), data=st.data(), value=anything)
+def test_nothing_that_is_written_ends_in_a_traceback(whole, data, value):
+    changed = copy.deepcopy(whole)
+    *path, last = data.draw(st.sampled_from(list(places(whole))))
+    inner = changed
+    for key in path:
+        inner = inner[key]
+    inner[last] = value
+    try:
+        load_track(changed)
+    except InputError as error:
+        assert "\n" not in str(error)

@@ -113,7 +113,7 @@ def test_a_table_is_a_sample_a_row_or_is_filled_up(make, tmp_path, kind):
         ({"path": {"expressions": {"x": 1, "y": 1, "z": "1/k"}}}, "path.expressions.z: '1/k' is inf at k = 0"),
         ({"path": {"expressions": {"x": 1, "y": 1, "z": "1e10*k"}}}, "path: sample 1: expected finite numbers up to"),
         ({"path": CURVE, "samples": 11}, "path.curve.segments: these take 10 samples, not 11: leave `samples` out"),
-        ({"path": CURVE, "dt_s": 1e-7}, "path.curve.segments: expected up to 1,000,000 samples in all, got 10,000,000"),
+        ({"path": CURVE, "dt_s": 1e-300}, "path.curve.segments: expected up to 1,000,000 samples in all"),
         ({"path": CURVE, "dt_s": 0.3}, "path.curve.segments[0].duration_s: expected a whole number of samples"),
         ({"orientation": {}}, "orientation: expected one of axis, rpy, quat_wxyz, keyframes, got none"),
         ({"orientation": {"axis": [0, 0, "k"]}}, "orientation.axis: a length of 0 has no direction, at k = 0"),

@@ -80,7 +80,7 @@ def test_ranges_detector_and_start_are_those_of_the_file(qiao):
         ({"limits": {"farthest": 1, "center": "O0"}}, "limits.center: qiao2021 has no frame 'O0'"),
         ({"start": {"q1": 175}}, "start.q1: 3.05433 is outside the range"),
         ({"start": {"elbow": 0}}, "start.elbow: qiao2021 has no joint 'elbow'"),
-        ({"dt_s": 1e9}, "dt_s: expected a time above 0"),
+        ({"dt_s": 1e9}, "dt_s: expected 1e-09 to 1e+06 s"),
     ],
 )
 def test_what_does_not_fit_is_placed(qiao, keys, words):
