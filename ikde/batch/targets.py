@@ -8,9 +8,8 @@ import numpy as np
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.batch.recipe import array_digest, as_plain, digest
 from ikde.batch.sources import ListSource, TargetSource
-from ikde.batch.spec import BatchSpec, BoxEntry, GridEntry, ReachableEntry, SphereEntry, TargetsEntry
-from ikde.errors import InputError
-from ikde.files.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry
+from ikde.batch.spec import BatchSpec, BoxEntry, GridEntry, ReachableEntry, SphereEntry
+from ikde.files.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry, only_key
 from ikde.files.placed import placed
 from ikde.files.poses import read_orientation, read_position
 from ikde.files.table_targets import TableSource, read_targets
@@ -33,7 +32,7 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
         FileError: for what is wrong inside a table.
     """
     with placed("targets"):
-        key = _only_key(spec.targets)
+        key = only_key(spec.targets)
         entry, units = getattr(spec.targets, key), spec.units
         with placed(key):
             if isinstance(entry, FileEntry):
@@ -44,14 +43,6 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
                 return source, {key: _describe_reachable(source)}
             written = spec.targets.model_dump(by_alias=True, exclude_unset=True)
             return _make_listed(entry, units, spec.seed), {**written, "units": units.model_dump()}
-
-
-def _only_key(targets: TargetsEntry) -> str:
-    given = [key for key in type(targets).model_fields if getattr(targets, key) is not None]
-    if len(given) != 1:
-        known = ", ".join(type(targets).model_fields)
-        raise InputError(f"expected one of {known}, got {' and '.join(given) or 'none'}", tuple(given[1:2]))
-    return given[0]
 
 
 def _make_listed(

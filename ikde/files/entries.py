@@ -1,6 +1,7 @@
 """Entries that several kinds of files share: numbers, units, orientations, tables, detectors."""
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
@@ -121,3 +122,13 @@ class DetectorEntry(Entry):
 
 
 DetectorChoice = Annotated[Annotated[Name, AsText] | Annotated[DetectorEntry, AsEntry], TextOrEntry]
+
+
+def only_key(entry: Entry, keys: Sequence[str] = ()) -> str:
+    """The one of `keys` (of all keys, by default) that is given; raises `InputError` for none or several."""
+    known = keys or tuple(type(entry).model_fields)
+    given = [key for key in known if getattr(entry, key) is not None]
+    if len(given) != 1:
+        message = f"expected one of {', '.join(known)}, got {' and '.join(given) or 'none'}"
+        raise InputError(message, tuple(given[1:2]))
+    return given[0]

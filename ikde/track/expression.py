@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.errors import InputError, nearest
+from ikde.files.placed import placed
 from ikde.kernels.arrays import Floats
 
 LONGEST = 1000  # characters of a formula
@@ -79,6 +80,12 @@ def parse_expression(text: str | float) -> Expression:
         raise InputError(f"{_quote(text)} is no formula: {getattr(error, 'msg', error)}") from None
     except (RecursionError, MemoryError):
         raise InputError("nested too deeply") from None
+
+
+def evaluate_formula(key: str | int, formula: float | str, k: Floats, samples: int) -> Floats:
+    """Values [S] of the formula under `key` at samples `k` [S] of so many."""
+    with placed(key):
+        return parse_expression(formula).evaluate(k, samples)
 
 
 def _number(node: ast.expr) -> Number:

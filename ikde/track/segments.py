@@ -3,7 +3,7 @@
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.files.entries import UnitsEntry
+from ikde.files.entries import UnitsEntry, only_key
 from ikde.files.placed import placed
 from ikde.files.poses import read_position
 from ikde.kernels.arrays import Floats
@@ -36,12 +36,9 @@ def _count(duration_s: float, dt_s: float) -> int:
 
 
 def _make_curve(piece: SegmentEntry, place: Floats, units: UnitsEntry) -> Curve:
-    given = [shape for shape in SHAPES if getattr(piece, shape) is not None]
-    if len(given) != 1:
-        message = f"expected one of {', '.join(SHAPES)}, got {' and '.join(given) or 'none'}"
-        raise InputError(message, tuple(given[1:2]))
-    with placed(given[0]):
-        return _make_shape(getattr(piece, given[0]), place, units)
+    shape = only_key(piece, SHAPES)
+    with placed(shape):
+        return _make_shape(getattr(piece, shape), place, units)
 
 
 def _make_shape(shape: LineEntry | ArcEntry | ArcThroughEntry | SplineEntry, place: Floats, units: UnitsEntry) -> Curve:

@@ -86,10 +86,9 @@ def _natural_bends(points: Floats, chords: Floats) -> Floats:
     return np.linalg.solve(matrix, right).astype(float)
 
 
-def make_polyline(points: Floats) -> Curve:
-    """Straight lines through points [P, 3], each as long in time."""
-    places = np.arange(len(points))
-    return lambda share: np.stack([np.interp(share * places[-1], places, column) for column in points.T], axis=1)
+def follow_points(points: Floats, at: Floats) -> Floats:
+    """Positions [S, 3] on straight lines through points [P, 3], at places `at` [S]: 0 the first point, 1 the next."""
+    return np.stack([np.interp(at, np.arange(len(points)), column) for column in points.T], axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -10,11 +10,11 @@ from ikde.errors import InputError
 from ikde.track.shapes import (
     Segment,
     ease,
+    follow_points,
     follow_segments,
     make_arc,
     make_arc_through,
     make_line,
-    make_polyline,
     make_spline,
 )
 
@@ -55,8 +55,8 @@ def test_a_spline_is_the_natural_one_over_its_chords(seed, count):
     np.testing.assert_allclose(p, make_line(*points)(SHARE) if expected is None else expected, atol=1e-12)
 
 
-def test_points_in_a_row_take_equal_times():
-    p = make_polyline(np.array([ORIGIN, X, X + 10 * Y]))(np.array([0, 0.25, 0.5, 0.75, 1]))
+def test_between_points_in_a_row_there_are_straight_lines():
+    p = follow_points(np.array([ORIGIN, X, X + 10 * Y]), np.array([0, 0.5, 1, 1.5, 2]))
     np.testing.assert_allclose(p, [ORIGIN, X / 2, X, X + 5 * Y, X + 10 * Y])
 
 
