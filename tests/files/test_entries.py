@@ -27,5 +27,5 @@ def test_exactly_one_key_is_given():
     assert only_key(target, ("rpy", "axis")) == "rpy"
     with pytest.raises(InputError, match="expected one of axis, name, got none"):
         only_key(target, ("axis", "name"))
-    with pytest.raises(InputError, match="^rpy: expected one of position, rpy, got position and rpy"):
+    with pytest.raises(InputError, match=r"^rpy: expected one of position, rpy, got position and rpy"):
         only_key(target, ("position", "rpy"))
