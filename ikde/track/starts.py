@@ -1,0 +1,66 @@
+"""Where a motion may start: configurations that meet the first pose, free of collision and inside all limits."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+from ikde.solver.joints import joints_outside
+from ikde.solver.result import SolveResult
+from ikde.solver.settings import SolveSettings
+from ikde.solver.solve import solve, solve_many
+from ikde.solver.verify import verify
+from ikde.track.follow import Follower
+
+EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
+DRAWS = 16  # starts that the solver finds by itself, and as many near random configurations
+NEAR_RESTARTS = 8
+LARGEST_SHIFT = 0.05  # m or rad: how far a given start may stand from what meets the first pose
+
+Frozen = Mapping[str, float]
+
+
+def draw_starts(follower: Follower, frozen: Frozen, seed: int) -> tuple[Floats, SolveResult]:
+    """Starts [S, N], all different, and what the solver says about the first draw."""
+    robot, target = follower.robot, follower.path.targets()[0]
+    told = {"detector": follower.detector or "none", "freeze": frozen, "threads": 1}
+    rows = solve_many(robot, [target] * DRAWS, EXACT, seed=seed, **told)
+    if not rows.reached.any():
+        return np.empty((0, len(robot.joints))), rows[0]
+    found = [rows.q[rows.reached]]
+    rng = np.random.default_rng(seed)
+    quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")
+    for stream in range(DRAWS):
+        near = np.where(robot.slides, robot.home, rng.uniform(robot.lower, robot.upper))
+        row = solve_many(robot, [target], quick, seed=stream, near=near, explain_failures=False, **told)
+        found.append(row.q[row.reached])
+    q = np.concatenate(found)
+    _, first = np.unique(q.round(3), axis=0, return_index=True)
+    return q[np.sort(first)], rows[0]
+
+
+def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
+    """A given start [N], moved onto the first pose if it is near it.
+
+    Raises `InputError` if it is not, or is outside its limits, or collides.
+    """
+    robot, limits, target = follower.robot, follower.limits, follower.path.targets()[0]
+    outside = joints_outside(robot, q)
+    if limits.ranges and outside:
+        raise InputError(f"{', '.join(outside)} outside the limits", ("start",))
+    told = SolveSettings(
+        position_tolerance_m=limits.position_error_m, orientation_tolerance_rad=limits.orientation_error_rad
+    )
+    detector = follower.detector or "none"
+    grade = verify(robot, target, q, settings=told, detector=detector)
+    if grade.self_collision:
+        a, b = grade.colliding_pairs[0]
+        raise InputError(f"{a} and {b} collide", ("start",))
+    if grade.within_tolerance:
+        return q
+    settled = solve(robot, target, EXACT, method="lm", near=q, detector=detector, freeze=frozen)
+    if not settled.reached or np.abs(settled.q - q).max() > LARGEST_SHIFT:
+        far = f"{1e3 * grade.position_error_m:.3g} mm and {grade.orientation_error_rad:.3g} rad"
+        raise InputError(f"expected a configuration at the path's first pose, got one {far} away", ("start",))
+    return settled.q
