@@ -59,8 +59,8 @@ def fold_row(drive, q, step, row, out):
 def set_step_box(drive, ranges, q, last, first_step, out_lower, out_upper):
     """Bounds [D] of a step's shares: the largest step, the joint ranges, and the change from the `last` step [D].
 
-    Whoever may only brake so hard must begin in time: with steps that shrink by c, a step u needs u (u + c) / (2 c), and
-    up to c / 8 more, to come to rest. The first step of all may be any. False if a joint can't keep both.
+    Whoever may only brake so hard must begin in time: with steps that shrink by c, a step u needs u (u + c) / (2 c),
+    and up to c / 8 more, to come to rest. The first step of all may be any. False if a joint cannot keep both.
     """
     first, is_possible = last.size - drive.others.size, True
     for k in range(last.size):

@@ -82,6 +82,7 @@ def fence_pairs(robot, detector, drive, track, T_world_body, q, step, fences):
 @inline_kernel
 def fence_place(drive, track, q, q_end, step, count, fences):
     """Rows that keep a base with wheels inside the ranges of x and y; returns how many rows there are then."""
+    inside = INSIDE + 0.125 * drive.largest[0] * drive.largest[1]  # an arc bulges by its sagitta
     for k in range(2):
         coordinate = drive.base[k]
         for side in range(2):
@@ -94,7 +95,7 @@ def fence_place(drive, track, q, q_end, step, count, fences):
                 fences.row[i] = 0.0
             fences.row[coordinate] = 1.0 if side == 0 else -1.0
             fold_row(drive, q, step, fences.row, fences.slope[count])
-            fences.slack[count], fences.pair[count] = room - INSIDE, -1
+            fences.slack[count], fences.pair[count] = room - inside, -1
             count += 1
     return count
 

@@ -1,7 +1,7 @@
 """Along a path, sample by sample: the tool meets each target, and every step keeps the limits.
 
-A sample begins with the step before it, continued, and is refined by steps of Gauss and Newton until the tool is where it
-should be. The first of them heeds the wishes; the others change as little as they can.
+A sample begins with the step before it, continued, and is refined by steps of Gauss and Newton until the tool is where
+it should be. The first of them heeds the wishes; the others change as little as they can.
 """
 
 import math
@@ -118,11 +118,11 @@ def find_least(fences, count, pairs_only):
 
 @kernel
 def track_sample(robot, detector, drive, track, target, index, weights, q, last, first_step, work, out_q, out_step):
-    """Step from `q` [N] so that the tool meets a target: the end `out_q` [N], the step `out_step` [D], and how it ended.
+    """Step from `q` [N] so that the tool meets a target, to `out_q` [N] by `out_step` [D], and how that ended.
 
-    `last` [D] is the step before, `weights` [3 + D] what the null space is used for. Returns the status, the rounds, and
-    what the nearest pair keeps beyond the margin, m (inf: beyond the reach). Unless it is reached, the step is that of the
-    last round.
+    `last` [D] is the step before, `weights` [3 + D] what the null space is used for. Returns the status, the rounds,
+    and what the nearest pair keeps beyond the margin, m (inf: beyond the reach). Unless it is reached, the step is that
+    of the last round.
     """
     for k in range(out_step.size):
         out_step[k] = 0.0

@@ -62,7 +62,10 @@ def turned(jacobian, other, k, i):
 
 @kernel
 def wish_agile(drive, weights, jacobian, weighted, out_wish):
-    """Up the gradient of log det(I + J^T J) / 2 by the joints' steps: `jacobian` [6, D], `weighted` J (I + J^T J)^-1."""
+    """Up the gradient of log det(I + J^T J) / 2 by the joints' steps: `jacobian` [6, D], `weighted` J (I + J^T J)^-1.
+
+    The rows of `jacobian` are m and rad; those of `weighted` carry the scales of J twice.
+    """
     first = out_wish.size - drive.others.size
     for k in range(first, out_wish.size):
         slope = 0.0

@@ -1,8 +1,8 @@
 """Between samples: a lower bound on the clearance of the whole motion, and how far the tool leaves the path.
 
-Joints run linearly. Seen from a body that carries two components, only the joints between them move them, so the place of
-a base does not enter. If joint j turns by |dq_j|, no point of what it carries moves farther than |dq_j| times its largest
-distance from the axis; so the gap of two spheres at a share t of a segment is at least (gap(0) + gap(1) - travel) / 2,
+Joints run linearly. Seen from a body that carries two components, only the joints between them move them, so the place
+of a base does not enter. If joint j turns by |dq_j|, no point of what it carries moves farther than |dq_j| times its
+largest distance from the axis; so the gap of two spheres is nowhere in a segment below (gap(0) + gap(1) - travel) / 2,
 where travel is the sum over those joints. Segments whose bound is too weak are halved.
 """
 
@@ -92,7 +92,7 @@ def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> tuple[
 
 
 def travel_radii(robot: Robot, detector: Detector) -> Floats:
-    """By how much a joint can change each pair's gap [P, N]: m per rad of a turn, 1 for a slide, 0 if it moves neither."""
+    """By how much a joint can change each pair's gap [P, N]: m a rad of a turn, 1 for a slide, else 0."""
     tree = build_tree(robot)
     centres: dict[str, list[tuple[int, Floats]]] = {}
     for sphere in expand_rows(robot, tree, detector.spheres):
@@ -118,7 +118,7 @@ def _chain(tree: Tree, body: int) -> list[int]:
 
 
 def _farthest(robot: Robot, tree: Tree, chain: list[int], body: int, point: Floats) -> float:
-    """Largest distance from the axis of `body` that a point of the chain's first body can have, in any configuration."""
+    """Largest distance from the axis of `body` that a point of the chain's first body can ever have."""
     joint = tree.bodies[body].joint
     if joint is None or robot.joints[joint].kind == "prismatic":
         return 1.0
@@ -139,7 +139,7 @@ def _slide(robot: Robot, tree: Tree, body: int) -> float:
 
 
 def halfway(robot: Robot, q: Floats, drive: str, dt_s: float) -> Floats:
-    """Configurations [M, N] half-way between the rows of `q` [M + 1, N]: joints linear, a base with wheels on its arc."""
+    """Configurations [M, N] half-way between the rows of `q` [M + 1, N]; a base with wheels is on its arc."""
     middle = 0.5 * (q[:-1] + q[1:])
     base: Ints = find_wheels(robot, drive)
     if base[0] >= 0:

@@ -95,7 +95,7 @@ class Follower:
         return Course(q=q, steps=np.zeros((samples, self.size)), weights=rows, least=least, last=0, status=REACHED)
 
     def follow(self, course: Course, end: int | None = None) -> Course:
-        """Go on from the last sample to `end`, the path's own without one, or as far as it goes. Arrays are written to."""
+        """Go on from the last sample to `end`, by default the path's, or as far as it goes. Arrays are written to."""
         last = self.path.samples if end is None else end
         rounds = np.zeros(len(course.q), dtype=np.int64)
         reached, status = self._run(course, course.last, last, rounds)

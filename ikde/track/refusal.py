@@ -1,10 +1,8 @@
 """Why a course ends before its path does.
 
-Every limit is taken away in turn. The one without which the step is possible is what stands in the way, and that step tells
-by how much.
+Every limit is taken away in turn. The one without which the step is possible is what stands in the way, and that step
+tells by how much.
 """
-
-from dataclasses import replace
 
 import numpy as np
 
@@ -14,11 +12,12 @@ from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import reach_excess_m
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
-from ikde.track.drive import pack_drive, wheel_speeds
+from ikde.track.drive import wheel_speeds
 from ikde.track.follow import FARTHEST, Course, Follower
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
 PATIENT_ROUNDS = 100
+FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 OF_SOLVER = {
     StopReason.OUT_OF_REACH: TrackStopReason.OUT_OF_REACH,
     StopReason.SELF_COLLISION: TrackStopReason.SELF_COLLISION,
@@ -30,7 +29,7 @@ Finding = tuple[Floats, Floats]
 
 
 def first_out_of_reach(follower: Follower, lower: Floats, upper: Floats) -> tuple[int, float] | None:
-    """The first sample that is proved to be out of reach of the joint ranges [N], and by how many m; None if none is."""
+    """The first sample that is proved to be out of reach of the ranges [N], and by how many m; None if none is."""
     excess = reach_excess_m(follower.robot, follower.path.p_world_tool, lower, upper)
     beyond = np.flatnonzero(excess > follower.limits.position_error_m)
     return (int(beyond[0]), float(excess[beyond[0]])) if len(beyond) else None
@@ -45,8 +44,12 @@ def tell_out_of_reach(follower: Follower, sample: int, excess_m: float) -> Track
 def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackStop:
     """A stop at a pose that no configuration meets, in the solver's words."""
     pair = next(iter(result.blocking_pairs), None)
-    reason = OF_SOLVER.get(result.stop_reason, TrackStopReason.BUDGET)
-    return TrackStop(sample=sample, reason=reason, text=f"{_when(follower, sample)}: {result.reason}", pair=pair)
+    reason, text = OF_SOLVER.get(result.stop_reason), result.reason
+    if reason is None:
+        reason = TrackStopReason.OUT_OF_REACH
+        off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
+        text = f"no configuration was found that comes nearer than {off}"
+    return TrackStop(sample=sample, reason=reason, text=f"{_when(follower, sample)}: {text}", pair=pair)
 
 
 def explain_stop(follower: Follower, course: Course, static: SolveResult) -> TrackStop:
@@ -155,27 +158,20 @@ def _without_distance(follower: Follower, course: Course, sample: int) -> TrackS
 
 
 def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    unlimited = replace(follower.limits, speed=None, acceleration=None)
-    drive = pack_drive(follower.robot, _drive_name(follower), unlimited, follower.path.dt_s, follower.frozen)
+    """The least of some factors by which all speed limits would have to grow, and the joint that would use it up."""
     usual = follower.drive.largest
-    moves = usual > 0.0
-    largest = np.where(moves, np.maximum(drive.largest, usual), 0.0)
-    scale = np.divide(usual, largest, out=np.zeros_like(usual), where=moves)
-    found = _try(follower.with_drive(largest=largest, change=drive.change), course, sample, scale)
-    if found is None:
-        return None
-    excess = np.divide(np.abs(found[1]), scale, out=np.zeros_like(scale), where=moves)
-    worst = int(np.argmax(excess))
-    limit = usual[worst] / follower.path.dt_s
-    name = _entry_name(follower, worst)
-    unit = "m/s" if follower.robot.joints[_entry_joint(follower, worst)].kind == "prismatic" else "rad/s"
-    needed = f"{excess[worst] * limit:.4g} {unit}"
-    text = f"{_when(follower, sample)}: {name} would need {needed}, its limit is {limit:.4g} {unit}"
-    return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
-
-
-def _drive_name(follower: Follower) -> str:
-    return "differential" if follower.drive.base[0] >= 0 else "omnidirectional"
+    for factor in FACTORS:
+        faster = follower.with_drive(largest=factor * usual, change=np.full(follower.size, np.inf))
+        found = _try(faster, course, sample, 1.0 / factor)
+        if found is None:
+            continue
+        worst = int(np.argmax(np.abs(found[1])))
+        limit, name = usual[worst] / follower.path.dt_s, _entry_name(follower, worst)
+        unit = "m/s" if follower.robot.joints[_entry_joint(follower, worst)].kind == "prismatic" else "rad/s"
+        needed = f"{factor * abs(found[1][worst]) * limit:.4g} {unit}"
+        text = f"{_when(follower, sample)}: {name} would have to move at {needed}, its limit is {limit:.4g} {unit}"
+        return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
+    return None
 
 
 def _entry_joint(follower: Follower, entry: int) -> int:

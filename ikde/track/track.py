@@ -37,7 +37,7 @@ def track(
     Args:
         robot: the robot.
         path: poses of the tool, a sample every `path.dt_s`.
-        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself (also without a base).
+        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself, with no base, too.
         method: how.
         limits: None for those of the paper (`MotionLimits.of`).
         start: the configuration at the first pose [N], or by name; None to choose the best that is found.
@@ -96,7 +96,7 @@ def base_joints(robot: Robot) -> tuple[str, ...]:
 
 
 def base_speeds(robot: Robot, speeds: Floats) -> tuple[Floats, Floats]:
-    """Speeds of a base along x and y [M, 2] in m/s and of its heading [M] in rad/s, out of those of all joints [M, N]."""
+    """Speeds of a base along x and y [M, 2] in m/s and of its heading [M] in rad/s, out of all joints' [M, N]."""
     base = find_base(robot, robot.lower, robot.upper)
     if base[0] < 0:
         return np.zeros((len(speeds), 2)), np.zeros(len(speeds))

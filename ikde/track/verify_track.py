@@ -1,8 +1,8 @@
 """The judge of a motion: plain numpy, straight from the path and the joint values; it shares nothing with the search.
 
 Everything is computed again from `q` alone: the base's twist from its places, speeds from differences. Between samples
-joints run linearly and a base with wheels along its arc, so speeds are constant there and joint values lie between those of
-the samples; how far the base's arc leaves the chord is added to what its ranges must hold.
+joints run linearly and a base with wheels along its arc, so speeds are constant there and joint values lie between
+those of the samples; how far the base's arc leaves the chord is added to what its ranges must hold.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.robot import Detector, Robot
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import Bools, compute_orientation_errors
@@ -147,7 +147,7 @@ def _count_above(values: Floats, limit: Floats | float | None) -> int:
     return 0 if limit is None else int((np.abs(values) > np.asarray(limit) * (1.0 + ROUNDING)).sum())
 
 
-def _leaves_range(robot: Robot, q: Floats, base: Floats, v: Floats, omega: Floats, dt_s: float) -> Bools:
+def _leaves_range(robot: Robot, q: Floats, base: Ints, v: Floats, omega: Floats, dt_s: float) -> Bools:
     """Which joint values [M + 1, N] are outside; x and y of an arc by its sagitta, |v omega| dt^2 / 8, earlier."""
     extra = np.zeros_like(q)
     if base[0] >= 0 and len(q) > 1:
