@@ -11,6 +11,7 @@ from ikde.kernels.jit import inline_kernel
 from ikde.kernels.trig import sin_cos
 
 SMALL = 1e-3  # rad: below it a series is exact to rounding
+ROUNDING = 1e-12  # of a share
 
 
 @inline_kernel
@@ -74,7 +75,7 @@ def set_step_box(drive, ranges, q, last, first_step, out_lower, out_upper):
             below = (q[coordinate] - ranges[0, coordinate]) / largest
             above = (ranges[1, coordinate] - q[coordinate]) / largest
             lower, upper = max(lower, -brake(below, drive.change[k])), min(upper, brake(above, drive.change[k]))
-        is_possible = is_possible and lower <= upper
+        is_possible = is_possible and lower <= upper + ROUNDING
         out_lower[k], out_upper[k] = min(lower, upper), upper
     return is_possible
 
