@@ -12,7 +12,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.kernels.fences import MOST_FENCES
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.nearest import Walls, find_nearest, make_walls
 
 SMALLEST_SLOPE = 1e-12  # a fence that no step moves
@@ -56,7 +56,7 @@ def measure_travel(jacobian, rows):
     return max(square / rows, 1e-24)
 
 
-@inline_kernel
+@leaf_kernel
 def factor(jacobian, rows, stiffness, matrix, inverse):
     """L of I + stiffness J^T J = L L^T over the first rows, into `matrix` [D, D], and its inverse."""
     size = matrix.shape[0]
@@ -156,7 +156,7 @@ def set_walls(fences, count, step, system):
     return at
 
 
-@kernel
+@leaf_kernel
 def solve_step(jacobian, error, rows, stiffness, wish, fences, count, system, step):
     """Improve `step` [D] in place; False if no step is behind all fences: the step is then inside the box alone.
 

@@ -12,7 +12,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.clearance import bounds_are_apart
 from ikde.kernels.clearing import add_chain, fill_contact, find_contact
 from ikde.kernels.drive import fold_row
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
 MOST_PAIRS = 8  # the nearest
@@ -56,7 +56,7 @@ def choose_place(fences, count, slack):
     return roomiest if slack < fences.slack[roomiest] else -1
 
 
-@kernel
+@leaf_kernel
 def fence_pairs(robot, detector, drive, track, T_world_body, q, step, fences):
     """Rows of the pairs nearer than the reach at the poses of the step's end; returns how many."""
     count = 0

@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.damped import solve_symmetric
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 
 VIOLATED = 1e-10  # of a wall with a unit normal
 PARALLEL = 1e-12  # share of a normal's square that the active walls leave of it
@@ -129,7 +129,7 @@ def add_wall(walls, used, new, y):
         used -= 1
 
 
-@kernel
+@leaf_kernel
 def find_nearest(walls, count, y):
     """Move `y` [D] to the nearest point behind the first `count` walls; False if there is none (`y` is then near)."""
     used = 0

@@ -15,7 +15,7 @@ from ikde.kernels.damped import compute_error, scale_rotation
 from ikde.kernels.drive import fold_row, set_step_box, take_drive_step
 from ikde.kernels.fences import Fences, fence, fence_pairs, make_fences
 from ikde.kernels.frames import compute_bodies, compute_jacobian, compute_tool
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.pose_error import POSITION
 from ikde.kernels.wishes import AGILE, limit_wish, start_wish, wish_agile, wish_apart, wish_middle
 
@@ -58,14 +58,14 @@ def make_sample(robot, detector, joints, size):
     )
 
 
-@inline_kernel
+@leaf_kernel
 def pose(robot, q, work):
     """Poses of bodies and tool at `q` [N]."""
     compute_bodies(robot, q, work.T_world_body)
     compute_tool(robot, work.T_world_body, work.T_world_tool)
 
 
-@inline_kernel
+@leaf_kernel
 def fill_step_jacobian(robot, drive, track, target, index, q, step, work):
     """The tool's Jacobian by the step [6, D], at the poses of its end, scaled; returns how many rows count."""
     compute_jacobian(robot, work.T_world_body, work.T_world_tool, work.joint_jacobian)
@@ -76,7 +76,7 @@ def fill_step_jacobian(robot, drive, track, target, index, q, step, work):
     return rows
 
 
-@inline_kernel
+@leaf_kernel
 def make_agile(robot, drive, track, target, index, weights, q, still, work):
     """Add the wish for a more agile arm at `q` [N], whose poses are known."""
     compute_jacobian(robot, work.T_world_body, work.T_world_tool, work.joint_jacobian)
@@ -93,7 +93,7 @@ def make_agile(robot, drive, track, target, index, weights, q, still, work):
     wish_agile(drive, weights, work.raw, work.weighted, work.wish)
 
 
-@inline_kernel
+@leaf_kernel
 def set_wish(robot, detector, drive, track, target, index, weights, q, still, work):
     """What the null space is used for in the step from `q` [N]; `still` [D] is zero."""
     pose(robot, q, work)
@@ -116,7 +116,7 @@ def find_least(fences, count, pairs_only):
     return least
 
 
-@kernel
+@leaf_kernel
 def track_sample(robot, detector, drive, track, target, index, weights, q, last, first_step, work, out_q, out_step):
     """Step from `q` [N] so that the tool meets a target, to `out_q` [N] by `out_step` [D], and how that ended.
 
@@ -157,7 +157,7 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
     return REACHED if is_near else STUCK, track.most_rounds, least
 
 
-@kernel
+@leaf_kernel
 def track_span(robot, detector, drive, track, target, first, last, weights, q, steps, work, out_rounds, out_least):
     """Samples first + 1 .. last, into `q` [K + 1, N] and `steps` [K + 1, D]; `weights` [K + 1, 3 + D].
 

@@ -7,7 +7,7 @@ agile arm, and a drift that a search may ask for. How much of each is one row of
 import math
 
 from ikde.kernels.arrays import CLEARANCE, DRIFT, LIMITS, MANIPULABILITY
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel, leaf_kernel
 
 LARGEST_WISH = 0.7
 FREE_SHARE = 0.5  # of half a range, about its middle, where the ends are not minded
@@ -60,7 +60,7 @@ def turned(jacobian, other, k, i):
     return total
 
 
-@kernel
+@leaf_kernel
 def wish_agile(drive, weights, jacobian, weighted, out_wish):
     """Up the gradient of log det(I + J^T J) / 2 by the joints' steps: `jacobian` [6, D], `weighted` J (I + J^T J)^-1.
 

@@ -5,9 +5,8 @@ import numpy as np
 from ikde.kernels.arrays import DRIFT, TrackArrays
 from ikde.kernels.tracking import make_sample
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
-from ikde.model.robot import Detector
-from ikde.solver.forward import forward
 from ikde.model.target import Targets
+from ikde.solver.forward import forward
 from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
 

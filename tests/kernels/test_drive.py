@@ -7,9 +7,7 @@ from ikde.kernels import drive as kernels
 from tests.kernels.driving import make_drive, make_track
 from tests.uncompiled import plain
 
-take_drive_step, fold_row, set_step_box = map(
-    plain, (kernels.take_drive_step, kernels.fold_row, kernels.set_step_box)
-)
+take_drive_step, fold_row, set_step_box = map(plain, (kernels.take_drive_step, kernels.fold_row, kernels.set_step_box))
 NAMES = ("differential", "omnidirectional")
 
 

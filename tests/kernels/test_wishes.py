@@ -25,7 +25,7 @@ def wish_of(stand, kind="position", **weights):
 
 
 def agility(stand, kind, q):
-    """log det(I + stiffness J^T J) / 2 at `q`, with the stiffness of where it stands."""
+    """Log det(I + stiffness J^T J) / 2 at `q`, with the stiffness of where it stands."""
     work = stand.work
     pose(stand.arrays, stand.q, work)
     fill = plain(tracking.fill_step_jacobian)
