@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from ikde.kernels.arrays import Floats
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
-from ikde.track.certify import Certificate, bound_segments, certify
+from ikde.track.certify import bound_segments
 from ikde.track.courses import choose_course
 from ikde.track.follow import FARTHEST, Course, Follower
 from ikde.track.refusal import explain_stop, first_out_of_reach, tell_out_of_reach, tell_static, tell_uncertified
@@ -106,8 +106,3 @@ def cut_at_doubt(found: Found) -> Found:
         return found
     course = replace(found.course, last=certain)
     return replace(found, course=course, stop=tell_uncertified(found.follower, certain + 1))
-
-
-def prove(found: Found, drive: str) -> Certificate:
-    """The certificate of a course."""
-    return certify(found.follower.robot, found.follower.path, found.q, drive=drive, detector=found.follower.detector)

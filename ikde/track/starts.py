@@ -16,6 +16,7 @@ from ikde.track.follow import Follower
 EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
 DRAWS = 16  # starts that the solver finds by itself, and as many near random configurations
 NEAR_RESTARTS = 8
+ROUNDING = 1e-12  # m or rad
 LARGEST_SHIFT = 0.05  # m or rad: how far a given start may stand from what meets the first pose
 
 Frozen = Mapping[str, float]
@@ -49,6 +50,9 @@ def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
     outside = joints_outside(robot, q)
     if limits.ranges and outside:
         raise InputError(f"{', '.join(outside)} outside the limits", ("start",))
+    moved = [name for name, value in frozen.items() if abs(q[robot.joint_names.index(name)] - value) > ROUNDING]
+    if moved:
+        raise InputError(f"{', '.join(moved)} is not where it is frozen", ("start",))
     told = SolveSettings(
         position_tolerance_m=limits.position_error_m, orientation_tolerance_rad=limits.orientation_error_rad
     )

@@ -1,20 +1,24 @@
 """`track`: follow a path of the tool with the whole robot, or say where and why it ends."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
+from ikde.kernels.jit import compile_clock
 from ikde.model.robot import Detector, Robot
 from ikde.solver.engines.pool import find_base
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
-from ikde.track.continuation import Continuation, Found, prove
+from ikde.track.certify import certify
+from ikde.track.continuation import Continuation, Found
 from ikde.track.drive import DriveName
 from ikde.track.follow import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
-from ikde.track.trajectory import Trajectory
+from ikde.track.trajectory import TrackStop, Trajectory
 from ikde.track.verify_track import verify_track
 
 METHODS = ("continuation",)
@@ -31,6 +35,7 @@ def track(
     seed: int = 0,
     detector: str | Detector | None = None,
     freeze: Freeze | None = None,
+    announce_compile: Callable[[], None] | None = None,
 ) -> Trajectory:
     """Follow the path inside all limits, free of self-collision at the samples and between them.
 
@@ -44,6 +49,7 @@ def track(
         seed: same seed, same bits.
         detector: a name, a `Detector`, `"none"`, or None for the robot's default.
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
+        announce_compile: called once if kernels must be compiled first.
 
     Returns:
         The motion, as far as it goes: it never jumps. `stop` says where and why it ended before the path did.
@@ -61,14 +67,30 @@ def track(
     frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
     follower = make_follower(robot, path, drive=drive, limits=limits, detector=chosen, frozen=problem.frozen)
     search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), asked={})
-    found = search.find(start)
+    with compile_clock(announce_compile):
+        found = search.find(start)
     if isinstance(found, Found):
-        seconds = found.follower.follow_timed(found.course)
-        certified = prove(found, drive).clearance_m
-        q, stop = found.q, found.stop
+        q, stop, seconds = found.q, found.stop, found.follower.follow_timed(found.course)
     else:
-        q, stop, seconds, certified = np.empty((0, len(robot.joints))), found, np.empty(0), None
-    graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=chosen)
+        q, stop, seconds = np.empty((0, len(robot.joints))), found, np.empty(0)
+    return grade_motion(robot, path, q, stop, seconds, drive=drive, method=method, limits=limits, detector=chosen)
+
+
+def grade_motion(
+    robot: Robot,
+    path: ToolPath,
+    q: Floats,
+    stop: TrackStop | None,
+    seconds: Floats,
+    *,
+    drive: DriveName,
+    method: str,
+    limits: MotionLimits,
+    detector: Detector | None,
+) -> Trajectory:
+    """The motion through `q` [M + 1, N] with the figures that the judge and the certificate give it."""
+    graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
+    proof = certify(robot, path, q, drive=drive, detector=detector)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
         path=path,
@@ -85,8 +107,10 @@ def track(
         seconds=seconds,
         error_m=graded.error_m,
         orientation_error_rad=graded.orientation_error_rad,
-        clearance_m=graded.gaps_m.min(axis=1, initial=np.inf) if chosen else None,
-        certified_clearance_m=certified if chosen else None,
+        clearance_m=graded.gaps_m.min(axis=1, initial=np.inf) if detector else None,
+        certified_clearance_m=proof.clearance_m if detector and len(q) else None,
+        deviation_m=proof.deviation_m,
+        deviation_rad=proof.deviation_rad,
     )
 
 

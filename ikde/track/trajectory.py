@@ -83,6 +83,10 @@ class Trajectory:
     """[M + 1] smallest over the detector's pairs; None without a detector."""
     certified_clearance_m: float | None = None
     """What no pair falls below at any moment, samples or between; None if nothing was certified."""
+    deviation_m: Floats | None = None
+    """[M] distance of the tool from the path half-way between samples; None if it was not measured."""
+    deviation_rad: Floats | None = None
+    """[M] the same of its orientation, of what the path asks for."""
 
     @property
     def reached_points(self) -> int:
