@@ -8,7 +8,14 @@ from ikde.solver.solve import solve
 from ikde.track.certify import bound_segments
 from ikde.track.courses import choose_course
 from ikde.track.follow import FARTHEST, Course, Follower
-from ikde.track.refusal import explain_stop, first_out_of_reach, tell_out_of_reach, tell_static, tell_uncertified
+from ikde.track.refusal import (
+    explain_stop,
+    first_out_of_reach,
+    tell_out_of_reach,
+    tell_static,
+    tell_too_far,
+    tell_uncertified,
+)
 from ikde.track.starts import Frozen, draw_starts, settle_start
 from ikde.track.trajectory import TrackStop
 
@@ -50,7 +57,7 @@ class Continuation:
         if start is None:
             starts, first = draw_starts(self.follower, self.frozen, self.seed)
             if not len(starts):
-                return tell_static(self.follower, 0, first)
+                return tell_too_far(self.follower) if first.reached else tell_static(self.follower, 0, first)
         else:
             starts = settle_start(self.follower, start, self.frozen)[None]
         found = self._certified(starts, end)

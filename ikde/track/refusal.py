@@ -52,6 +52,17 @@ def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackSt
     return TrackStop(sample=sample, reason=reason, text=f"{_when(follower, sample)}: {text}", pair=pair)
 
 
+def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
+    """A stop at a pose that is met only with the platform's centre too far away."""
+    far = f"the tool would be farther than {follower.limits.farthest_m:.4g} m from {follower.limits.center}"
+    return TrackStop(
+        sample=sample,
+        reason=TrackStopReason.DISTANCE_LIMIT,
+        text=f"{_when(follower, sample)}: {far}",
+        limit=follower.limits.center,
+    )
+
+
 def explain_stop(follower: Follower, course: Course, static: SolveResult) -> TrackStop:
     """Why the sample after the course's last is not reached; `static` is what the solver says about it alone."""
     sample = course.last + 1
@@ -150,11 +161,9 @@ def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackSto
 
 
 def _without_distance(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    farthest = follower.drive.farthest
-    if np.isinf(farthest) or _try(follower.with_drive(farthest=np.inf), course, sample) is None:
+    if np.isinf(follower.drive.farthest) or _try(follower.with_drive(farthest=np.inf), course, sample) is None:
         return None
-    text = f"{_when(follower, sample)}: the tool would be farther than {farthest:.4g} m from {follower.limits.center}"
-    return TrackStop(sample=sample, reason=TrackStopReason.DISTANCE_LIMIT, text=text, limit=follower.limits.center)
+    return tell_too_far(follower, sample)
 
 
 def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop | None:

@@ -7,10 +7,11 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.solver.joints import joints_outside
+from ikde.solver.plain import compute_frames
 from ikde.solver.result import SolveResult
 from ikde.solver.settings import SolveSettings
 from ikde.solver.solve import solve, solve_many
-from ikde.solver.verify import verify
+from ikde.solver.verify import Bools, verify
 from ikde.track.follow import Follower
 
 EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
@@ -23,22 +24,35 @@ Frozen = Mapping[str, float]
 
 
 def draw_starts(follower: Follower, frozen: Frozen, seed: int) -> tuple[Floats, SolveResult]:
-    """Starts [S, N], all different, and what the solver says about the first draw."""
+    """Starts [S, N], all different and within (18), and what the solver says about the first pose."""
     robot, target = follower.robot, follower.path.targets()[0]
-    told = {"detector": follower.detector or "none", "freeze": frozen, "threads": 1}
+    told = {"detector": follower.detector or "none", "freeze": frozen}
+    first = solve(robot, target, EXACT, seed=seed, **told)
+    if not first.reached:
+        return np.empty((0, len(robot.joints))), first
+    told |= {"threads": 1, "explain_failures": False}
     rows = solve_many(robot, [target] * DRAWS, EXACT, seed=seed, **told)
-    if not rows.reached.any():
-        return np.empty((0, len(robot.joints))), rows[0]
     found = [rows.q[rows.reached]]
     rng = np.random.default_rng(seed)
     quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")
     for stream in range(DRAWS):
         near = np.where(robot.slides, robot.home, rng.uniform(robot.lower, robot.upper))
-        row = solve_many(robot, [target], quick, seed=stream, near=near, explain_failures=False, **told)
+        row = solve_many(robot, [target], quick, seed=stream, near=near, **told)
         found.append(row.q[row.reached])
     q = np.concatenate(found)
-    _, first = np.unique(q.round(3), axis=0, return_index=True)
-    return q[np.sort(first)], rows[0]
+    _, unlike = np.unique(q.round(3), axis=0, return_index=True)
+    q = q[np.sort(unlike)]
+    return q[is_near(follower, q)], first
+
+
+def is_near(follower: Follower, q: Floats) -> Bools:
+    """Whether the tool is near enough to the platform's centre (18) in each of `q` [S, N]."""
+    limits = follower.limits
+    if limits.farthest_m is None or limits.center is None:
+        return np.ones(len(q), dtype=bool)
+    frames = compute_frames(follower.robot, q)
+    apart = frames[follower.robot.tool][:, :3, 3] - frames[limits.center][:, :3, 3]
+    return np.linalg.norm(apart, axis=1) <= limits.farthest_m
 
 
 def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
@@ -61,6 +75,8 @@ def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
     if grade.self_collision:
         a, b = grade.colliding_pairs[0]
         raise InputError(f"{a} and {b} collide", ("start",))
+    if not is_near(follower, q[None])[0]:
+        raise InputError(f"the tool is farther than {limits.farthest_m:g} m from {limits.center}", ("start",))
     if grade.within_tolerance:
         return q
     settled = solve(robot, target, EXACT, method="lm", near=q, detector=detector, freeze=frozen)

@@ -31,6 +31,14 @@ def test_nothing_to_find_is_a_stop():
     assert (found.sample, found.reason) == (0, TrackStopReason.OUT_OF_REACH)
 
 
+def test_a_first_pose_too_far_from_the_platform_is_a_stop():
+    limits = MotionLimits.of(robot(), farthest_m=0.1, center="Oc")
+    told = {"drive": "differential", "detector": robot().detector(None)}
+    follower = make_follower(robot(), make_line([0.9, 0, 1.0], [0.9, 0, 1.1], 5), limits=limits, **told)
+    found = Continuation(follower=follower, frozen={}, seed=0, asked={}).find(None)
+    assert (found.sample, found.reason, found.limit) == (0, TrackStopReason.DISTANCE_LIMIT, "Oc")
+
+
 def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
     motion = follow_task("task1", "differential")
     looking = search(motion.path)

@@ -5,6 +5,7 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.model.target import Target
+from ikde.solver.forward import forward
 from ikde.solver.verify import verify
 from ikde.track.follow import make_follower
 from ikde.track.limits import MotionLimits
@@ -43,6 +44,20 @@ def test_frozen_joints_stand_where_they_must():
 def test_no_start_comes_with_the_reason():
     starts, first = draw_starts(make(make_line([0.9, 0, 4.0], [0.9, 0, 1.0], 5)), {}, 0)
     assert (starts.shape, str(first.stop_reason)) == ((0, 9), "out_of_reach")
+
+
+def test_starts_keep_the_tool_near_the_platform():
+    path = load_task("task1").path
+    limits = MotionLimits.of(robot(), farthest_m=0.9, center="Oc")
+    told = {"drive": "differential", "detector": robot().detector(None)}
+    near = make_follower(robot(), path, limits=limits, **told)
+    starts, _ = draw_starts(near, {}, 0)
+    every, _ = draw_starts(make(path), {}, 0)
+    frames = forward(robot(), every)
+    is_near = np.linalg.norm(frames["tool"][:, :3, 3] - frames["Oc"][:, :3, 3], axis=1) <= 0.9
+    np.testing.assert_array_equal(starts, every[is_near])
+    with pytest.raises(InputError, match=r"farther than 0\.9 m from Oc"):
+        settle_start(near, every[~is_near][0], {})
 
 
 def test_a_start_within_the_tolerance_stays_one_near_it_moves_a_little():
