@@ -36,7 +36,7 @@ def rows_at(stand, step):
 def test_pairs_are_the_nearest_with_their_gaps_and_slopes(qiao, rng, name):
     detector = qiao.detector(None)
     pairs = qiao.pairs(detector)
-    for _ in range(5):
+    for _ in range(2):
         stand = Stand(qiao, random_q(qiao, rng), name)
         stand.q[:2] = 0.0
         stand.track = stand.track._replace(reach=0.3)

@@ -84,8 +84,9 @@ def pass_through(orientation, turns, seed):
 
 
 @pytest.mark.parametrize("frozen", [True, False])
-@pytest.mark.parametrize("turns", [("q3",), ("q5",), ("q3", "q5")])
-@pytest.mark.parametrize("orientation", ["free", "axis", "pose"])
+@pytest.mark.parametrize(
+    ("orientation", "turns"), [("free", ("q3",)), ("axis", ("q5",)), ("pose", ("q3",)), ("pose", ("q3", "q5"))]
+)
 def test_singularities_are_passed(orientation, turns, frozen):
     path, q = pass_through(orientation, turns, seed=len(turns))
     freeze = dict(zip(BASE, q[0, :3], strict=True)) if frozen else None
@@ -201,7 +202,7 @@ def test_what_is_refused(given, where):
     assert caught.value.where == where
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(
     task=st.sampled_from(TASKS),
     drive=st.sampled_from(DRIVES),
