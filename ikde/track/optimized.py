@@ -52,7 +52,9 @@ class OptimizedSettings:
     arm_weight: float = 1.0
     """W2, of the square of each joint's, as in (17)."""
     position_weight: float = 10.0
-    """W3 per m of error: large enough that no motion saved is worth an error."""
+    """W3, per m of error: large enough that no motion saved is worth an error."""
+    orientation_weight: float = 3.0
+    """Per rad of error, which the print forgets: 0.3 m of W3 a radian, as far as the tool is from the wrist."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -118,7 +120,7 @@ def _cut(last: int, q: Floats, seconds: Floats, counts: Floats, stop: TrackStop 
 
 
 def pack_step_search(follower: Follower, settings: OptimizedSettings) -> StepSearchArrays:
-    """The settings for the kernel; errors of position and orientation, each at its tolerance, weigh the same."""
+    """The settings for the kernel."""
     robot, limits = follower.robot, follower.limits
     is_base = np.isin(np.arange(len(robot.joints)), find_base(robot, robot.lower, robot.upper))
     odd, even = (STRATEGIES.index(name) for name in settings.strategies)
@@ -132,7 +134,7 @@ def pack_step_search(follower: Follower, settings: OptimizedSettings) -> StepSea
         even=even,
         motion=np.where(is_base, settings.base_weight, settings.arm_weight),
         position_weight=settings.position_weight,
-        orientation_weight=settings.position_weight * limits.position_error_m / limits.orientation_error_rad,
+        orientation_weight=settings.orientation_weight,
         position_tolerance=WITHIN * limits.position_error_m,
         orientation_tolerance=WITHIN * limits.orientation_error_rad,
     )

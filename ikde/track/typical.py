@@ -38,6 +38,8 @@ class TypicalSettings:
     base_range_m: float = 0.3
     """How far x and y may be from those of the sample before. Not printed, and the paper's have no limits to draw them
     in. The tool moves some 4 mm a sample: 0.3 m hinders nothing."""
+    rotation_length_m: float = 0.3
+    """What a radian of error counts beside a metre, as in `OptimizedSettings`; both sink below the position's bound."""
 
 
 def follow_typical(
@@ -80,7 +82,7 @@ def pack_search(follower: Follower, settings: TypicalSettings) -> SearchArrays:
         first_box=1.0,
         start_share=1.0,
         position_tolerance=limits.position_error_m,
-        orientation_tolerance=limits.orientation_error_rad,
+        orientation_tolerance=min(limits.orientation_error_rad, limits.position_error_m / settings.rotation_length_m),
         population=settings.population,
         generations=settings.generations,
         strategy=STRATEGIES.index(settings.strategy),
