@@ -66,15 +66,11 @@ def main() -> None:
             print(json.dumps(runs[-1]))
         dead_ends.append({"task": task, **count_dead_ends(plan, path, starts)})
         print(json.dumps({key: value for key, value in dead_ends[-1].items() if key != "reached_points"}))
+        seconds = round(time.perf_counter() - began)
+        if not quick:
+            record = {"machine": describe(), "seconds": seconds, "runs": runs, "dead_ends": dead_ends}
+            RESULTS.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     show(runs, dead_ends)
-    if not quick:
-        record = {
-            "machine": describe(),
-            "seconds": round(time.perf_counter() - began),
-            "runs": runs,
-            "dead_ends": dead_ends,
-        }
-        RESULTS.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
 def shorten(path: ToolPath, samples: int) -> ToolPath:
