@@ -46,11 +46,13 @@ def follow_by(
                 return np.empty((0, len(follower.robot.joints))), found, np.empty(0)
             if method == "continuation":
                 return found.q, found.stop, found.follower.follow_timed(found.course)
-            start = found.q[0]
+            begin = found.q[0]
         else:
-            start = settle_start(follower, start, search.frozen)
-        if isinstance(settings, TypicalSettings) or method == "typical":
-            q, seconds = follow_typical(follower, start, search.seed, settings or TypicalSettings())
+            begin = settle_start(follower, start, search.frozen)
+        if method == "typical":
+            assert not isinstance(settings, OptimizedSettings)  # `check_method`
+            q, seconds = follow_typical(follower, begin, search.seed, settings)
             return q, None, seconds
-        evolved = follow_optimized(follower, start, search.seed, settings or OptimizedSettings())
+        assert not isinstance(settings, TypicalSettings)
+        evolved = follow_optimized(follower, begin, search.seed, settings)
         return evolved.q, evolved.stop, evolved.seconds

@@ -6,6 +6,7 @@ leaves out, see docs/track.md.
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -83,25 +84,17 @@ def follow_optimized(
     work = make_step_workspace(packed, detector, len(start), follower.size, settings.population)
     q, steps = np.zeros((samples + 1, len(start))), np.zeros((samples + 1, follower.size))
     seconds, counts = np.zeros(samples), np.zeros((samples, 2))
+    told = (packed, detector, follower.drive, follower.track, follower.target)
+
+    def evolve(k: int, search: StepSearchArrays) -> Any:
+        row = (np.uint64(seed), q[k - 1], steps[k - 1], k == 1, work, q[k], steps[k])
+        return evolve_sample(*told, k, search, *row)
+
     q[0] = start
+    evolve(1, search._replace(attempts=0))  # compiled before the clock runs
     for k in range(1, samples + 1):
         started = time.perf_counter()
-        verdict, pair, *counts[k - 1] = evolve_sample(
-            packed,
-            detector,
-            follower.drive,
-            follower.track,
-            follower.target,
-            k,
-            search,
-            np.uint64(seed),
-            q[k - 1],
-            steps[k - 1],
-            k == 1,
-            work,
-            q[k],
-            steps[k],
-        )
+        verdict, pair, *counts[k - 1] = evolve(k, search)
         seconds[k - 1] = time.perf_counter() - started
         if verdict != SOLVED:
             stop = tell_unsolved(follower, settings, k, verdict, pair, q[k], steps[k])

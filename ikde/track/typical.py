@@ -52,11 +52,16 @@ def follow_typical(
     search = pack_search(follower, settings)
     work = make_workspace(packed, detector, len(start), settings.population)
     q, seconds = np.empty((samples + 1, len(start))), np.empty(samples)
+
+    def evolve(k: int, search: SearchArrays) -> None:
+        box = bound_sample(follower, settings, q[k - 1])
+        evolve_alone(packed, detector, follower.target, k, search, *box, np.uint64(seed), work, q[k])
+
     q[0] = start
+    evolve(1, search._replace(generations=-1))  # compiled before the clock runs
     for k in range(1, samples + 1):
-        lower, upper = bound_sample(follower, settings, q[k - 1])
         started = time.perf_counter()
-        evolve_alone(packed, detector, follower.target, k, search, lower, upper, np.uint64(seed), work, q[k])
+        evolve(k, search)
         seconds[k - 1] = time.perf_counter() - started
     return q, seconds
 

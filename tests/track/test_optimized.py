@@ -5,11 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ikde.errors import InputError
 from ikde.track.optimized import OptimizedSettings, follow_optimized
 from ikde.track.path import ToolPath
 from ikde.track.track import track
-from ikde.track.typical import TypicalSettings
 from tests.track.paper_tasks import follower_of, short_task, start_of
 
 FEW = OptimizedSettings(generations=100, returns=1)
@@ -80,12 +78,3 @@ def test_a_collision_names_its_pair(qiao):
     assert evolved.stop.reason == "self_collision"
     assert evolved.stop.pair in qiao.pairs(tight)
     assert evolved.stop.text.startswith("sample 1 (0.02 s): ")
-
-
-def test_settings_belong_to_their_method(qiao):
-    with pytest.raises(InputError, match="method optimized: expected OptimizedSettings, got TypicalSettings"):
-        track(qiao, short_task(1), method="optimized", settings=TypicalSettings())
-    with pytest.raises(InputError, match="method continuation: it takes none"):
-        track(qiao, short_task(1), settings=OptimizedSettings())
-    with pytest.raises(InputError, match="expected one of continuation, optimized, typical"):
-        track(qiao, short_task(1), method="best")
