@@ -158,6 +158,23 @@ class TrackArrays(NamedTuple):
     most_rounds: int  # of one step
 
 
+class StepSearchArrays(NamedTuple):
+    """What the paper's search for one step along a path is told (`kernels/step_evolution.py`)."""
+
+    population: int  # NP
+    generations: int  # G, of one population
+    attempts: int  # populations of one sample, at most
+    weight: float  # F
+    crossover: float  # CR
+    odd: int  # index into `mutation.STRATEGIES`, of generations 1, 3, ..
+    even: int  # of generations 2, 4, ..
+    motion: Floats  # [N] W1, W2: of the square of a coordinate's change, per m^2 or rad^2
+    position_weight: float  # W3: of the sum of the errors along the axes, per m
+    orientation_weight: float  # per rad; the print has none
+    position_tolerance: float  # m, along each axis
+    orientation_tolerance: float  # rad
+
+
 CLEARANCE, LIMITS, MANIPULABILITY, DRIFT = range(4)  # columns of what the null space is used for; DRIFT: the first of D
 
 

@@ -4,24 +4,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.kernels.jit import compile_clock
 from ikde.model.robot import Detector, Robot
 from ikde.solver.engines.pool import find_base
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
 from ikde.track.certify import certify
-from ikde.track.continuation import Continuation, Found
+from ikde.track.continuation import Continuation
 from ikde.track.drive import DriveName
 from ikde.track.follow import make_follower
 from ikde.track.limits import MotionLimits
+from ikde.track.methods import TrackSettings, check_method, follow_by
 from ikde.track.path import ToolPath
+from ikde.track.spec import TrackMethod
 from ikde.track.trajectory import TrackStop, Trajectory
 from ikde.track.verify_track import verify_track
-
-METHODS = ("continuation",)
 
 
 def track(
@@ -29,12 +27,13 @@ def track(
     path: ToolPath,
     *,
     drive: DriveName = "differential",
-    method: str = "continuation",
+    method: TrackMethod = "continuation",
     limits: MotionLimits | None = None,
     start: JointValues | None = None,
     seed: int = 0,
     detector: str | Detector | None = None,
     freeze: Freeze | None = None,
+    settings: TrackSettings | None = None,
     announce_compile: Callable[[], None] | None = None,
 ) -> Trajectory:
     """Follow the path inside all limits, free of self-collision at the samples and between them.
@@ -43,22 +42,24 @@ def track(
         robot: the robot.
         path: poses of the tool, a sample every `path.dt_s`.
         drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself, with no base, too.
-        method: how.
+        method: `continuation`; or one of the paper's: `optimized`, which keeps the limits at samples only, or
+            `typical`, which goes on to the end whatever it breaks: see `Trajectory.breaches`.
         limits: None for those of the paper (`MotionLimits.of`).
-        start: the configuration at the first pose [N], or by name; None to choose the best that is found.
+        start: the configuration at the first pose [N], or by name; None for the one that `continuation` finds best.
         seed: same seed, same bits.
         detector: a name, a `Detector`, `"none"`, or None for the robot's default.
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
+        settings: of one of the paper's methods; None for the paper's numbers.
         announce_compile: called once if kernels must be compiled first.
 
     Returns:
-        The motion, as far as it goes: it never jumps. `stop` says where and why it ended before the path did.
+        The motion, as far as it goes; except for `typical` it never jumps. `stop` says where and why it ended
+        before the path did.
 
     Raises:
         InputError: for what does not fit the robot, and a start that is not at the first pose or collides.
     """
-    if method not in METHODS:
-        raise InputError(f"expected one of {', '.join(METHODS)}, got {method!r}", ("method",))
+    check_method(method, settings)
     limits = MotionLimits.of(robot) if limits is None else limits.check(robot)
     chosen = robot.detector(detector)
     if start is not None:
@@ -67,12 +68,7 @@ def track(
     frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
     follower = make_follower(robot, path, drive=drive, limits=limits, detector=chosen, frozen=problem.frozen)
     search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), asked={})
-    with compile_clock(announce_compile):
-        found = search.find(start)
-    if isinstance(found, Found):
-        q, stop, seconds = found.q, found.stop, found.follower.follow_timed(found.course)
-    else:
-        q, stop, seconds = np.empty((0, len(robot.joints))), found, np.empty(0)
+    q, stop, seconds = follow_by(method, search, start, settings, announce_compile)
     return grade_motion(robot, path, q, stop, seconds, drive=drive, method=method, limits=limits, detector=chosen)
 
 
@@ -88,9 +84,12 @@ def grade_motion(
     limits: MotionLimits,
     detector: Detector | None,
 ) -> Trajectory:
-    """The motion through `q` [M + 1, N] with the figures that the judge and the certificate give it."""
+    """The motion through `q` [M + 1, N] with the figures that the judge and the certificate give it.
+
+    What `typical` does between samples means nothing, and is not looked at.
+    """
     graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
-    proof = certify(robot, path, q, drive=drive, detector=detector)
+    proof = None if method == "typical" else certify(robot, path, q, drive=drive, detector=detector)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
         path=path,
@@ -108,9 +107,10 @@ def grade_motion(
         error_m=graded.error_m,
         orientation_error_rad=graded.orientation_error_rad,
         clearance_m=graded.gaps_m.min(axis=1, initial=np.inf) if detector else None,
-        certified_clearance_m=proof.clearance_m if detector and len(q) else None,
-        deviation_m=proof.deviation_m,
-        deviation_rad=proof.deviation_rad,
+        certified_clearance_m=proof.clearance_m if proof and detector and len(q) else None,
+        deviation_m=proof.deviation_m if proof else None,
+        deviation_rad=proof.deviation_rad if proof else None,
+        breaches=graded.breaches,
     )
 
 

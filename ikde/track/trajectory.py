@@ -9,6 +9,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive
+from ikde.track.verify_track import Breaches
 
 
 class TrackStopReason(StrEnum):
@@ -87,6 +88,8 @@ class Trajectory:
     """[M] distance of the tool from the path half-way between samples; None if it was not measured."""
     deviation_rad: Floats | None = None
     """[M] the same of its orientation, of what the path asks for."""
+    breaches: Breaches | None = None
+    """How often `verify_track` finds a limit broken; None if it was not asked."""
 
     @property
     def reached_points(self) -> int:
@@ -95,8 +98,9 @@ class Trajectory:
 
     @property
     def reached(self) -> bool:
-        """True if the whole path was followed."""
-        return self.stop is None and self.reached_points == self.path.samples
+        """True if the whole path was followed and no limit is broken."""
+        is_kept = self.breaches is None or self.breaches.total == 0
+        return self.stop is None and self.reached_points == self.path.samples and is_kept
 
     @property
     def times_s(self) -> Floats:
