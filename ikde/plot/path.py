@@ -36,4 +36,4 @@ def _set_box(axes: Any, points: Any) -> None:
     middle, half = 0.5 * (low + high), 0.55 * np.maximum(high - low, 0.15 * float((high - low).max()) + 1e-3)
     axes.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
     axes.set_zlim(middle[2] - half[2], middle[2] + half[2])
-    axes.set_box_aspect(half, zoom=1.0)
+    axes.set_box_aspect(half, zoom=0.88)

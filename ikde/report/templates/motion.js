@@ -1,8 +1,9 @@
-// Motions that play: the robot from the side (x to the right, z up) and from above (x to the right, y up), in mm.
-const ARM = "#d1352b", BASE = "#3568b8", DONE = "#e69f00", PAD = 16, LABEL = 18;
+// Motions that play, drawn as on a plan, in mm: from the side, right of it from the front, and below it from above.
+const ARM = "#d1352b", BASE = "#3568b8", DONE = "#e69f00", PAD = 14, LABEL = 20, TALLEST = 620;
 const VIEWS = [
-  {name: "side", flat: (p) => [p[0], p[2]], depth: (p) => -p[1]},
-  {name: "top", flat: (p) => [p[0], p[1]], depth: (p) => p[2]},
+  {name: "side: x, z", flat: (p) => [p[0], p[2]], depth: (p) => -p[1], column: 0, row: 0},
+  {name: "front: y, z", flat: (p) => [p[1], p[2]], depth: (p) => p[0], column: 1, row: 0},
+  {name: "top: x, y", flat: (p) => [p[0], p[1]], depth: (p) => p[2], column: 0, row: 1},
 ];
 function boxOf(motion, flat) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
@@ -16,20 +17,18 @@ function boxOf(motion, flat) {
   motion.centres.forEach((row) => row.forEach((p, s) => add(p, motion.radii[s])));
   return box;
 }
-// One scale for both views: side by side if the canvas is wide, else one above the other.
+// One scale for all views; those of a column share x, those of a row share z.
 function layOut(motion, width) {
   const boxes = VIEWS.map((view) => boxOf(motion, view.flat));
-  const size = boxes.map((b) => [b[2] - b[0], b[3] - b[1]]);
-  const beside = width > 560;
-  const scale = beside ? (width - 3 * PAD) / (size[0][0] + size[1][0]) : (width - 2 * PAD) / Math.max(size[0][0], size[1][0]);
-  const fitted = Math.min(scale, 480 / Math.max(size[0][1], size[1][1]));
-  const tall = size.map((s) => s[1] * fitted);
-  const height = beside ? Math.max(...tall) + 2 * PAD + LABEL : tall[0] + tall[1] + 3 * PAD + 2 * LABEL;
-  const spare = beside ? (width - 3 * PAD - (size[0][0] + size[1][0]) * fitted) / 2 : 0;
-  const left = beside ? [PAD + spare, 2 * PAD + spare + size[0][0] * fitted] : [PAD, PAD];
-  const bottom = beside ? [height - PAD, height - PAD] : [PAD + LABEL + tall[0], height - PAD];
-  return {height, views: VIEWS.map((view, k) => ({...view, scale: fitted, height: tall[k], x: left[k], y: bottom[k], box: boxes[k],
-    at(p) { const [u, v] = view.flat(p); return [this.x + (u - this.box[0]) * fitted, this.y - (v - this.box[1]) * fitted]; }}))};
+  const [x, y, z] = [boxes[0][2] - boxes[0][0], boxes[1][2] - boxes[1][0], boxes[0][3] - boxes[0][1]];
+  const scale = Math.min((width - 3 * PAD) / (x + y), (TALLEST - 2 * PAD - 2 * LABEL) / (z + y));
+  const spare = (width - 3 * PAD - (x + y) * scale) / 2;
+  const left = [PAD + spare, 2 * PAD + spare + x * scale];
+  const bottom = [LABEL + z * scale, PAD + 2 * LABEL + (z + y) * scale];
+  const views = VIEWS.map((view, k) => ({...view, scale, left: left[view.column], bottom: bottom[view.row], box: boxes[k],
+    top: bottom[view.row] - (view.row ? y : z) * scale,
+    at(p) { const [u, v] = view.flat(p); return [this.left + (u - this.box[0]) * scale, this.bottom - (v - this.box[1]) * scale]; }}));
+  return {height: bottom[1] + PAD, views};
 }
 function stroke(c, points, color, width) {
   c.beginPath();
@@ -41,7 +40,7 @@ function dot(c, [x, y], radius, color) {
 }
 function drawView(c, motion, view, frame, ink, soft) {
   c.globalAlpha = 1; c.fillStyle = soft;
-  c.fillText(view.name, view.x, view.y - view.height - 6);
+  c.fillText(view.name, view.left, view.top - 6);
   const path = motion.path.map((p) => view.at(p));
   c.globalAlpha = .5; stroke(c, path, soft, 1.2);
   const black = new Set(motion.black[frame]), base = new Set(motion.base);
