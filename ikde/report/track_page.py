@@ -80,7 +80,9 @@ def draw_moments(motion: TrackSummary, prefix: str = "") -> Figure:
 def animate(motion: TrackSummary, frames: int = 251, prefix: str = "", caption: str = "") -> Animation:
     """The motion itself."""
     data = json.dumps(make_animation(motion, frames), separators=(",", ":"), allow_nan=False)
-    return Animation(data=data, alt=f"{prefix}the robot moving, from the side, from the front and from above", caption=caption)
+    return Animation(
+        data=data, alt=f"{prefix}the robot moving, from the side, from the front and from above", caption=caption
+    )
 
 
 def make_track_page(plan: TrackPlan, motion: TrackSummary) -> Page:

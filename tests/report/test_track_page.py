@@ -1,6 +1,7 @@
 """The page of a track: self-contained, with its figures and the robot moving."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -8,10 +9,12 @@ import ikde
 from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
 from ikde.report.track_page import make_track_page
+from ikde.track.summary import summarise_track
 from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.track.measured import make_measured
 
 MOST_BYTES = 5_000_000
+STOP = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +25,7 @@ def plan():
 
 @pytest.fixture(scope="module")
 def page(qiao, plan):
-    return make_track_page(plan, make_measured(qiao))
+    return make_track_page(plan, make_measured(qiao, further=5, stop=STOP))
 
 
 def test_the_page_needs_nothing_else(page):
@@ -45,11 +48,18 @@ def test_it_shows_everything(page):
     assert "Animation in the HTML page" in render_markdown(page)
 
 
-def test_a_stop_is_not_overlooked(qiao, plan):
-    stop = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
-    text = render_html(make_track_page(plan, make_measured(qiao, further=5, stop=stop)))
+def test_a_stop_is_not_overlooked(page):
+    text = render_html(page)
     assert "The path was not followed to its end" in text
-    assert stop.text in text
+    assert STOP.text in text
+
+
+def make_empty(motion):
+    """The same, but not even its start was met."""
+    trajectory = motion.trajectory
+    none = {name: getattr(trajectory, name)[:0] for name in ("q", "v", "omega", "wheel_speeds", "seconds", "error_m")}
+    empty = replace(trajectory, **none, orientation_error_rad=trajectory.orientation_error_rad[:0], clearance_m=None)
+    return summarise_track(motion.robot, motion.detector, empty)
 
 
 def test_nothing_followed_is_a_short_page(qiao, plan):
@@ -59,18 +69,6 @@ def test_nothing_followed_is_a_short_page(qiao, plan):
     page = make_track_page(plan, nothing)
     assert [section.title for section in page.sections] == ["How it was made"]
     assert "Nothing was followed" in render_html(page)
-
-
-def make_empty(motion):
-    """The same, but not even its start was met."""
-    from dataclasses import replace
-
-    from ikde.track.summary import summarise_track
-
-    trajectory = motion.trajectory
-    none = {name: getattr(trajectory, name)[:0] for name in ("q", "v", "omega", "wheel_speeds", "seconds", "error_m")}
-    empty = replace(trajectory, **none, orientation_error_rad=trajectory.orientation_error_rad[:0], clearance_m=None)
-    return summarise_track(motion.robot, motion.detector, empty)
 
 
 def test_a_start_alone_is_shown(qiao, plan):
