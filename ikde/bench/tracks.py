@@ -14,9 +14,8 @@ from ikde.track.follow import Follower, make_follower
 from ikde.track.plan import TrackPlan
 from ikde.track.run import make_limits, run_track
 from ikde.track.summary import TrackSummary, summarise_track
-from ikde.track.track import METHODS
 
-ORDER = ("typical", "optimized", "continuation")
+METHODS = ("typical", "optimized", "continuation")
 NINE_VARIABLES: Mapping[str, DriveName] = {"typical": "omnidirectional"}
 """`typical` searches x, y and heading as if the base could move anywhere, whatever drives it."""
 STARTED_ANYWHERE = ("optimized", "continuation")
@@ -58,11 +57,6 @@ class Compared:
     """Of the first seed."""
     data: Mapping[str, Any]
     """All seeds and starts, as plain data."""
-
-
-def known_methods() -> tuple[str, ...]:
-    """Those that this version has, the paper's first."""
-    return tuple(method for method in ORDER if method in METHODS)
 
 
 def count_runs(tracks: int, methods: Sequence[str], budget: TrackBudget) -> int:

@@ -12,7 +12,6 @@ from ikde.bench.tracks import (
     count_dead_ends,
     count_runs,
     draw_random_starts,
-    known_methods,
     measure,
 )
 from ikde.track.follow import make_follower
@@ -82,7 +81,3 @@ def test_random_starts_meet_the_first_pose_and_differ(plan):
 def test_without_starts_there_are_no_dead_ends(plan):
     ends = count_dead_ends(plan, ["continuation"], 0, Silent())
     assert (ends["starts"], ends["greedy"], ends["continuation"]) == (0, 0, 0)
-
-
-def test_ours_is_there_and_the_last():
-    assert known_methods()[-1] == "continuation"
