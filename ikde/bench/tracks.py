@@ -22,7 +22,7 @@ STARTED_ANYWHERE = ("optimized", "continuation")
 """Methods for which the start matters: `typical` begins anew at every sample."""
 EXACT = SolveSettings(method="lm", position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9, restarts=1)
 LEAST_MOTION = np.zeros(3)
-DRAWS_PER_START = 4
+DRAWS_PER_START = 50
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

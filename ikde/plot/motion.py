@@ -13,6 +13,7 @@ from ikde.track.summary import TrackSummary
 
 MM, DEG = 1e3, 180.0 / np.pi
 LEAST_MM, LEAST_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
+MOST_STAIRS = 200  # more cannot be seen
 TIME = Axis(label="t", unit="s")
 
 
@@ -136,6 +137,8 @@ def _middles(motion: TrackSummary) -> Floats:
 
 
 def _in_steps(motion: TrackSummary, values: Floats) -> tuple[Floats, Floats]:
-    """What holds from a sample to the next [M, n] as points of a staircase: times [2 M], values [2 M, n]."""
+    """What holds from a sample to the next [M, n] as points of a staircase, or amid its steps if there are many."""
     times = motion.trajectory.times_s
+    if len(values) > MOST_STAIRS:
+        return _middles(motion), values
     return np.repeat(times, 2)[1:-1], np.repeat(values, 2, axis=0)

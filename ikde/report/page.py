@@ -139,6 +139,8 @@ class Gallery:
     """Figures side by side, as far as the window is wide."""
 
     figures: tuple[Figure | Animation, ...]
+    narrow: bool = False
+    """Three to a row instead of two."""
 
 
 Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery

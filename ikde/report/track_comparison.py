@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,11 @@ import numpy as np
 from ikde import __version__
 from ikde.bench.tracks import Compared, TrackBudget
 from ikde.report.numbers import significant
-from ikde.report.page import Block, Cell, Code, Column, Gallery, Page, Section, Table, Text
+from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
 from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
+from ikde.track.summary import TrackSummary
 
-FRAMES = 101  # of an animation: there are many on this page
+FRAMES, DPI = 101, 70  # of an animation and of a picture: there are many on this page
 DRAWINGS = (
     ("Path and error", (PATH, ERRORS)),
     ("Joint angles and speeds", (JOINTS, SPEEDS)),
@@ -32,10 +34,11 @@ def compare_json(compared: Sequence[Compared], budget: TrackBudget) -> dict[str,
 def make_comparison_page(compared: Sequence[Compared], budget: TrackBudget, command: str) -> Page:
     """One table over all tracks, then each track with its figures."""
     methods = list(dict.fromkeys(method for one in compared for method in one.motions))
+    paths = f"{len(compared)} path{'s' if len(compared) > 1 else ''}"
     seeds = f"{budget.seeds} seed{'s' if budget.seeds > 1 else ''}"
     return Page(
         title="Following tool paths: the paper's methods beside ours",
-        subtitle=f"{len(compared)} paths, {', '.join(NAMES[method] for method in methods)}; {seeds} each.",
+        subtitle=f"{paths}: {', '.join(NAMES[method] for method in methods)}; {seeds} each.",
         lead=(_make_legend(),),
         sections=(
             Section("All in one table", (make_runs_table(compared), make_ends_table(compared))),
@@ -135,19 +138,21 @@ def make_ends_table(compared: Sequence[Compared]) -> Table:
 def _make_task(one: Compared) -> Section:
     blocks: list[Block] = [_make_stops(one)] if any(m.trajectory.stop for m in one.motions.values()) else []
     shown = {method: motion for method, motion in one.motions.items() if motion.started}
-    moving = [animate(m, FRAMES, f"{NAMES[name]}: ", f"**{NAMES[name]}**") for name, m in shown.items()]
-    blocks.append(Gallery(tuple(moving)))
-    blocks.append(Gallery(tuple(_titled(draw_moments(m, f"{NAMES[n]}: "), n) for n, m in shown.items())))
+    blocks.append(_beside(shown, lambda motion, prefix: animate(motion, FRAMES, prefix)))
+    blocks.append(_beside(shown, lambda motion, prefix: draw_moments(motion, prefix, DPI)))
     for title, drawings in DRAWINGS:
         blocks.append(Text(f"**{title}**"))
-        for drawing in drawings:
-            figures = [(name, draw(drawing, motion, f"{NAMES[name]}: ")) for name, motion in shown.items()]
-            blocks.append(Gallery(tuple(_titled(figure, name) for name, figure in figures if figure is not None)))
+        blocks += (_beside(shown, partial(draw, drawing)) for drawing in drawings)
     return Section(one.data["name"], tuple(blocks))
 
 
-def _titled(figure: Any, method: str) -> Any:
-    return replace(figure, caption=f"**{NAMES[method]}**. {figure.caption}")
+def _beside(
+    motions: Mapping[str, TrackSummary], make: Callable[[TrackSummary, str], Figure | Animation | None]
+) -> Gallery:
+    """The same figure of every method."""
+    made = [(method, make(motion, f"{NAMES[method]}: ")) for method, motion in motions.items()]
+    titled = [replace(figure, caption=f"**{NAMES[method]}**") for method, figure in made if figure is not None]
+    return Gallery(tuple(titled), narrow=True)
 
 
 def _make_stops(one: Compared) -> Block:

@@ -70,9 +70,9 @@ def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | N
     return Figure(image=to_svg(figure), alt=prefix + drawing.alt, caption=drawing.caption)
 
 
-def draw_moments(motion: TrackSummary, prefix: str = "") -> Figure:
+def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
     """The robot at eight moments, as a picture."""
-    image = to_png(plot_moments(motion), dpi=MOMENTS_DPI)
+    image = to_png(plot_moments(motion), dpi=dpi)
     caption = "Arm red, platform blue, what collides black; the path grey, what was run of it orange."
     return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
 

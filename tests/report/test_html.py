@@ -7,8 +7,8 @@ from html.parser import HTMLParser
 import pytest
 
 from ikde.report.html import render_html
-from ikde.report.page import Column, Page, Section, Table, Text
-from tests.report.pages import make_page
+from ikde.report.page import Column, Figure, Gallery, Page, Section, Table, Text
+from tests.report.pages import DRAWING, make_page
 
 VOID = {"meta", "img", "br", "path", "use", "input"}
 
@@ -83,6 +83,12 @@ def test_marks_units_and_groups_reach_the_table(text):
     assert 'data-head="here: SR [%]"' in text
     assert '<th scope="colgroup" colspan="1">print</th>' in text
     assert "Rates of <strong>both</strong> detectors" in text
+
+
+def test_a_gallery_may_be_narrow():
+    svg = Figure(image=DRAWING, alt="a curve")
+    text = render_html(Page(title="t", sections=(Section("s", (Gallery((svg,) * 3, narrow=True),)),)))
+    assert '<div class="gallery narrow">' in text
 
 
 def test_an_empty_table_says_so():
