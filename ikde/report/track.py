@@ -131,7 +131,7 @@ def _list_limits(motion: TrackSummary) -> Iterator[Row]:
     wheels = largest_wheel_speed(motion)
     if wheels is not None:
         own = motion.limits.wheel_speed_rad_s
-        implied = "" if own is not None else ", by the base's"
+        implied = "" if own is not None else ", implied"
         limit = motion.wheel_limit_rad_s
         yield "largest wheel speed", f"{wheels:.4g} rad/s", f"{limit:.4g} rad/s{implied}" if np.isfinite(limit) else ""
 
