@@ -44,10 +44,9 @@ def write_trajectory(
         InputError: for an unknown format, or a motion without samples.
         FileError: if they cannot be written; then none of them is new, or only those that were named before.
     """
-    for name in formats:
-        if name not in FORMATS:
-            raise InputError(f"expected one of {', '.join(FORMATS)}, got {name!r}", ("formats",))
-    files = {folder / name: data for name, data in _make_files(trajectory, formats, velocities).items()}
+    files = {
+        folder / name: data for name, data in format_trajectory(trajectory, formats, velocities=velocities).items()
+    }
     prepare_folder(folder)
     try:
         write_together(files)
@@ -55,6 +54,24 @@ def write_trajectory(
     except OSError as error:
         raise FileError(error.filename or folder, f"cannot be written: {error.strerror or error}") from None
     return tuple(files)
+
+
+def format_trajectory(
+    trajectory: Trajectory, formats: Sequence[Format] = FORMATS, *, velocities: bool = False
+) -> dict[str, bytes]:
+    """Name -> content of a motion's files, in the order in which they get their names; as for `write_trajectory`."""
+    for name in formats:
+        if name not in FORMATS:
+            raise InputError(f"expected one of {', '.join(FORMATS)}, got {name!r}", ("formats",))
+    table, files = trajectory_table(trajectory), {}
+    for name in formats:
+        if name in WRITE_TABLE:
+            files[f"trajectory.{name}"] = WRITE_TABLE[name](table)
+            continue
+        if trajectory.base_joints:
+            files[f"base.{name}"] = WRITE_PLAIN[name](base_motion(trajectory))
+        files[f"joint_trajectory.{name}"] = WRITE_PLAIN[name](joint_trajectory(trajectory, velocities=velocities))
+    return files
 
 
 def trajectory_table(trajectory: Trajectory) -> pa.Table:
@@ -110,19 +127,6 @@ def base_motion(trajectory: Trajectory) -> dict[str, Any]:
     columns |= dict(zip(("x_m", "y_m", "heading_rad"), trajectory.q[:, place].T, strict=True))
     columns |= _twist(trajectory)
     return {"drive": trajectory.drive, **{name: column.tolist() for name, column in columns.items()}}
-
-
-def _make_files(trajectory: Trajectory, formats: Sequence[Format], velocities: bool) -> dict[str, bytes]:
-    """Name -> content, in the order in which they get their names."""
-    table, files = trajectory_table(trajectory), {}
-    for name in formats:
-        if name in WRITE_TABLE:
-            files[f"trajectory.{name}"] = WRITE_TABLE[name](table)
-            continue
-        if trajectory.base_joints:
-            files[f"base.{name}"] = WRITE_PLAIN[name](base_motion(trajectory))
-        files[f"joint_trajectory.{name}"] = WRITE_PLAIN[name](joint_trajectory(trajectory, velocities=velocities))
-    return files
 
 
 def _twist(trajectory: Trajectory) -> dict[str, Floats]:
