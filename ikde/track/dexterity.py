@@ -13,10 +13,9 @@ def smallest_singular_values(robot: Robot, q: Floats, base_joints: tuple[str, ..
     The joints of a base are left out: with them a mobile robot is hardly ever singular.
     """
     jacobian = arm_jacobian(robot, q, base_joints)
-    if not jacobian.shape[-1] > 0:
+    if not jacobian.size:
         return np.zeros(q.shape[:-1])
-    values = np.linalg.svd(jacobian, compute_uv=False)
-    return values[..., -1]
+    return np.linalg.svd(jacobian, compute_uv=False)[..., -1]  # type: ignore[return-value]
 
 
 def arm_jacobian(robot: Robot, q: Floats, base_joints: tuple[str, ...] = ()) -> Floats:
