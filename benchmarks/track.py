@@ -5,9 +5,9 @@
 
 Runs: all methods begin where `continuation` begins. `continuation` and `optimized` drive the differential base; what
 `typical` does is graded as omnidirectional, so sliding is not held against it. `verify_track` counts; times are wall
-times of each sample on one core. Dead ends: from random free configurations at the first pose, `optimized` and the greedy
-half of `continuation` (least motion, no choice of a start, no way back) go as far as they come. All cores are used, but
-for `continuation`. Writes benchmarks/results/track.json.
+times of each sample on one core. Dead ends: from random free configurations at the first pose, `optimized` and the
+greedy half of `continuation` (least motion, no choice of a start, no way back) go as far as they come. All cores are
+used, but for `continuation`. Writes benchmarks/results/track.json.
 """
 
 import argparse
