@@ -13,9 +13,10 @@ from ikde.track.drive import DriveName
 from ikde.track.follow import Follower, make_follower
 from ikde.track.plan import TrackPlan
 from ikde.track.run import make_limits, run_track
+from ikde.track.spec import TrackMethod
 from ikde.track.summary import TrackSummary, summarise_track
 
-METHODS = ("typical", "optimized", "continuation")
+METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
 NINE_VARIABLES: Mapping[str, DriveName] = {"typical": "omnidirectional"}
 """`typical` searches x, y and heading as if the base could move anywhere, whatever drives it."""
 STARTED_ANYWHERE = ("optimized", "continuation")
@@ -59,12 +60,14 @@ class Compared:
     """All seeds and starts, as plain data."""
 
 
-def count_runs(tracks: int, methods: Sequence[str], budget: TrackBudget) -> int:
+def count_runs(tracks: int, methods: Sequence[TrackMethod], budget: TrackBudget) -> int:
     """Motions of a whole comparison."""
     return tracks * sum(budget.seeds + (budget.starts if m in STARTED_ANYWHERE else 0) for m in methods)
 
 
-def compare_methods(plan: TrackPlan, methods: Sequence[str], budget: TrackBudget, progress: Progress) -> Compared:
+def compare_methods(
+    plan: TrackPlan, methods: Sequence[TrackMethod], budget: TrackBudget, progress: Progress
+) -> Compared:
     """Follow one track by each method with every seed, and from every start."""
     motions, runs = {}, []
     for method in methods:
@@ -80,7 +83,7 @@ def compare_methods(plan: TrackPlan, methods: Sequence[str], budget: TrackBudget
     return Compared(plan=plan, motions=motions, data={**told, "runs": runs, "dead_ends": ends})
 
 
-def follow(plan: TrackPlan, method: str, **changes: Any) -> TrackSummary:
+def follow(plan: TrackPlan, method: TrackMethod, **changes: Any) -> TrackSummary:
     """One motion, measured."""
     trajectory = run_track(plan, method=method, drive=NINE_VARIABLES.get(method), **changes)
     return summarise_track(plan.robot, plan.detector, trajectory)
@@ -110,7 +113,7 @@ def measure(motion: TrackSummary) -> dict[str, Any]:
     }
 
 
-def count_dead_ends(plan: TrackPlan, methods: Sequence[str], count: int, progress: Progress) -> dict[str, Any]:
+def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int, progress: Progress) -> dict[str, Any]:
     """How often each method, and the greedy follower without a way back, end early from random starts."""
     limits = make_limits(plan.robot, plan.limits)
     follower = make_follower(plan.robot, plan.path, drive=plan.drive, limits=limits, detector=plan.detector)
@@ -138,7 +141,7 @@ def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
     return np.array(found).reshape(-1, len(robot.joints))
 
 
-def _reach(plan: TrackPlan, method: str, starts: Floats, progress: Progress) -> Iterator[int]:
+def _reach(plan: TrackPlan, method: TrackMethod, starts: Floats, progress: Progress) -> Iterator[int]:
     for start in starts:
         yield run_track(plan, method=method, start=start).reached_points
         progress.advance(1)

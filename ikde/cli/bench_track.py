@@ -16,6 +16,7 @@ from ikde.cli.progress import Bar, Lines
 
 if TYPE_CHECKING:
     from ikde.bench.tracks import Progress
+    from ikde.track.spec import TrackMethod
 
 
 def bench_track(
@@ -59,7 +60,7 @@ def bench_track(
         print_result(f"{out / 'report.html'}  ({RESULTS} beside it)")
 
 
-def _read_methods(text: str | None) -> tuple[str, ...]:
+def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":
     from ikde.bench.tracks import METHODS
 
     if text is None:

@@ -10,6 +10,7 @@ from ikde.solver.joints import JointValues
 from ikde.track.drive import DriveName
 from ikde.track.limits import MotionLimits
 from ikde.track.plan import AskedLimits, TrackPlan
+from ikde.track.spec import TrackMethod
 from ikde.track.track import track
 from ikde.track.trajectory import Trajectory
 
@@ -17,7 +18,7 @@ from ikde.track.trajectory import Trajectory
 def run_track(
     plan: TrackPlan,
     *,
-    method: str | None = None,
+    method: TrackMethod | None = None,
     drive: DriveName | None = None,
     seed: int | None = None,
     start: JointValues | None = None,

@@ -33,7 +33,7 @@ def test_a_row_is_the_worst_of_the_seeds(compared):
     typical, ours = (dict(zip([c.title for c in table.columns], row, strict=True)) for row in table.rows)
     assert typical["method"] == "typical DE"
     assert typical["points reached"] == "20 of 20"
-    assert typical["colliding samples"].startswith("2–")
+    assert typical["colliding samples"] == "0–2"
     assert typical["clearance"] == "-99.0"
     assert (ours["limits broken"].text, ours["limits broken"].mark) == ("0", "ours")
 
