@@ -25,6 +25,8 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.mjcf import format_mjcf as format_mjcf
     from ikde.io.robots import load_robot as load_robot
     from ikde.io.robots import robot_names as robot_names
+    from ikde.io.track_file import load_track as load_track
+    from ikde.io.trajectory_files import write_trajectory as write_trajectory
     from ikde.io.urdf import format_urdf as format_urdf
     from ikde.model.convention import from_convention as from_convention
     from ikde.model.convention import to_convention as to_convention
@@ -45,6 +47,10 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.surface import check_surface as check_surface
     from ikde.solver.verify import Verification as Verification
     from ikde.solver.verify import verify as verify
+    from ikde.track.limits import MotionLimits as MotionLimits
+    from ikde.track.path import ToolPath as ToolPath
+    from ikde.track.run import run_track as run_track
+    from ikde.track.trajectory import Trajectory as Trajectory
 
 __version__ = "0.1.0"
 
@@ -52,6 +58,12 @@ _HOME = {
     "load_batch": "ikde.io.batch_file",
     "run_batch": "ikde.batch.run",
     "read_batch": "ikde.batch.read",
+    "load_track": "ikde.io.track_file",
+    "run_track": "ikde.track.run",
+    "ToolPath": "ikde.track.path",
+    "MotionLimits": "ikde.track.limits",
+    "Trajectory": "ikde.track.trajectory",
+    "write_trajectory": "ikde.io.trajectory_files",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
     "format_urdf": "ikde.io.urdf",

@@ -1,1 +1,1 @@
-"""Floor 4: many solves: what a run file says, and how it runs, stops and goes on."""
+"""Floor 5: many solves: what a run file says, and how it runs, stops and goes on."""

@@ -1,17 +1,16 @@
 """From `solve` and `arms` of a run file to problems: names resolved, numbers in m and rad."""
 
 import re
-from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
-from ikde.batch.placed import placed
 from ikde.batch.plan import Arm
 from ikde.batch.recipe import as_plain
-from ikde.batch.spec import BatchSpec, DetectorEntry, SolveEntry, UnitsEntry
-from ikde.errors import InputError, nearest
-from ikde.model.robot import NO_DETECTOR, Detector, Joint, Robot, check_detector
-from ikde.solver.joints import FARTHEST
+from ikde.batch.spec import BatchSpec, SolveEntry
+from ikde.errors import InputError
+from ikde.files.entries import UnitsEntry
+from ikde.files.placed import placed
+from ikde.files.robot_entries import read_detector, to_si, with_ranges
+from ikde.model.robot import NO_DETECTOR, Robot
 from ikde.solver.problem import make_problem
 from ikde.solver.settings import SolveSettings
 
@@ -33,25 +32,13 @@ def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry) -> A
     with placed("detector"):
         detector = read_detector(robot, entry.detector, units)
     problem = make_problem(
-        _with_ranges(robot, entry.ranges, units),
+        with_ranges(robot, entry.ranges, units),
         _make_settings(entry, units),
         detector=detector or NO_DETECTOR,
-        near=None if entry.near is None else _to_si(robot, "near", entry.near, units),
-        freeze=_to_si(robot, "freeze", entry.freeze, units) or None,
+        near=None if entry.near is None else to_si(robot, "near", entry.near, units),
+        freeze=to_si(robot, "freeze", entry.freeze, units) or None,
     )
     return Arm(name=name, method=entry.method, problem=problem)
-
-
-def read_detector(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> Detector | None:
-    """A detector by name, one of the user's own, or the robot's; None for `none`."""
-    if not isinstance(choice, DetectorEntry):
-        return robot.detector(choice)
-    if choice.name == NO_DETECTOR:
-        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", ("name",))
-    safe_distance_m = choice.safe_distance * units.length_m
-    own = Detector(name=choice.name, spheres=choice.spheres, pairs=choice.pairs, safe_distance_m=safe_distance_m)
-    check_detector(robot, own, ())
-    return own
 
 
 def describe_arm(arm: Arm) -> dict[str, Any]:
@@ -102,33 +89,3 @@ def _make_settings(entry: SolveEntry, units: UnitsEntry) -> SolveSettings:
     except InputError as error:
         written = {suffixed: key for key, suffixed in TOLERANCES.items()}
         raise InputError(error.message, tuple(written.get(str(key), key) for key in error.where)) from None
-
-
-def _with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEntry) -> Robot:
-    """The robot with other joint limits: narrower or wider."""
-    lower = _to_si(robot, "ranges", {name: interval[0] for name, interval in ranges.items()}, units)
-    upper = _to_si(robot, "ranges", {name: interval[1] for name, interval in ranges.items()}, units)
-    for name in ranges:
-        if not lower[name] <= upper[name]:
-            raise InputError("this range is upside down: upper is below lower", ("ranges", name))
-    if not ranges:
-        return robot
-
-    def narrow(joint: Joint) -> Joint:
-        return replace(joint, lower=lower.get(joint.name, joint.lower), upper=upper.get(joint.name, joint.upper))
-
-    return replace(robot, joints=tuple(map(narrow, robot.joints)))
-
-
-def _to_si(robot: Robot, key: str, values: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:
-    """Joint values in m and rad; None stays None."""
-    scale = {j.name: units.length_m if j.kind == "prismatic" else units.angle_rad for j in robot.joints}
-    converted = {}
-    for name, value in values.items():
-        if name not in scale:
-            known = nearest(name, scale) or f"; it has {', '.join(scale)}"
-            raise InputError(f"{robot.name} has no joint {name!r}{known}", (key, name))
-        converted[name] = None if value is None else value * scale[name]
-        if value is not None and abs(converted[name]) > FARTHEST:
-            raise InputError(f"expected at most {FARTHEST:g} m or rad, got {converted[name]:g}", (key, name))
-    return converted

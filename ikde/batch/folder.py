@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from ikde.batch.atomic import remove_temporaries, sync_folder, temporary_path
 from ikde.batch.manifest import (
     MANIFEST,
     REPORT,
@@ -20,6 +19,7 @@ from ikde.batch.manifest import (
 from ikde.batch.parts import GO_ON, SOLUTIONS, TIMING
 from ikde.batch.plan import Batch
 from ikde.errors import FileError
+from ikde.files.atomic import remove_temporaries, sync_folder, temporary_path
 
 LOCK = ".lock"
 SYNC_SECONDS = 1.0

@@ -7,11 +7,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from ikde.batch.atomic import write_atomically
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.batch.parts import Part, list_parts
 from ikde.batch.plan import Batch
 from ikde.errors import FileError, format_path
+from ikde.files.atomic import write_atomically
 
 MANIFEST = "manifest.json"
 REPORT = "report"  # where `ikde report` puts its page

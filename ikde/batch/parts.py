@@ -8,8 +8,8 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ikde.batch.atomic import write_together
 from ikde.errors import FileError
+from ikde.files.atomic import write_together
 
 SOLUTIONS, TIMING = "solutions", "timing"
 RECIPE, SEAL = b"ikde_recipe", b"ikde_seal"  # keys in the metadata of a file

@@ -3,13 +3,14 @@
 from pathlib import Path
 from typing import Any
 
-from ikde.batch.arms import PLAIN_NAME, describe_arm, make_arm, make_arms, read_detector
-from ikde.batch.placed import placed
+from ikde.batch.arms import PLAIN_NAME, describe_arm, make_arm, make_arms
 from ikde.batch.plan import Batch
 from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
 from ikde.errors import InputError
+from ikde.files.placed import placed
+from ikde.files.robot_entries import read_detector
 from ikde.model.generate.module import code_digest
 from ikde.model.robot import Detector, Robot
 

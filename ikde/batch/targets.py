@@ -4,28 +4,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
-from ikde.batch.placed import placed
 from ikde.batch.recipe import array_digest, as_plain, digest
-from ikde.batch.sources import ListSource, Orientation, TableSource, TargetSource, make_orientation
-from ikde.batch.spec import (
-    BatchSpec,
-    BoxEntry,
-    FileEntry,
-    GridEntry,
-    InlineTarget,
-    OrientationEntry,
-    ReachableEntry,
-    SphereEntry,
-    TargetsEntry,
-    UnitsEntry,
-    chosen_orientation,
-)
-from ikde.batch.table_targets import read_targets
-from ikde.errors import InputError
-from ikde.kernels.arrays import Floats
+from ikde.batch.sources import ListSource, TargetSource
+from ikde.batch.spec import BatchSpec, BoxEntry, GridEntry, ReachableEntry, SphereEntry
+from ikde.files.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry, only_key
+from ikde.files.placed import placed
+from ikde.files.poses import read_orientation, read_position
+from ikde.files.table_targets import TableSource, read_targets
 from ikde.model.target import Target, Targets
 from ikde.solver.problem import Problem
 
@@ -45,7 +32,7 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
         FileError: for what is wrong inside a table.
     """
     with placed("targets"):
-        key = _only_key(spec.targets)
+        key = only_key(spec.targets)
         entry, units = getattr(spec.targets, key), spec.units
         with placed(key):
             if isinstance(entry, FileEntry):
@@ -58,26 +45,18 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
             return _make_listed(entry, units, spec.seed), {**written, "units": units.model_dump()}
 
 
-def _only_key(targets: TargetsEntry) -> str:
-    given = [key for key in type(targets).model_fields if getattr(targets, key) is not None]
-    if len(given) != 1:
-        known = ", ".join(type(targets).model_fields)
-        raise InputError(f"expected one of {known}, got {' and '.join(given) or 'none'}", tuple(given[1:2]))
-    return given[0]
-
-
 def _make_listed(
     entry: list[InlineTarget] | GridEntry | BoxEntry | SphereEntry, units: UnitsEntry, seed: int
 ) -> TargetSource:
     if isinstance(entry, list):
         return _make_inline(entry, units)
     with placed("orientation"):
-        orientation = _read_orientation(entry.orientation or OrientationEntry(), units)
+        orientation = read_orientation(entry.orientation or OrientationEntry(), units)
     if isinstance(entry, SphereEntry):
-        center = _read_position("center", entry.center, units)
-        _read_position("radius", np.abs(entry.center) + entry.radius, units)
+        center = read_position("center", entry.center, units)
+        read_position("radius", np.abs(entry.center) + entry.radius, units)
         return make_ball(center, entry.radius * units.length_m, entry.filled, entry.count, seed, orientation)
-    start, to = _read_position("from", entry.start, units), _read_position("to", entry.to, units)
+    start, to = read_position("from", entry.start, units), read_position("to", entry.to, units)
     if isinstance(entry, GridEntry):
         nx, ny, nz = entry.counts
         return make_grid(start, to, (nx, ny, nz), orientation)
@@ -88,8 +67,8 @@ def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
     targets = []
     for index, entry in enumerate(entries):
         with placed(index):
-            position = _read_position("position", entry.position, units)
-            targets.append(Target(position, **_read_orientation(entry, units)))
+            position = read_position("position", entry.position, units)
+            targets.append(Target(position, **read_orientation(entry, units)))
     named = any(entry.name for entry in entries)
     names = tuple(entry.name or f"target {index}" for index, entry in enumerate(entries)) if named else None
     return ListSource(targets=Targets.of(targets), names=names)
@@ -109,28 +88,6 @@ def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> Reach
     )
     source.read(0, 1)  # a robot that is never free is found before anything runs
     return source
-
-
-def _read_position(key: str, values: ArrayLike, units: UnitsEntry) -> Floats:
-    """A point in m that a target can stand at."""
-    try:
-        return Target(np.array(values) * units.length_m).p_world_tool
-    except InputError as error:
-        raise InputError(f"{error.message} (in m)", (key,)) from None
-
-
-def _read_orientation(entry: OrientationEntry, units: UnitsEntry) -> Orientation:
-    """What `Target` takes, checked once for all targets that share it."""
-    kind = chosen_orientation(entry)
-    if kind is None:
-        return {}
-    values = np.array(getattr(entry, kind)) * (units.angle_rad if kind == "rpy" else 1.0)
-    try:
-        orientation = make_orientation(kind, values)
-        Target((0.0, 0.0, 0.0), **orientation)
-    except InputError as error:
-        raise InputError(error.message, (kind,)) from None
-    return orientation
 
 
 def _describe_table(table: TableSource) -> Recipe:

@@ -1,1 +1,1 @@
-"""Floor 5: the paper's tables and figures as plain data, the published values beside ours."""
+"""Floor 6: the paper's tables and figures as plain data, the published values beside ours."""

@@ -20,6 +20,7 @@ from ikde.cli.robots import robots
 from ikde.cli.schema import schema
 from ikde.cli.solve import solve
 from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread
+from ikde.cli.track import track
 from ikde.cli.warmup import warmup
 from ikde.errors import InputError
 
@@ -54,7 +55,7 @@ def root(
     """
 
 
-for command in (solve, fk, check, batch, report, schema, warmup, doctor):
+for command in (solve, fk, check, batch, report, track, schema, warmup, doctor):
     app.command()(command)
 app.add_typer(robots, name="robots")
 app.add_typer(bench, name="bench")

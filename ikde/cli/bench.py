@@ -1,4 +1,4 @@
-"""`ikde bench paper`: the paper's tables and figures, published beside ours, as one page."""
+"""`ikde bench`; and `ikde bench paper`: the paper's tables and figures, published beside ours, as one page."""
 
 import gc
 import sys
@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption
-from ikde.cli.output import announce_compile, print_json, print_note, print_result
+from ikde.cli.output import announce_compile, print_json, print_result
+from ikde.cli.progress import Bar, Lines
 
 if TYPE_CHECKING:
     from ikde.bench.budget import Budget
@@ -23,6 +25,9 @@ bench = typer.Typer(help="Benchmarks that compare with published results.", no_a
 @bench.callback()
 def default() -> None:
     """Benchmarks that compare with published results."""
+
+
+bench.command("track")(bench_track)
 
 
 @bench.command("paper")
@@ -142,29 +147,3 @@ def _show_progress(sources: "Sources", budget: "Budget") -> Iterator["Progress"]
 
     with Bars(console=Console(stderr=True)) as bars:
         yield Bar(bars, count_solves(sources, budget))
-
-
-class Bar:
-    """Progress as a bar."""
-
-    def __init__(self, bars: Any, solves: int) -> None:
-        self._bars, self._task = bars, bars.add_task("", total=solves)
-
-    def begin(self, section: str) -> None:
-        """Name what is being computed."""
-        self._bars.update(self._task, description=section)
-
-    def advance(self, solves: int) -> None:
-        """Move the bar."""
-        self._bars.advance(self._task, solves)
-
-
-class Lines:
-    """Progress as lines."""
-
-    def begin(self, section: str) -> None:
-        """Name what is being computed."""
-        print_note(f"computing: {section}")
-
-    def advance(self, solves: int) -> None:
-        """A log needs no more."""

@@ -1,10 +1,10 @@
-"""How far a batch is, on stderr: a bar for who is looking, a line now and then for a log."""
+"""How far a batch or a benchmark is, on stderr: a bar for who is looking, a line now and then for a log."""
 
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ikde.cli.output import print_note
 
@@ -78,3 +78,29 @@ class Pace:
             return ""
         pace = (now.solves_done - before) / (time.monotonic() - started)
         return f"{pace:,.0f} solves/s" if pace >= 10.0 else f"{pace:.2g} solves/s"
+
+
+class Bar:
+    """Progress of a benchmark as a bar."""
+
+    def __init__(self, bars: Any, solves: int) -> None:
+        self._bars, self._task = bars, bars.add_task("", total=solves)
+
+    def begin(self, section: str) -> None:
+        """Name what is being computed."""
+        self._bars.update(self._task, description=section)
+
+    def advance(self, solves: int) -> None:
+        """Move the bar."""
+        self._bars.advance(self._task, solves)
+
+
+class Lines:
+    """Progress of a benchmark as lines."""
+
+    def begin(self, section: str) -> None:
+        """Name what is being computed."""
+        print_note(f"computing: {section}")
+
+    def advance(self, solves: int) -> None:
+        """A log needs no more."""

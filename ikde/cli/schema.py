@@ -7,7 +7,11 @@ import typer
 
 from ikde.cli.output import print_json
 
-MODELS = {"batch": ("ikde.batch.spec", "BatchSpec"), "robot": ("ikde.io.robot_file", "RobotFile")}
+MODELS = {
+    "batch": ("ikde.batch.spec", "BatchSpec"),
+    "track": ("ikde.track.spec", "TrackSpec"),
+    "robot": ("ikde.io.robot_file", "RobotFile"),
+}
 
 
 def schema(
@@ -22,7 +26,7 @@ def schema(
     if name not in MODELS:
         close = nearest(name, MODELS) if name else ""
         raise InputError(
-            f"expected the kind of file, {' or '.join(MODELS)}, got {name or 'nothing'}{close}", ("schema",)
+            f"expected the kind of file, one of {', '.join(MODELS)}, got {name or 'nothing'}{close}", ("schema",)
         )
     module, model = MODELS[name]
     print_json(

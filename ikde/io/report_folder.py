@@ -6,9 +6,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ikde.batch.atomic import write_atomically
 from ikde.bench.budget import Budget
 from ikde.errors import FileError
+from ikde.files.atomic import write_atomically
 from ikde.io.yaml_file import read_text
 
 RESULTS = "results.json"

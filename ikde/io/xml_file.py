@@ -5,8 +5,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from pathlib import Path
 
-from ikde.batch.atomic import write_atomically
 from ikde.errors import FileError, InputError
+from ikde.files.atomic import write_atomically
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.spheres import Sphere, expand_rows
 from ikde.model.tree import build_tree

@@ -127,6 +127,57 @@ class MemeticArrays(NamedTuple):
     margin: float = 1e-5  # m: pairs nearer than the safe distance and this are pushed apart
 
 
+class DriveArrays(NamedTuple):
+    """How a robot moves from sample to sample: a step [D], each entry a share of the largest, -1 to 1.
+
+    A base with wheels takes the first two entries, along its heading and turning; the rest move one coordinate each.
+    """
+
+    base: Ints  # [3] coordinates of x, y and heading of a base with wheels; -1: every coordinate moves by itself
+    others: Ints  # [D] or [D - 2] coordinates that move by themselves, parents first
+    largest: Floats  # [D] largest step, m or rad per sample; 0: frozen
+    change: Floats  # [D] largest change of the share from sample to sample; inf: any
+    half_track: float  # m
+    wheel_travel: float  # m per sample, the most that a wheel rolls; inf: any
+    centre_body: int  # the body that carries the platform's centre
+    p_body_centre: Floats  # [3] m
+    farthest: float  # m, of the tool from the platform's centre; inf: any
+
+
+class TrackArrays(NamedTuple):
+    """What a step along a path is told."""
+
+    ranges: Floats  # [2, N] lower, upper; m or rad
+    reach: float  # m: pairs nearer than this are looked at; -inf: none
+    margin: float  # m: what every pair keeps
+    rotation_length: float  # m/rad: what a radian counts beside a metre
+    position_goal: float  # m: refined until both are met
+    orientation_goal: float  # rad
+    position_tolerance: float  # m: accepted if it comes no nearer
+    orientation_tolerance: float  # rad
+    most_rounds: int  # of one step
+
+
+class StepSearchArrays(NamedTuple):
+    """What the paper's search for one step along a path is told (`kernels/step_evolution.py`)."""
+
+    population: int  # NP
+    generations: int  # G, of one population
+    attempts: int  # populations of one sample, at most
+    weight: float  # F
+    crossover: float  # CR
+    odd: int  # index into `mutation.STRATEGIES`, of generations 1, 3, ..
+    even: int  # of generations 2, 4, ..
+    motion: Floats  # [N] W1, W2: of the square of a coordinate's change, per m^2 or rad^2
+    position_weight: float  # W3: of the sum of the errors along the axes, per m
+    orientation_weight: float  # per rad; the print has none
+    position_tolerance: float  # m, along each axis
+    orientation_tolerance: float  # rad
+
+
+CLEARANCE, LIMITS, MANIPULABILITY, DRIFT = range(4)  # columns of what the null space is used for; DRIFT: the first of D
+
+
 # Columns of what every search counts, `out_counts` [COUNTS]: 1 if reached; populations or starts; poses looked at;
 # attempts that met the target but collided, or left the ranges.
 REACHED, ATTEMPTS, EVALUATIONS, COLLIDING, OUTSIDE = range(5)

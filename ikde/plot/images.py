@@ -10,6 +10,8 @@ _HEAD = re.compile(r"<svg .*?>.*?<style type=\"text/css\">\*\{(?P<style>.*?)\}</
 _SIZE = re.compile(r'width="(.*?)pt" height="(.*?)pt"')
 _FONT = re.compile(r"(font-family: |font: [^;\"']*)'[^;\"]*")
 _ID = re.compile(r' id="([^"]*)"')
+_PATH = re.compile(r' d="([^"]*)"')
+_DIGITS = re.compile(r"(\.\d\d)\d+")  # hundredths of a point are more than a screen shows
 _REFERENCE = re.compile(r'(?:href="#|url\(#)([^")]+)')
 
 
@@ -23,6 +25,7 @@ def to_svg(figure: Any) -> str:
     svg = buffer.getvalue().decode("utf-8")
     svg = _HEAD.sub(_short_head, svg[svg.index("<svg ") :], count=1)
     svg = svg.replace("xlink:href", "href").replace(INK, "currentColor")
+    svg = _PATH.sub(lambda match: _DIGITS.sub(r"\1", match[0]), svg)
     return _drop_unused_ids(_FONT.sub(r"\1inherit", svg))
 
 

@@ -65,7 +65,7 @@ def save_figure(figure: Any, path: Path) -> None:
 def _draw_skeleton(axes: Any, robot: Robot, q: Floats) -> None:
     """The line of key points from the base to the tool, and the tool's axes (x red, y green, z blue)."""
     Ts_world = compute_frames(robot, q)
-    line = np.array([Ts_world[name][:3, 3] for name in _chain(robot)])
+    line = np.array([Ts_world[name][:3, 3] for name in drawn_chain(robot)])
     axes.plot(*line.T, "o-", color="0.2", linewidth=2.0, markersize=3.5, zorder=5)
     T_world_tool = Ts_world[robot.tool]
     for k, color in enumerate(AXES):
@@ -73,7 +73,7 @@ def _draw_skeleton(axes: Any, robot: Robot, q: Floats) -> None:
         axes.plot(*np.array([T_world_tool[:3, 3], tip]).T, color=color, linewidth=2.5, zorder=6)
 
 
-def _chain(robot: Robot) -> list[str]:
+def drawn_chain(robot: Robot) -> list[str]:
     """Frames from the base to the tool, without the rails that a mobile base slides on."""
     frames = {frame.name: frame for frame in robot.frames}
     kinds = {joint.name: joint.kind for joint in robot.joints}
@@ -147,7 +147,7 @@ def _draw_sphere(axes: Any, centre: Floats, radius: float, color: str, label: st
 
 def _set_view(axes: Any, robot: Robot, q: Floats) -> None:
     """Look at the robot from its right, a little from the front and from above."""
-    heading = compute_frames(robot, q)[_chain(robot)[0]][:2, 0]
+    heading = compute_frames(robot, q)[drawn_chain(robot)[0]][:2, 0]
     axes.view_init(elev=16, azim=float(np.degrees(np.arctan2(heading[1], heading[0]))) - 68)
 
 
@@ -161,7 +161,7 @@ def _nearness(axes: Any, point: Floats) -> float:
 def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, target: Target | None) -> None:
     """One scale for all three axes, around everything that is drawn."""
     Ts_world = compute_frames(robot, q)
-    chain = _chain(robot)
+    chain = drawn_chain(robot)
     lows = [Ts_world[name][:3, 3] for name in chain]
     highs = list(lows)
     if target is not None:

@@ -13,6 +13,7 @@ DASHES = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (7, 1.5, 1.5, 1.5)), (0, (9, 
 MARKERS = ("o", "s", "^", "D", "v", "P")
 HATCHES = ("", "////", "....", "\\\\\\\\", "xxxx", "----")
 WIDTH_IN, HEIGHT_IN = 5.4, 3.2  # small, so that 10 pt are still legible on a phone
+SPACE_IN = 4.2  # height of a drawing in space
 LEGEND_CHARACTERS, LEGEND_LINE_IN = 62, 0.21  # a legend's line: what it holds at this width, and its height
 
 _STYLE: dict[Any, Any] = {
@@ -55,19 +56,53 @@ class Axis:
 @contextmanager
 def drawing(x: Axis, y: Axis, *, height_in: float = HEIGHT_IN, grid: str = "y") -> Iterator[tuple[Any, Any]]:
     """An empty chart to draw into, as `(figure, axes)`; its scales and its legend are set when the block ends."""
+    with drawing_panels(x, [y], height_in=height_in, grid=grid) as (figure, panels):
+        yield figure, panels[0]
+
+
+@contextmanager
+def drawing_panels(
+    x: Axis, ys: Sequence[Axis], *, columns: int = 1, height_in: float = HEIGHT_IN, grid: str = "y"
+) -> Iterator[tuple[Any, list[Any]]]:
+    """Empty charts over one x, row by row, as `(figure, [axes, ...])`: one legend for all; `height_in` of a row."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    rows = -(-len(ys) // columns)
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure(figsize=(WIDTH_IN, height_in * rows), layout="constrained")
+        panels: list[Any] = [figure.add_subplot(rows, columns, number) for number in range(1, len(ys) + 1)]
+        for axes in panels:
+            axes.grid(axis=grid)
+            axes.tick_params(colors=INK, length=3.5)
+        yield figure, panels
+        for number, (axes, y) in enumerate(zip(panels, ys, strict=True)):
+            is_last = number + columns >= len(ys)
+            axes.set(xlabel=x.title if is_last else "", ylabel=y.title)
+            axes.tick_params(labelbottom=is_last)
+            _set_scale(axes.xaxis, axes.set_xscale, axes.set_xlim, x)
+            _set_scale(axes.yaxis, axes.set_yscale, axes.set_ylim, y)
+        _set_legend(figure, panels)
+
+
+@contextmanager
+def drawing_space() -> Iterator[tuple[Any, Any]]:
+    """An empty space in metres to draw into, as `(figure, axes)`."""
     import matplotlib
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(_STYLE):
-        figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
-        axes: Any = figure.add_subplot()
-        axes.grid(axis=grid)
-        axes.tick_params(colors=INK, length=3.5)
+        figure = Figure(figsize=(WIDTH_IN, SPACE_IN), layout="constrained")
+        axes: Any = figure.add_subplot(projection="3d")
         yield figure, axes
-        axes.set(xlabel=x.title, ylabel=y.title)
-        _set_scale(axes.xaxis, axes.set_xscale, axes.set_xlim, x)
-        _set_scale(axes.yaxis, axes.set_yscale, axes.set_ylim, y)
-        _set_legend(figure, axes)
+        axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+        axes.view_init(elev=22, azim=-55)
+        for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+            axis.set_pane_color((0.0, 0.0, 0.0, 0.0))
+            axis.line.set_color(INK)
+            axis.set_tick_params(color=INK, labelcolor=INK, labelsize=8)
+            axis.get_major_locator().set_params(nbins=4)
+        _set_legend(figure, [axes])
 
 
 def pick(choices: Sequence[Any], index: int) -> Any:
@@ -101,9 +136,14 @@ def _set_log_ticks(ticks: Any) -> None:
     ticks.set_minor_formatter(NullFormatter())
 
 
-def _set_legend(figure: Any, axes: Any) -> None:
-    """Above the chart, where it hides nothing, in as many columns as fit; the figure grows by its lines."""
-    handles, labels = axes.get_legend_handles_labels()
+def _set_legend(figure: Any, panels: Sequence[Any]) -> None:
+    """Above the charts, where it hides nothing, in as many columns as fit; the figure grows by its lines."""
+    handles, labels = panels[0].get_legend_handles_labels()
+    for axes in panels[1:]:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            if label not in labels:
+                handles.append(handle)
+                labels.append(label)
     if not labels:
         return
     columns = _legend_columns([len(label) + 6 for label in labels])

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ikde.report.markup import parse_line, parse_text
-from ikde.report.page import Block, Cell, Code, Facts, Figure, Gallery, Notice, Numbers, Page, Table, Text
+from ikde.report.page import Animation, Block, Cell, Code, Facts, Figure, Gallery, Notice, Numbers, Page, Table, Text
 
 _RULES = {"left": ":--", "right": "--:"}
 _MARKS = {"": "{}", "published": "_{}_", "ours": "**{}**", "off": "≠ **{}**"}
@@ -89,9 +89,9 @@ def _cell(cell: Cell) -> str:
     return _MARKS[cell.mark].format(_plain(cell.text)) if cell.text else ""
 
 
-def _figure(figure: Figure) -> str:
+def _figure(figure: Figure | Animation) -> str:
     caption = f" {_line(figure.caption)}" if figure.caption else ""
-    return f"_Figure in the HTML page: {_plain(figure.alt)}_{caption}"
+    return f"_{type(figure).__name__} in the HTML page: {_plain(figure.alt)}_{caption}"
 
 
 _WRITERS: Mapping[type, Callable[[Any], str]] = {
@@ -102,5 +102,6 @@ _WRITERS: Mapping[type, Callable[[Any], str]] = {
     Code: _code,
     Table: _table,
     Figure: _figure,
+    Animation: _figure,
     Gallery: lambda gallery: "\n\n".join(map(_figure, gallery.figures)),
 }

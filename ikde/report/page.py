@@ -125,14 +125,25 @@ class Figure:
     caption: str = ""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Animation:
+    """A motion that the page plays: `data` is what `plot.animation` makes, as JSON."""
+
+    data: str = field(repr=False)
+    alt: str
+    caption: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Gallery:
     """Figures side by side, as far as the window is wide."""
 
-    figures: tuple[Figure, ...]
+    figures: tuple[Figure | Animation, ...]
+    narrow: bool = False
+    """Three to a row instead of two."""
 
 
-Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Gallery
+Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +164,13 @@ class Page:
     subtitle: str = ""
     lead: tuple[Block, ...] = ()
     footer: str = ""
+
+    @property
+    def moves(self) -> bool:
+        """True if it holds an animation."""
+        blocks = chain(self.lead, *(section.blocks for section in self.sections))
+        shown = chain.from_iterable(block.figures if isinstance(block, Gallery) else (block,) for block in blocks)
+        return any(isinstance(block, Animation) for block in shown)
 
     def anchors(self) -> list[str]:
         """One anchor a section, each of them once: given, or made from the title."""

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from ikde.batch.arms import describe_arm, make_arm, make_arms, read_detector
-from ikde.batch.spec import BatchSpec, DetectorEntry, SolveEntry, UnitsEntry
+from ikde.batch.arms import describe_arm, make_arm, make_arms
+from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.errors import InputError
+from ikde.files.entries import UnitsEntry
 
 MM_DEG = UnitsEntry(length="mm", angle="deg")
 SI = UnitsEntry()
@@ -105,13 +106,6 @@ def test_names_of_arms_can_name_files(qiao):
 )
 def test_what_does_not_fit_the_robot_is_named(qiao, keys, expected):
     assert complaint(arm, qiao, **keys).startswith(expected)
-
-
-def test_detectors_are_names_or_the_users_own(qiao):
-    assert read_detector(qiao, None, SI) is qiao.detectors["improved"]
-    assert read_detector(qiao, "none", SI) is None
-    own = read_detector(qiao, DetectorEntry(name="own", spheres="single"), SI)
-    assert (own.name, own.spheres, own.pairs, own.safe_distance_m) == ("own", "single", "non_adjacent", 0.0)
 
 
 def test_the_description_holds_what_the_answers_hang_on(qiao):

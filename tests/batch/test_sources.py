@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ikde.batch.sources import ListSource, PointSource, TableSource, make_orientation
-from ikde.errors import InputError
+from ikde.batch.sources import ListSource, PointSource
+from ikde.files.table_targets import TableSource
 from ikde.model.target import Target
 
 few = settings(derandomize=True, deadline=None, max_examples=25)
@@ -49,15 +49,3 @@ def test_a_row_becomes_its_kind_of_target(source, kind):
     target = SOURCES[source].read(4, 5)[0]
     assert target.kind == kind
     np.testing.assert_array_equal(target.p_world_tool, POSITIONS[4])
-
-
-def test_orientations_are_what_target_takes():
-    half_turn = np.diag([-1.0, -1.0, 1.0])
-    np.testing.assert_allclose(make_orientation("rpy", np.array([0, 0, np.pi]))["R_world_tool"], half_turn, atol=1e-15)
-    np.testing.assert_array_equal(make_orientation("quat_wxyz", np.array([0, 0, 0, 9.0]))["R_world_tool"], half_turn)
-    np.testing.assert_array_equal(make_orientation("axis", [0, 0, 2])["axis_world_tool"], [0, 0, 2])
-
-
-def test_a_quaternion_of_length_zero_is_refused():
-    with pytest.raises(InputError, match="quaternion of length 0"):
-        make_orientation("quat_wxyz", np.zeros(4))

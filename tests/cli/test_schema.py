@@ -14,13 +14,20 @@ def test_the_schema_of_a_run_file_explains_its_keys(cli):
     assert outcome.data["$defs"]["GridEntry"]["required"] == ["from", "to", "counts"]
 
 
+def test_the_schema_of_a_track_file_explains_its_keys(cli):
+    data = cli("schema", "track").data
+    assert data["required"] == ["robot", "dt_s", "path"]
+    assert data["properties"]["samples"]["description"].startswith("N, samples after the start")
+    assert data["$defs"]["CurveEntry"]["required"] == ["from", "segments"]
+
+
 def test_the_schema_of_a_robot_file_is_there_too(cli):
     assert {"joints", "frames", "tool"} <= set(cli("schema", "robot").data["required"])
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
-    [((), "batch or robot, got nothing"), (("bacth",), "batch or robot, got bacth (did you mean 'batch'?)")],
+    [((), "of batch, track, robot, got nothing"), (("bacth",), "robot, got bacth (did you mean 'batch'?)")],
 )
 def test_other_names_are_refused(refuse, arguments, words):
     assert words in refuse("schema", *arguments)

@@ -1,6 +1,7 @@
 """A page with every kind of block, and a drawing small enough to read."""
 
 from ikde.report.page import (
+    Animation,
     Cell,
     Code,
     Column,
@@ -21,6 +22,7 @@ DRAWING = (
     '<svg viewBox="0 0 9 9"><defs><path id="m1" d="M 0 0"/><clipPath id="c1"/></defs>'
     '<use href="#m1" clip-path="url(#c1)"/></svg>'
 )
+MOVING = Animation(data='{"names":["<b>"]}', alt="a robot moving")
 RATES = Table(
     columns=(
         Column("detector", align="left"),
@@ -41,7 +43,9 @@ def make_page():
         lead=(Numbers((Number("73.2 %", "reached", "print: 75 %"), Number("0", "lost"))), Notice("**Not** finished.")),
         sections=(
             Section("Rates", (Text("See [poses](#poses).\n\n- one\n- two"), RATES, svg)),
-            Section("Poses", (Gallery((svg, png)), Facts((("seed", "`2021`"),)), Code("a < b | c", "In a shell"))),
+            Section(
+                "Poses", (Gallery((svg, png)), MOVING, Facts((("seed", "`2021`"),)), Code("a < b | c", "In a shell"))
+            ),
         ),
         footer="ikde `0.1`",
     )

@@ -7,10 +7,10 @@ from html.parser import HTMLParser
 import pytest
 
 from ikde.report.html import render_html
-from ikde.report.page import Column, Page, Section, Table, Text
-from tests.report.pages import make_page
+from ikde.report.page import Column, Figure, Gallery, Page, Section, Table, Text
+from tests.report.pages import DRAWING, make_page
 
-VOID = {"meta", "img", "br", "path", "use"}
+VOID = {"meta", "img", "br", "path", "use", "input"}
 
 
 class Reader(HTMLParser):
@@ -50,7 +50,7 @@ def reader(text):
 
 def test_every_kind_of_block_is_there(text, reader):
     assert reader.open == []
-    for kind in ("numbers", "notice", "facts", "code", "table", "picture", "picture photo", "gallery"):
+    for kind in ("numbers", "notice", "facts", "code", "table", "picture", "picture photo", "gallery", "animation"):
         assert f'class="{kind}"' in text
     assert reader.seen["li"] == 2 + 2  # of the contents and of the list
     assert "<p>ikde <code>0.1</code></p>" in text
@@ -58,7 +58,7 @@ def test_every_kind_of_block_is_there(text, reader):
 
 def test_what_others_wrote_is_no_html(text, reader):
     assert "<script>alert" not in text
-    assert reader.seen["script"] == 1  # the copy button
+    assert reader.seen["script"] == 1  # the copy button and the player
     assert '<td class="left long">&lt;script&gt;alert(&#39;a|b&#39;)&lt;/script&gt; &amp; co_</td>' in text
     assert "<code>a &lt; b | c</code>" in text
     assert 'aria-label="a &#34;curve&#34;"' in text
@@ -83,6 +83,12 @@ def test_marks_units_and_groups_reach_the_table(text):
     assert 'data-head="here: SR [%]"' in text
     assert '<th scope="colgroup" colspan="1">print</th>' in text
     assert "Rates of <strong>both</strong> detectors" in text
+
+
+def test_a_gallery_may_be_narrow():
+    svg = Figure(image=DRAWING, alt="a curve")
+    text = render_html(Page(title="t", sections=(Section("s", (Gallery((svg,) * 3, narrow=True),)),)))
+    assert '<div class="gallery narrow">' in text
 
 
 def test_an_empty_table_says_so():

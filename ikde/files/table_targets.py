@@ -1,20 +1,48 @@
 """Targets from a table: one array of numbers, checked row by row before anything runs."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ikde.batch.placed import placed
-from ikde.batch.sources import OrientationKind, TableSource
-from ikde.batch.spec import ColumnsEntry, UnitsEntry, chosen_orientation
-from ikde.batch.tables import Column, Table, as_floats, as_names, errors_of, open_table, row_error
 from ikde.errors import FileError, InputError, nearest
+from ikde.files.entries import ColumnsEntry, OrientationKind, UnitsEntry, chosen_orientation
+from ikde.files.placed import placed
+from ikde.files.poses import join_poses, make_orientation
+from ikde.files.tables import Column, Table, as_floats, as_names, errors_of, open_table, row_error
 from ikde.kernels.arrays import Floats
-from ikde.model.target import FARTHEST
+from ikde.model.target import FARTHEST, POSE, Targets
 
 LARGEST = 1e9  # of a number that is no position: beyond, digits are lost
 SHORTEST = 1e-12  # of an axis or a quaternion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TableSource:
+    """Targets held as one array of numbers, for files of a million rows."""
+
+    positions: Floats
+    """[T, 3] m"""
+    kind: OrientationKind | None
+    orientations: Floats | None
+    """[T, 3 or 4]: an axis, roll, pitch, yaw in rad, or a quaternion; None for position targets."""
+    names: tuple[str, ...] | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of targets."""
+        return len(self.positions)
+
+    def read(self, first: int, last: int) -> Targets:
+        """Targets first .. last - 1."""
+        positions = self.positions[first:last]
+        if self.kind is None or self.orientations is None:
+            return Targets(positions)
+        orientations = make_orientation(self.kind, self.orientations[first:last])
+        if "R_world_tool" in orientations:
+            return join_poses(POSE, positions, orientations["R_world_tool"])
+        return Targets(positions, **orientations)
 
 
 def read_targets(path: Path, columns: ColumnsEntry, units: UnitsEntry) -> TableSource:

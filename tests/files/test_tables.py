@@ -5,8 +5,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from ikde.batch.tables import as_floats, as_names, errors_of, open_table
 from ikde.errors import FileError, InputError
+from ikde.files.tables import as_floats, as_names, errors_of, open_table
 
 ROWS = "name,x,note\na,1.5,\nb,-2e3,ok\n"
 

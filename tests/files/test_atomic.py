@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from ikde.batch.atomic import remove_temporaries, temporary_path, write_atomically, write_together
+from ikde.files.atomic import remove_temporaries, temporary_path, write_atomically, write_together
 
 
 def test_a_file_is_written_and_written_over(tmp_path):

@@ -5,9 +5,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from ikde.batch.spec import ColumnsEntry, UnitsEntry
-from ikde.batch.table_targets import read_targets
 from ikde.errors import FileError, InputError
+from ikde.files.entries import ColumnsEntry, UnitsEntry
+from ikde.files.table_targets import read_targets
 
 P = np.array([[100.0, 200.0, 300.0], [-1.0, 0.5, 2.0]])
 TURN = np.array([[0.0, 0.0, 90.0], [10.0, 20.0, 30.0]])

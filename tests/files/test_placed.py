@@ -2,8 +2,8 @@
 
 import pytest
 
-from ikde.batch.placed import placed
 from ikde.errors import FileError, InputError
+from ikde.files.placed import placed
 
 
 def test_each_level_adds_its_keys():

@@ -1,0 +1,151 @@
+"""Ways to follow a path beside one another: what each reaches, breaks and costs, over seeds and random starts."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.solver.settings import SolveSettings
+from ikde.solver.solve import solve_many
+from ikde.track.drive import DriveName
+from ikde.track.follow import Follower, make_follower
+from ikde.track.plan import TrackPlan
+from ikde.track.run import make_limits, run_track
+from ikde.track.spec import TrackMethod
+from ikde.track.summary import TrackSummary, summarise_track
+
+METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
+NINE_VARIABLES: Mapping[str, DriveName] = {"typical": "omnidirectional"}
+"""`typical` searches x, y and heading as if the base could move anywhere, whatever drives it."""
+STARTED_ANYWHERE = ("optimized", "continuation")
+"""Methods for which the start matters: `typical` begins anew at every sample."""
+EXACT = SolveSettings(method="lm", position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9, restarts=1)
+LEAST_MOTION = np.zeros(3)
+DRAWS_PER_START = 50
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackBudget:
+    """How often each method is run."""
+
+    seeds: int
+    starts: int
+    """Random configurations at the first pose."""
+
+
+FULL = TrackBudget(seeds=10, starts=100)
+QUICK = TrackBudget(seeds=2, starts=5)
+
+
+class Progress(Protocol):
+    """What is told how far a comparison is."""
+
+    def begin(self, section: str) -> None:
+        """Name what is being computed."""
+
+    def advance(self, solves: int) -> None:
+        """Count what is done."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Compared:
+    """One track and the methods that followed it."""
+
+    plan: TrackPlan
+    motions: Mapping[str, TrackSummary]
+    """Of the first seed."""
+    data: Mapping[str, Any]
+    """All seeds and starts, as plain data."""
+
+
+def count_runs(tracks: int, methods: Sequence[TrackMethod], budget: TrackBudget) -> int:
+    """Motions of a whole comparison."""
+    return tracks * sum(budget.seeds + (budget.starts if m in STARTED_ANYWHERE else 0) for m in methods)
+
+
+def compare_methods(
+    plan: TrackPlan, methods: Sequence[TrackMethod], budget: TrackBudget, progress: Progress
+) -> Compared:
+    """Follow one track by each method with every seed, and from every start."""
+    motions, runs = {}, []
+    for method in methods:
+        progress.begin(f"{plan.name}: {method}")
+        for seed in range(plan.seed, plan.seed + budget.seeds):
+            motion = follow(plan, method, seed=seed)
+            motions.setdefault(method, motion)
+            runs.append({"method": method, "drive": motion.trajectory.drive, "seed": seed, **measure(motion)})
+            progress.advance(1)
+    progress.begin(f"{plan.name}: random starts")
+    ends = count_dead_ends(plan, [method for method in methods if method in STARTED_ANYWHERE], budget.starts, progress)
+    told = {"name": plan.name, "file": plan.file, "points": plan.path.samples, "dt_s": plan.path.dt_s}
+    return Compared(plan=plan, motions=motions, data={**told, "runs": runs, "dead_ends": ends})
+
+
+def follow(plan: TrackPlan, method: TrackMethod, **changes: Any) -> TrackSummary:
+    """One motion, measured."""
+    trajectory = run_track(plan, method=method, drive=NINE_VARIABLES.get(method), **changes)
+    return summarise_track(plan.robot, plan.detector, trajectory)
+
+
+def measure(motion: TrackSummary) -> dict[str, Any]:
+    """A motion's row of the table; None where there is nothing to measure."""
+    graded, trajectory = motion.verification, motion.trajectory
+    broken, seconds = asdict(graded.breaches), trajectory.seconds
+    return {
+        "points": trajectory.path.samples,
+        "reached_points": motion.met_points,
+        "largest_axis_error_mm": 1e3 * graded.largest_axis_error_m,
+        "largest_total_error_mm": 1e3 * graded.total_error_m,
+        "largest_rotation_error_rad": graded.largest_orientation_error_rad,
+        "broken": broken,
+        "limit_violations": sum(count for name, count in broken.items() if name not in ("error", "collision")),
+        "colliding_samples": broken["collision"],
+        "smallest_clearance_mm": _finite(1e3 * graded.clearance_m),
+        "certified_clearance_mm": _finite(1e3 * motion.certificate.clearance_m),
+        "largest_jump_m": motion.largest_step("prismatic"),
+        "largest_jump_rad": motion.largest_step("revolute"),
+        "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
+        "median_s": float(np.median(seconds)) if len(seconds) else None,
+        "p99_s": float(np.quantile(seconds, 0.99)) if len(seconds) else None,
+        "stop": trajectory.stop.text if trajectory.stop else None,
+    }
+
+
+def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int, progress: Progress) -> dict[str, Any]:
+    """How often each method, and the greedy follower without a way back, end early from random starts."""
+    limits = make_limits(plan.robot, plan.limits)
+    follower = make_follower(plan.robot, plan.path, drive=plan.drive, limits=limits, detector=plan.detector)
+    starts = draw_random_starts(follower, count, plan.seed)
+    reached = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}
+    for method in methods:
+        reached[method] = list(_reach(plan, method, starts, progress))
+    early = {name: sum(points < plan.path.samples for points in ends) for name, ends in reached.items()}
+    return {"starts": len(starts), **early, "reached_points": reached}
+
+
+def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
+    """Free configurations [S, N], S <= count, at the path's first pose, where random ones come to rest."""
+    robot, target = follower.robot, follower.path.targets()[0]
+    rng, found, slides = np.random.default_rng(seed), [], follower.robot.slides
+    told = {"detector": follower.detector or "none", "threads": 1, "explain_failures": False}
+    place = np.resize(target.p_world_tool, slides.sum())
+    for _ in range(DRAWS_PER_START * count):
+        near = rng.uniform(robot.lower, robot.upper)
+        near[slides] = np.clip(place + rng.uniform(-1.0, 1.0, len(place)), robot.lower[slides], robot.upper[slides])
+        row = solve_many(robot, [target], EXACT, near=near, **told)
+        found += list(row.q[row.reached])
+        if len(found) == count:
+            break
+    return np.array(found).reshape(-1, len(robot.joints))
+
+
+def _reach(plan: TrackPlan, method: TrackMethod, starts: Floats, progress: Progress) -> Iterator[int]:
+    for start in starts:
+        yield run_track(plan, method=method, start=start).reached_points
+        progress.advance(1)
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,90 @@
+"""`ikde bench track`: ways to follow the same tool paths side by side, as one page."""
+
+import gc
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ikde.cli.options import JsonOption
+from ikde.cli.output import announce_compile, print_json, print_result
+from ikde.cli.progress import Bar, Lines
+
+if TYPE_CHECKING:
+    from ikde.bench.tracks import Progress
+    from ikde.track.spec import TrackMethod
+
+
+def bench_track(
+    tracks: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="Track files, such as configs/tracks/*.yaml.")
+    ],
+    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Where report.html and results.json go.")] = Path(
+        "report"
+    ),
+    methods: Annotated[
+        str | None, typer.Option(metavar="METHOD,...", help="Compare these alone (default: all three).")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="2 seeds and 5 starts instead of 10 and 100.")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Follow tool paths by the paper's methods and ikde's, and show them beside one another.
+
+    Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
+    """
+    from ikde.bench.tracks import FULL, QUICK, compare_methods, count_runs
+    from ikde.io.report_folder import RESULTS, format_results, prepare_folder, write_report
+    from ikde.io.track_file import load_track
+    from ikde.kernels.jit import compile_clock
+    from ikde.report.html import render_html
+    from ikde.report.track_comparison import compare_json, make_comparison_page
+
+    gc.enable()
+    chosen, budget = _read_methods(methods), QUICK if quick else FULL
+    plans = [load_track(path) for path in tracks]
+    prepare_folder(out)
+    with _show_progress(count_runs(len(plans), chosen, budget)) as progress:
+        with compile_clock(lambda: announce_compile("about a minute")):
+            compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
+        progress.begin("page")
+        page = make_comparison_page(compared, budget, _repeat(tracks, methods, quick))
+        data = compare_json(compared, budget)
+        write_report(out, {RESULTS: format_results(data), "report.html": render_html(page)})
+    if as_json:
+        print_json(data)
+    else:
+        print_result(f"{out / 'report.html'}  ({RESULTS} beside it)")
+
+
+def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":
+    from ikde.bench.tracks import METHODS
+
+    if text is None:
+        return METHODS
+    chosen = tuple(filter(None, text.split(",")))
+    if not chosen or not set(chosen) <= set(METHODS):
+        raise typer.BadParameter(f"expected some of {', '.join(METHODS)}, got {text!r}", param_hint="--methods")
+    return tuple(method for method in METHODS if method in chosen)
+
+
+def _repeat(tracks: Sequence[Path], methods: str | None, quick: bool) -> str:
+    """The command that makes the page again."""
+    options = [*(["--methods", methods] if methods else []), *(["--quick"] if quick else [])]
+    return shlex.join(["ikde", "bench", "track", *map(str, tracks), *options, "--out", "FOLDER"])
+
+
+@contextmanager
+def _show_progress(runs: int) -> Iterator["Progress"]:
+    """A bar of motions on stderr with what is being done; for a log the names alone."""
+    if not sys.stderr.isatty():
+        yield Lines()
+        return
+    from rich.console import Console
+    from rich.progress import Progress as Bars
+
+    with Bars(console=Console(stderr=True)) as bars:
+        yield Bar(bars, runs)

@@ -1,0 +1,93 @@
+"""`ikde track`: follow a path of the tool with the whole robot, into a folder that a robot could run from."""
+
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ikde.cli.exit_codes import ExitCode
+from ikde.cli.options import AnglesOption, AngleUnit, ConventionOption, JsonOption, LengthUnit, UnitOption, read_q
+from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
+
+if TYPE_CHECKING:
+    from ikde.track.plan import TrackPlan
+    from ikde.track.summary import TrackSummary
+
+INSTEAD = "Instead of what the file says"
+
+
+def track(
+    spec: Annotated[
+        Path, typer.Argument(metavar="FILE", help="What to follow: see configs/tracks/ and `ikde schema track`.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FOLDER", help="Where the motion, its figures and its page go.")
+    ] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(help="continuation (ikde's own), optimized or typical (the paper's).", rich_help_panel=INSTEAD),
+    ] = None,
+    drive: Annotated[str | None, typer.Option(help="differential or omnidirectional.", rich_help_panel=INSTEAD)] = None,
+    seed: Annotated[int | None, typer.Option(help="Same seed, same motion.", rich_help_panel=INSTEAD)] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(metavar="Q", help="Configuration at the first pose (as --q of check).", rich_help_panel=INSTEAD),
+    ] = None,
+    unit: UnitOption = LengthUnit.m,
+    angles: AnglesOption = AngleUnit.rad,
+    convention: ConventionOption = None,
+    plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Make the page with figures: report.html.")] = True,
+    as_json: JsonOption = False,
+) -> None:
+    """Follow a tool path inside all limits, free of self-collision at the samples and between them.
+
+    If it cannot be followed it says at which sample and what is in the way, writes what was followed, and exits with 1.
+
+    Example: ikde track configs/tracks/qiao2022_task1.yaml --out runs/task1
+    """
+    from ikde.io.track_file import load_track
+    from ikde.io.track_folder import open_folder, write_track
+    from ikde.report.track import format_track, track_json
+
+    gc.enable()
+    plan = load_track(spec)
+    begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
+    with open_folder(out) if out else nullcontext():
+        with _show_steps() as tell:
+            tell(f"following {plan.name}")
+            motion = _follow(plan, tell, method=method, drive=drive, seed=seed, start=begin)
+            page = _draw(plan, motion, tell) if out and plot else None
+        data = track_json(plan, motion)
+        files = write_track(out, motion.trajectory, data, page) if out else ()
+    if as_json:
+        print_json({**data, "files": [str(file) for file in files]})
+    else:
+        print_result(format_track(plan, motion, files, color=use_color()))
+    raise typer.Exit(ExitCode.OK if data["reached"] and data["accepted"] else ExitCode.NOT_REACHED)
+
+
+def _follow(plan: "TrackPlan", tell: Callable[[str], None], **changes: Any) -> "TrackSummary":
+    from ikde.track.run import run_track
+    from ikde.track.summary import summarise_track
+
+    trajectory = run_track(plan, announce_compile=announce_compile, **changes)
+    tell(f"measuring {trajectory.reached_points} points")
+    return summarise_track(plan.robot, plan.detector, trajectory)
+
+
+def _draw(plan: "TrackPlan", motion: "TrackSummary", tell: Callable[[str], None]) -> str:
+    from ikde.report.html import render_html
+    from ikde.report.track_page import make_track_page
+
+    tell("drawing")
+    return render_html(make_track_page(plan, motion))
+
+
+@contextmanager
+def _show_steps() -> Iterator[Callable[[str], None]]:
+    """What is being done, on stderr, if somebody is looking."""
+    with working("") as status:
+        yield (lambda text: None) if status is None else lambda text: status.update(f"{text} ...")

@@ -1,0 +1,1 @@
+"""Floor 4: what all files that users write and get share: entries, tables, units, errors in place, whole files."""

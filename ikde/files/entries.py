@@ -1,0 +1,134 @@
+"""Entries that several kinds of files share: numbers, units, orientations, tables, detectors."""
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
+
+from ikde.errors import InputError
+
+OrientationKind = Literal["axis", "rpy", "quat_wxyz"]
+ORIENTATIONS: tuple[OrientationKind, ...] = get_args(OrientationKind)
+Name = Annotated[str, StringConstraints(min_length=1)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
+Count = Annotated[int, Field(strict=True, ge=1, le=10**9)]
+Interval = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
+ThreeNames = Annotated[list[Name], Field(min_length=3, max_length=3)]
+FourNames = Annotated[list[Name], Field(min_length=4, max_length=4)]
+
+
+def _text_or_entry(value: Any) -> str:
+    return "text" if isinstance(value, str) else "entry"
+
+
+AsText, AsEntry, TextOrEntry = Tag("text"), Tag("entry"), Discriminator(_text_or_entry)  # errors of one branch only
+ThreeColumns = Annotated[Annotated[Name, AsText] | Annotated[ThreeNames, AsEntry], TextOrEntry]
+FourColumns = Annotated[Annotated[Name, AsText] | Annotated[FourNames, AsEntry], TextOrEntry]
+
+
+class Entry(BaseModel):
+    """Part of a run file: unknown keys are errors, and the text under a key is what an editor shows."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, populate_by_name=True)
+
+
+class UnitsEntry(Entry):
+    """Units of the lengths and angles that are written here."""
+
+    length: Literal["m", "mm"] = "m"
+    """Unit of lengths."""
+    angle: Literal["rad", "deg"] = "rad"
+    """Unit of angles."""
+
+    @property
+    def length_m(self) -> float:
+        """One unit of length in m."""
+        return 1e-3 if self.length == "mm" else 1.0
+
+    @property
+    def angle_rad(self) -> float:
+        """One unit of angle in rad."""
+        return math.pi / 180.0 if self.angle == "deg" else 1.0
+
+
+class OrientationEntry(Entry):
+    """How the tool is turned; at most one key."""
+
+    axis: Vector | None = None
+    """Direction of the tool's z axis, any length; the turn about it stays free."""
+    rpy: Vector | None = None
+    """Roll, pitch, yaw about the fixed axes x, y, z of the world, as in URDF."""
+    quat_wxyz: Quaternion | None = None
+    """Quaternion, w first, any length."""
+
+
+class InlineTarget(OrientationEntry):
+    """One target in the world frame."""
+
+    position: Vector
+    """Where the tool should be."""
+    name: Name | None = None
+    """What to call it in the results."""
+
+
+class ColumnsEntry(Entry):
+    """Which columns of the file hold what. An array of an NPZ file may hold all numbers of a key: `position: p`."""
+
+    position: ThreeColumns
+    """Columns of x, y, z."""
+    axis: ThreeColumns | None = None
+    """Columns of the direction of the tool's z axis."""
+    rpy: ThreeColumns | None = None
+    """Columns of roll, pitch, yaw."""
+    quat_wxyz: FourColumns | None = None
+    """Columns of the quaternion, w first."""
+    name: Name | None = None
+    """Column of the targets' names."""
+
+
+def chosen_orientation(entry: OrientationEntry | ColumnsEntry) -> OrientationKind | None:
+    """The one key that gives an orientation, or None; raises `InputError` for two."""
+    given: list[OrientationKind] = [kind for kind in ORIENTATIONS if getattr(entry, kind) is not None]
+    if len(given) > 1:
+        raise InputError(f"{' and '.join(given)} both ask for an orientation; give one", (given[1],))
+    return given[0] if given else None
+
+
+class FileEntry(Entry):
+    """Targets from a table, a row each."""
+
+    path: Name
+    """A .csv, .parquet or .npz file, relative to the run file."""
+    columns: ColumnsEntry
+    """Which columns hold what."""
+    units: UnitsEntry | None = None
+    """Units of the table (default: those of the run file)."""
+
+
+class DetectorEntry(Entry):
+    """A detector of your own, from the robot's approximations and pair lists."""
+
+    name: Name
+    """What to call it in the results."""
+    spheres: Name
+    """The robot's sphere approximation."""
+    pairs: Name = "non_adjacent"
+    """The robot's list of component pairs to look at."""
+    safe_distance: Number = 0.0
+    """Clearance at which collision begins."""
+
+
+DetectorChoice = Annotated[Annotated[Name, AsText] | Annotated[DetectorEntry, AsEntry], TextOrEntry]
+
+
+def only_key(entry: Entry, keys: Sequence[str] = ()) -> str:
+    """The one of `keys` (of all keys, by default) that is given; raises `InputError` for none or several."""
+    known = keys or tuple(type(entry).model_fields)
+    given = [key for key in known if getattr(entry, key) is not None]
+    if len(given) != 1:
+        message = f"expected one of {', '.join(known)}, got {' and '.join(given) or 'none'}"
+        raise InputError(message, tuple(given[1:2]))
+    return given[0]

@@ -1,0 +1,51 @@
+"""What files say about a robot's joints and detectors, in m and rad."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ikde.errors import InputError, nearest
+from ikde.files.entries import DetectorEntry, UnitsEntry
+from ikde.model.robot import NO_DETECTOR, Detector, Joint, Robot, check_detector
+from ikde.solver.joints import FARTHEST
+
+
+def read_detector(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> Detector | None:
+    """A detector by name, one of the user's own, or the robot's; None for `none`."""
+    if not isinstance(choice, DetectorEntry):
+        return robot.detector(choice)
+    if choice.name == NO_DETECTOR:
+        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", ("name",))
+    safe_distance_m = choice.safe_distance * units.length_m
+    own = Detector(name=choice.name, spheres=choice.spheres, pairs=choice.pairs, safe_distance_m=safe_distance_m)
+    check_detector(robot, own, ())
+    return own
+
+
+def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEntry) -> Robot:
+    """The robot with other joint limits: narrower or wider."""
+    lower = to_si(robot, "ranges", {name: interval[0] for name, interval in ranges.items()}, units)
+    upper = to_si(robot, "ranges", {name: interval[1] for name, interval in ranges.items()}, units)
+    for name in ranges:
+        if not lower[name] <= upper[name]:
+            raise InputError("this range is upside down: upper is below lower", ("ranges", name))
+    if not ranges:
+        return robot
+
+    def narrow(joint: Joint) -> Joint:
+        return replace(joint, lower=lower.get(joint.name, joint.lower), upper=upper.get(joint.name, joint.upper))
+
+    return replace(robot, joints=tuple(map(narrow, robot.joints)))
+
+
+def to_si(robot: Robot, key: str, values: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:
+    """Joint values in m and rad; None stays None."""
+    scale = {j.name: units.length_m if j.kind == "prismatic" else units.angle_rad for j in robot.joints}
+    converted = {}
+    for name, value in values.items():
+        if name not in scale:
+            known = nearest(name, scale) or f"; it has {', '.join(scale)}"
+            raise InputError(f"{robot.name} has no joint {name!r}{known}", (key, name))
+        converted[name] = None if value is None else value * scale[name]
+        if value is not None and abs(converted[name]) > FARTHEST:
+            raise InputError(f"expected at most {FARTHEST:g} m or rad, got {converted[name]:g}", (key, name))
+    return converted

@@ -1,0 +1,69 @@
+"""Files that name a robot and say what to do with it, run files and track files: how they become plans."""
+
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from ikde.batch.spec import BatchSpec
+from ikde.errors import FileError, InputError
+from ikde.files.placed import placed
+from ikde.io.robots import is_file_name, load_robot
+from ikde.io.schema import Given, as_file_error
+from ikde.io.yaml_file import Document, read_yaml
+from ikde.model.robot import Robot
+from ikde.track.spec import TrackSpec
+
+Spec = TypeVar("Spec", BatchSpec, TrackSpec)
+Plan = TypeVar("Plan")
+
+
+def load_plan(source: str | Path | Mapping[str, Any], kind: str, model: type[Spec], make: Callable[..., Plan]) -> Plan:
+    """Load a plan and check all of it.
+
+    Args:
+        source: the path of a YAML file, or the same keys as a mapping; paths inside start at the file's folder, or
+            at the current one.
+        kind: what such a file is called.
+        model: its keys.
+        make: what resolves it: called with the model, the robot, and `folder` and `file` by name.
+
+    Raises:
+        FileError: for a file that cannot be read or is wrong, with its line and key.
+        InputError: for a mapping that is wrong, with its key, and for what is neither path nor mapping.
+    """
+    if isinstance(source, Mapping):
+        return _resolve(Given(dict(source)), model, make, Path(), None)
+    if not isinstance(source, str | PathLike):
+        raise InputError(f"expected the path of a {kind} file or a mapping, got {type(source).__name__}")
+    path = Path(source)
+    return _resolve(read_yaml(path), model, make, path.parent, str(path))
+
+
+def _resolve(
+    source: Document | Given, model: type[Spec], make: Callable[..., Plan], folder: Path, file: str | None
+) -> Plan:
+    try:
+        spec = model.model_validate(source.data)
+    except ValidationError as error:
+        raise as_file_error(source, error, model) from None
+    try:
+        with placed("robot"):
+            robot = _load(spec.robot, folder)
+        return make(spec, robot, folder=folder, file=file)
+    except FileError:
+        raise
+    except InputError as error:
+        raise source.error(error.message, error.where) from None
+
+
+def _load(name: str, folder: Path) -> Robot:
+    """A robot by name, or from a file beside the file that names it."""
+    if not is_file_name(name):
+        return load_robot(name)
+    path = folder / name
+    if not path.exists():
+        raise InputError(f"no such file: {path}")
+    return load_robot(path)

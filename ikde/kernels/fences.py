@@ -1,0 +1,151 @@
+"""What the end of a step must stay behind, as rows: slack + slope . change of the step >= 0.
+
+Pairs of components keep their distance, a base its place, wheels their speed, the tool its distance from the platform.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.clearance import bounds_are_apart
+from ikde.kernels.clearing import add_chain, fill_contact, find_contact
+from ikde.kernels.drive import fold_row
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
+from ikde.kernels.spheres import compute_bounds, compute_centres
+
+MOST_PAIRS = 8  # the nearest
+MOST_FENCES = MOST_PAIRS + 9  # and four of the base's place, four of its wheels, one of the tool's distance
+INSIDE = 2e-9  # m: where a curved fence is set, so that meeting it to 1e-9 is meeting it
+
+
+class Fences(NamedTuple):
+    """The rows of a step, and what finding them needs."""
+
+    slack: Floats  # [MOST_FENCES] m
+    slope: Floats  # [MOST_FENCES, D] m for the whole of the largest step
+    pair: Ints  # [MOST_FENCES] the pair of components of a row; -1: none
+    row: Floats  # [N]
+    bounds: Floats  # [C, 3] m
+    centres: Floats  # [3, S] m
+
+
+@kernel
+def make_fences(detector, joints, size):
+    """Room for the rows of a step [size] of so many joints."""
+    return Fences(
+        np.empty(MOST_FENCES),
+        np.empty((MOST_FENCES, size)),
+        np.empty(MOST_FENCES, dtype=np.int64),
+        np.empty(joints),
+        np.empty((detector.components.shape[0], 3)),
+        np.empty((3, detector.radius.size)),
+    )
+
+
+@inline_kernel
+def choose_place(fences, count, slack):
+    """Where a row with this slack goes: behind the others, in the place of the roomiest, or nowhere (-1)."""
+    if count < MOST_PAIRS:
+        return count
+    roomiest = 0
+    for i in range(1, count):
+        if fences.slack[i] > fences.slack[roomiest]:
+            roomiest = i
+    return roomiest if slack < fences.slack[roomiest] else -1
+
+
+@leaf_kernel
+def fence_pairs(robot, detector, drive, track, T_world_body, q, step, fences):
+    """Rows of the pairs nearer than the reach at the poses of the step's end; returns how many."""
+    count = 0
+    if track.reach == -math.inf:
+        return count
+    compute_bounds(detector, T_world_body, fences.bounds)
+    compute_centres(detector, T_world_body, fences.centres)
+    for pair in range(detector.pairs.shape[0]):
+        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
+        if bounds_are_apart(detector, fences.bounds, a, b, track.reach):
+            continue
+        gap, i, j = find_contact(detector, fences.centres, a, b)
+        place = choose_place(fences, count, gap - track.margin) if gap < track.reach else -1
+        if place < 0:
+            continue
+        fill_contact(robot, detector, T_world_body, fences.centres, a, b, i, j, fences.row)
+        fold_row(drive, q, step, fences.row, fences.slope[place])
+        fences.slack[place], fences.pair[place] = gap - track.margin, pair
+        count = max(count, place + 1)
+    return count
+
+
+@inline_kernel
+def fence_place(drive, track, q, q_end, step, count, fences):
+    """Rows that keep a base with wheels inside the ranges of x and y; returns how many rows there are then."""
+    inside = INSIDE + 0.125 * drive.largest[0] * drive.largest[1]  # an arc bulges by its sagitta
+    for k in range(2):
+        coordinate = drive.base[k]
+        for side in range(2):
+            room = q_end[coordinate] - track.ranges[0, coordinate]
+            if side == 1:
+                room = track.ranges[1, coordinate] - q_end[coordinate]
+            if room > 4.0 * drive.largest[0]:
+                continue
+            for i in range(q.size):
+                fences.row[i] = 0.0
+            fences.row[coordinate] = 1.0 if side == 0 else -1.0
+            fold_row(drive, q, step, fences.row, fences.slope[count])
+            fences.slack[count], fences.pair[count] = room - inside, -1
+            count += 1
+    return count
+
+
+@inline_kernel
+def fence_wheels(drive, step, count, fences):
+    """Rows that keep both wheels, rolling d -+ (half track) a, within their travel; returns how many rows then."""
+    distance, turn = drive.largest[0], drive.half_track * drive.largest[1]
+    if distance + turn <= drive.wheel_travel * (1.0 + 1e-12):
+        return count
+    for wheel in range(2):
+        rolled = distance * step[0] + (turn if wheel == 1 else -turn) * step[1]
+        for way in range(2):
+            sign = 1.0 if way == 0 else -1.0
+            for k in range(step.size):
+                fences.slope[count, k] = 0.0
+            fences.slope[count, 0] = -sign * distance
+            fences.slope[count, 1] = -sign * (turn if wheel == 1 else -turn)
+            fences.slack[count], fences.pair[count] = drive.wheel_travel - sign * rolled, -1
+            count += 1
+    return count
+
+
+@inline_kernel
+def fence_distance(robot, drive, T_world_body, T_world_tool, q, step, count, fences):
+    """Row that keeps the tool near the platform's centre [Qiao2022, eq. 18]; returns how many rows there are then."""
+    if drive.farthest == math.inf:
+        return count
+    T, p = T_world_body[drive.centre_body], drive.p_body_centre
+    x = T[0, 0] * p[0] + T[0, 1] * p[1] + T[0, 2] * p[2] + T[0, 3]
+    y = T[1, 0] * p[0] + T[1, 1] * p[1] + T[1, 2] * p[2] + T[1, 3]
+    z = T[2, 0] * p[0] + T[2, 1] * p[1] + T[2, 2] * p[2] + T[2, 3]
+    tx, ty, tz = T_world_tool[0, 3], T_world_tool[1, 3], T_world_tool[2, 3]
+    dx, dy, dz = tx - x, ty - y, tz - z
+    distance = max(math.sqrt(dx * dx + dy * dy + dz * dz), 1e-12)
+    nx, ny, nz = dx / distance, dy / distance, dz / distance
+    for i in range(q.size):
+        fences.row[i] = 0.0
+    add_chain(robot, T_world_body, robot.frame_body[robot.frame_body.size - 1], tx, ty, tz, -nx, -ny, -nz, fences.row)
+    add_chain(robot, T_world_body, drive.centre_body, x, y, z, nx, ny, nz, fences.row)
+    fold_row(drive, q, step, fences.row, fences.slope[count])
+    fences.slack[count], fences.pair[count] = drive.farthest - distance - INSIDE, -1
+    return count + 1
+
+
+@inline_kernel
+def fence(robot, detector, drive, track, T_world_body, T_world_tool, q, q_end, step, fences):
+    """All rows of a step from `q` [N] to `q_end` [N]; returns how many."""
+    count = fence_pairs(robot, detector, drive, track, T_world_body, q, step, fences)
+    if drive.base[0] >= 0:
+        count = fence_place(drive, track, q, q_end, step, count, fences)
+        count = fence_wheels(drive, step, count, fences)
+    return fence_distance(robot, drive, T_world_body, T_world_tool, q, step, count, fences)

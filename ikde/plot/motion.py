@@ -1,0 +1,144 @@
+"""Figures of a motion over time: path and errors, joints and base with their limits, clearance."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.plot.charts import Line
+from ikde.plot.panels import Panel, plot_panels
+from ikde.plot.style import Axis
+from ikde.track.summary import TrackSummary
+
+MM, DEG = 1e3, 180.0 / np.pi
+LEAST_MM, LEAST_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
+MOST_STAIRS = 200  # more cannot be seen
+TIME = Axis(label="t", unit="s")
+
+
+def plot_errors(motion: TrackSummary) -> Any:
+    """How far the tool is from its path: along each axis at the samples, its orientation, and half-way between them."""
+    graded, times = motion.verification, motion.trajectory.times_s
+    sizes = np.maximum(MM * np.abs(graded.error_m), LEAST_MM)
+    lines = [Line(label=axis, x=times, y=sizes[:, k]) for k, axis in enumerate("xyz")]
+    limit = MM * motion.limits.position_error_m
+    panels = [Panel(y=Axis(label="error", unit="mm", log=True), lines=lines, bounds=[limit], bound="tolerance")]
+    if motion.trajectory.path.orientation != "free":
+        turn = np.maximum(DEG * graded.orientation_error_rad, LEAST_DEG)
+        limit = DEG * motion.limits.orientation_error_rad
+        y = Axis(label="turned by", unit="deg", log=True)
+        panels.append(Panel(y=y, lines=[Line(label="", x=times, y=turn)], bounds=[limit], bound="tolerance"))
+    between = Line(label="", x=_middles(motion), y=MM * motion.certificate.deviation_m)
+    panels.append(Panel(y=Axis(label="off path", unit="mm", limits=(0.0, None)), lines=[between]))
+    return plot_panels(panels, x=TIME)
+
+
+def plot_joints(motion: TrackSummary) -> Any:
+    """Joint values of the arm with the ends of their ranges."""
+    return _plot_arm(motion, motion.trajectory.times_s, motion.trajectory.q, _ranges(motion), "deg", "mm")
+
+
+def plot_joint_speeds(motion: TrackSummary) -> Any:
+    """Joint speeds of the arm with their limits."""
+    return _plot_arm(motion, *_in_steps(motion, motion.verification.speeds), _speed_bounds(motion), "deg/s", "mm/s")
+
+
+def plot_base(motion: TrackSummary) -> Any:
+    """The base's place, its speeds with their limits, and its wheels'; None for a robot that stands still."""
+    trajectory = motion.trajectory
+    if not trajectory.base_joints:
+        return None
+    x, y, heading = (motion.robot.joint_names.index(name) for name in trajectory.base_joints)
+    times, q = trajectory.times_s, trajectory.q
+    place = [Line(label=name, x=times, y=q[:, joint]) for name, joint in (("x", x), ("y", y))]
+    turned = Line(label="", x=times, y=DEG * q[:, heading])
+    panels = [
+        Panel(y=Axis(label="place", unit="m"), lines=place),
+        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=_scaled(DEG, _ranges(motion)[heading])),
+    ]
+    return plot_panels([*panels, *_speed_panels(motion, x, heading)], x=TIME)
+
+
+def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
+    trajectory, bounds = motion.trajectory, _speed_bounds(motion)
+    labels = ("v along x", "v along y") if trajectory.wheel_speeds is None else ("",)
+    times, v = _in_steps(motion, trajectory.v.reshape(-1, len(labels)))
+    _, omega = _in_steps(motion, trajectory.omega[:, None])
+    lines = [Line(label=label, x=times, y=v[:, k]) for k, label in enumerate(labels)]
+    turning = Line(label="", x=times, y=DEG * omega[:, 0])
+    panels = [
+        Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
+        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading])),
+    ]
+    if trajectory.wheel_speeds is not None:
+        _, speeds = _in_steps(motion, trajectory.wheel_speeds)
+        wheels = [Line(label=f"{side} wheel", x=times, y=speeds[:, k]) for k, side in enumerate(("left", "right"))]
+        limit = motion.wheel_limit_rad_s
+        panels.append(Panel(y=Axis(label="wheels", unit="rad/s"), lines=wheels, bounds=_both(limit)))
+    return panels
+
+
+def plot_clearance(motion: TrackSummary) -> Any:
+    """Clearance at the samples, and what it is certain not to fall below between them; None without a detector."""
+    detector, gaps = motion.detector, motion.verification.gaps_m
+    if detector is None or not gaps.size:
+        return None
+    times, between = _in_steps(motion, motion.certificate.segment_m[:, None])
+    lines = [
+        Line(label="at samples", x=motion.trajectory.times_s, y=MM * gaps.min(axis=1)),
+        Line(label="certified between them", x=times, y=MM * between[:, 0]),
+    ]
+    wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
+    y = Axis(label="clearance", unit="mm")
+    safe = [MM * detector.safe_distance_m]
+    return plot_panels(
+        [Panel(y=y, lines=lines, bounds=safe, bound="safe distance", marks=wrong)], x=TIME, height_in=2.6
+    )
+
+
+def _plot_arm(
+    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Sequence[float]], turns: str, slides: str
+) -> Any:
+    """One small chart a joint of the arm, two side by side."""
+    panels = []
+    for joint in motion.arm:
+        slide = motion.robot.joints[joint].kind == "prismatic"
+        scale, unit = (MM, slides) if slide else (DEG, turns)
+        y = Axis(label=motion.robot.joint_names[joint], unit=unit)
+        line = Line(label="", x=times, y=scale * values[:, joint])
+        panels.append(Panel(y=y, lines=[line], bounds=_scaled(scale, bounds[joint])))
+    return plot_panels(panels, x=TIME, columns=min(len(panels), 2), height_in=1.55)
+
+
+def _ranges(motion: TrackSummary) -> list[list[float]]:
+    """Ends of each joint's range."""
+    return np.column_stack([motion.robot.lower, motion.robot.upper]).tolist()
+
+
+def _speed_bounds(motion: TrackSummary) -> list[list[float]]:
+    """Speed limits of each joint, both ways; none where there is none."""
+    limits = motion.limits.speed
+    return [_both(np.inf if limits is None else float(limits[k])) for k in range(len(motion.robot.joints))]
+
+
+def _scaled(scale: float, bounds: Sequence[float]) -> list[float]:
+    return [scale * bound for bound in bounds]
+
+
+def _both(limit: float) -> list[float]:
+    return [-limit, limit] if np.isfinite(limit) else []
+
+
+def _middles(motion: TrackSummary) -> Floats:
+    """Moments half-way between samples [M], s."""
+    times = motion.trajectory.times_s
+    return 0.5 * (times[:-1] + times[1:])
+
+
+def _in_steps(motion: TrackSummary, values: Floats) -> tuple[Floats, Floats]:
+    """What holds from a sample to the next [M, n] as points of a staircase, or amid its steps if there are many."""
+    times = motion.trajectory.times_s
+    if len(values) > MOST_STAIRS:
+        return _middles(motion), values
+    return np.repeat(times, 2)[1:-1], np.repeat(values, 2, axis=0)

@@ -1,0 +1,190 @@
+"""A motion as text for the terminal and as plain data."""
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ikde.report.numbers import significant
+from ikde.report.render import make_table, plain, render
+from ikde.track.plan import TrackPlan
+from ikde.track.summary import TrackSummary, Worst
+
+MM = 1e3
+WIDTH = 120
+Row = tuple[str, str, str]
+"""What was measured, how much it is, and what it may be."""
+
+
+def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
+    """A motion's figures as plain data: m, rad, s; None where there is nothing to measure."""
+    trajectory, graded, certificate = motion.trajectory, motion.verification, motion.certificate
+    stop, seconds = trajectory.stop, trajectory.seconds
+    detected = motion.detector is not None and motion.started
+    return {
+        "name": plan.name,
+        "file": plan.file,
+        "robot": motion.robot.name,
+        "drive": trajectory.drive,
+        "method": trajectory.method,
+        "detector": motion.detector.name if motion.detector else None,
+        "dt_s": trajectory.path.dt_s,
+        "points": trajectory.path.samples,
+        "reached_points": trajectory.reached_points,
+        "reached": trajectory.reached,
+        "stop": None if stop is None else {**asdict(stop), "reason": str(stop.reason)},
+        "start": dict(zip(trajectory.joint_names, trajectory.q[0].tolist(), strict=True)) if motion.started else None,
+        "largest_error_m": dict(zip("xyz", motion.largest_axis_errors_m.tolist(), strict=True)),
+        "largest_total_error_m": graded.total_error_m,
+        "largest_orientation_error_rad": graded.largest_orientation_error_rad,
+        "breaches": {name: getattr(graded.breaches, name) for name in type(graded.breaches).__slots__},
+        "accepted": graded.accepted,
+        "fastest": _worst_json(motion.fastest),
+        "largest_acceleration": _worst_json(motion.largest_acceleration),
+        "largest_wheel_speed_rad_s": largest_wheel_speed(motion),
+        "wheel_limit_rad_s": _finite(motion.wheel_limit_rad_s),
+        "least_range_left": _worst_json(motion.range_left),
+        "largest_slide_m": motion.largest_step("prismatic"),
+        "largest_turn_rad": motion.largest_step("revolute"),
+        "clearance_m": _finite(graded.clearance_m) if detected else None,
+        "closest_pair": list(motion.closest_pair) if motion.closest_pair else None,
+        "certified_clearance_m": _finite(certificate.clearance_m) if detected else None,
+        "largest_deviation_m": float(certificate.deviation_m.max(initial=0.0)),
+        "largest_deviation_rad": float(certificate.deviation_rad.max(initial=0.0)),
+        "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)),
+        "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
+        "median_seconds": _quantile(seconds, 0.5),
+        "p99_seconds": _quantile(seconds, 0.99),
+    }
+
+
+def format_track(plan: TrackPlan, motion: TrackSummary, files: tuple[Path, ...] = (), *, color: bool = False) -> str:
+    """A motion for the terminal: the verdict, what was measured beside what was asked, where the files are."""
+    verdict = _verdict(plan, motion)
+    if not motion.started:
+        return render(verdict, *_list_files(files), color=color, width=WIDTH)
+    table = make_table("measured by separate code", ">", "asked for")
+    for row in list_figures(motion):
+        table.add_row(*map(plain, row))
+    return render(verdict, table, *_list_files(files), color=color, width=WIDTH)
+
+
+def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
+    trajectory, graded = motion.trajectory, motion.verification
+    of = f"{trajectory.reached_points} of {trajectory.path.samples} points of {plain(plan.name)}"
+    if trajectory.stop is not None:
+        return f"[bold red]stopped after {of}[/]\n{plain(trajectory.stop.text)}"
+    if not graded.accepted:
+        broken = {name.replace("_", " "): getattr(graded.breaches, name) for name in type(graded.breaches).__slots__}
+        told = ", ".join(f"{name} {count} times" for name, count in broken.items() if count)
+        return f"[bold red]followed {of}, against its limits[/]: {told}"
+    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {trajectory.drive}"
+
+
+def list_figures(motion: TrackSummary) -> Iterator[Row]:
+    """What was measured, row by row; nothing about what does not apply."""
+    trajectory, limits = motion.trajectory, motion.limits
+    graded = motion.verification
+    yield "points reached", str(trajectory.reached_points), f"{trajectory.path.samples}"
+    errors = " / ".join(_mm(error) for error in motion.largest_axis_errors_m)
+    yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
+    if trajectory.path.orientation != "free":
+        turn = graded.largest_orientation_error_rad
+        yield "largest orientation error", f"{_tiny(turn)} rad", f"{limits.orientation_error_rad:g} rad"
+    yield from _list_limits(motion)
+    yield from _list_clearance(motion)
+    certificate = motion.certificate
+    if len(certificate.deviation_m):
+        off = f"{significant(MM * float(certificate.deviation_m.max()))} mm"
+        if trajectory.path.orientation != "free":
+            off += f", {_tiny(float(certificate.deviation_rad.max()))} rad"
+        yield "tool off the path half-way between samples, at most", off, ""
+    if trajectory.wheel_speeds is not None:
+        yield "base sliding sideways, at most", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
+    if motion.started:
+        yield "smallest singular value of the arm", significant(float(motion.singular_values.min())), ""
+    if len(trajectory.seconds):
+        times = (1e6 * float(np.quantile(trajectory.seconds, share)) for share in (0.5, 0.99))
+        yield "time a sample, median / p99", f"{' / '.join(map(significant, times))} µs", _period(trajectory.path.dt_s)
+
+
+def _list_limits(motion: TrackSummary) -> Iterator[Row]:
+    """Angles, speeds, accelerations, wheels."""
+    robot, breaches = motion.robot, motion.verification.breaches
+    left = motion.range_left
+    if motion.limits.ranges and left is not None and np.isfinite(left[1]):
+        outside = f", {breaches.range} outside" if breaches.range else ""
+        yield (
+            f"least range left, {left[0]}{outside}",
+            f"{np.degrees(left[1]):.1f} deg",
+            f"to {np.degrees(left[2]):g} deg",
+        )
+    for what, worst, per in (("speed", motion.fastest, "/s"), ("acceleration", motion.largest_acceleration, "/s²")):
+        if worst is not None:
+            name, value, limit = worst
+            unit = ("m" if robot.joints[robot.joint_names.index(name)].kind == "prismatic" else "rad") + per
+            drives = name in motion.trajectory.base_joints[:2] and motion.trajectory.wheel_speeds is not None
+            share = f", {100.0 * value / limit:.0f} %" if 0.0 < limit < np.inf else ""
+            yield f"largest {what}, {'base' if drives else name}{share}", f"{value:.4g} {unit}", f"{limit:.4g} {unit}"
+    wheels = largest_wheel_speed(motion)
+    if wheels is not None:
+        own = motion.limits.wheel_speed_rad_s
+        implied = "" if own is not None else ", implied"
+        limit = motion.wheel_limit_rad_s
+        yield "largest wheel speed", f"{wheels:.4g} rad/s", f"{limit:.4g} rad/s{implied}" if np.isfinite(limit) else ""
+
+
+def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
+    """At the samples and between them."""
+    detector, pair = motion.detector, motion.closest_pair
+    if detector is None or pair is None:
+        return
+    graded, count = motion.verification, motion.verification.breaches.collision
+    hits = f", {count} collide" if count else ""
+    safe = f"above {MM * detector.safe_distance_m:g} mm"
+    yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{MM * graded.clearance_m:.2f} mm", safe
+    certified = motion.certificate.clearance_m
+    if np.isfinite(certified):
+        yield "clearance between samples, certified", f"{MM * certified:.2f} mm", "above 0 mm"
+
+
+def _list_files(files: tuple[Path, ...]) -> list[str]:
+    if not files:
+        return []
+    names = ", ".join(file.name for file in files)
+    return [plain(f"files   {files[0].parent}: {names}")]
+
+
+def largest_wheel_speed(motion: TrackSummary) -> float | None:
+    """Rad/s of the faster wheel; None without wheels or a motion."""
+    wheels = motion.trajectory.wheel_speeds
+    return float(np.abs(wheels).max()) if wheels is not None and len(wheels) else None
+
+
+def _worst_json(worst: Worst | None) -> dict[str, Any] | None:
+    if worst is None:
+        return None
+    name, value, limit = worst
+    return {"joint": name, "value": _finite(value), "limit": _finite(limit)}
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _quantile(values: Any, share: float) -> float | None:
+    return float(np.quantile(values, share)) if len(values) else None
+
+
+def _tiny(value: float) -> str:
+    return f"{value:.1e}" if value else "0"
+
+
+def _mm(value_m: float) -> str:
+    return _tiny(MM * value_m)
+
+
+def _period(dt_s: float) -> str:
+    return f"{1e6 * dt_s:,.0f} µs"

@@ -1,0 +1,161 @@
+"""Ways to follow the same paths, side by side, as a page: one table, and the figures of each task."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ikde import __version__
+from ikde.bench.tracks import Compared, TrackBudget
+from ikde.report.numbers import significant
+from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
+from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
+from ikde.track.summary import TrackSummary
+
+FRAMES, DPI = 101, 70  # of an animation and of a picture: there are many on this page
+DRAWINGS = (
+    ("Path and error", (PATH, ERRORS)),
+    ("Joint angles and speeds", (JOINTS, SPEEDS)),
+    ("Base and clearance", (BASE, CLEARANCE)),
+)
+OURS = "continuation"
+NAMES = {"typical": "typical DE", "optimized": "optimized DE", "continuation": "ours, continuation"}
+
+Row = Mapping[str, Any]
+
+
+def compare_json(compared: Sequence[Compared], budget: TrackBudget) -> dict[str, Any]:
+    """The whole comparison as plain data."""
+    return {"made": {"ikde": __version__, "budget": asdict(budget)}, "tracks": [one.data for one in compared]}
+
+
+def make_comparison_page(compared: Sequence[Compared], budget: TrackBudget, command: str) -> Page:
+    """One table over all tracks, then each track with its figures."""
+    methods = list(dict.fromkeys(method for one in compared for method in one.motions))
+    paths = f"{len(compared)} path{'s' if len(compared) > 1 else ''}"
+    seeds = f"{budget.seeds} seed{'s' if budget.seeds > 1 else ''}"
+    return Page(
+        title="Following tool paths: the paper's methods beside ours",
+        subtitle=f"{paths}: {', '.join(NAMES[method] for method in methods)}; {seeds} each.",
+        lead=(_make_legend(),),
+        sections=(
+            Section("All in one table", (make_runs_table(compared), make_ends_table(compared))),
+            *(_make_task(one) for one in compared),
+            Section("How it was made", (Code(command, "The same again"),)),
+        ),
+        footer=f"Made by ikde {__version__}.",
+    )
+
+
+def _make_legend() -> Block:
+    return Text(
+        "- `typical` is the differential evolution that Qiao et al. 2022 compare theirs with: every sample by itself, "
+        "nine free variables, no limit on speed, no collision.\n"
+        "- `optimized` is their own: steps within the speed limits, collisions refused at the samples.\n"
+        "- `continuation` is ikde's: limits and clearance as constraints of one step, a start chosen along the whole "
+        "path, and certainty between the samples as well."
+    )
+
+
+def make_runs_table(compared: Sequence[Compared]) -> Table:
+    """A row a track and method: the worst of all seeds, times in the middle."""
+    columns = (
+        *(Column("path", align="left"), Column("method", align="left"), Column("points reached")),
+        *(Column("largest error of an axis", "mm"), Column("orientation error", "rad")),
+        *(Column("limits broken"), Column("colliding samples")),
+        *(Column("largest jump", "mm"), Column("largest turn", "deg")),
+        *(Column("smallest singular value"), Column("clearance", "mm"), Column("certified", "mm")),
+        *(Column("a sample, median", "µs"), Column("p99", "µs")),
+    )
+    rows = []
+    for one in compared:
+        for method in one.motions:
+            runs = [run for run in one.data["runs"] if run["method"] == method]
+            cells = [one.data["name"], NAMES[method], *_summarise(runs)]
+            rows.append(tuple(Cell(cell, "ours") if method == OURS else cell for cell in cells))
+    return Table(
+        columns=columns,
+        rows=tuple(rows),
+        caption="What each method reaches, breaks and costs",
+        note="Counts are ranges over the seeds; errors, jumps and clearances the worst; times the middle of the "
+        "seeds' medians and the largest p99. A jump is what the base or a joint does in one sample. The arm's Jacobian "
+        "is taken in m and rad. Limits broken counts every joint, wheel and sample by itself. The typical DE is "
+        "graded as if the base could slide.",
+    )
+
+
+def _summarise(runs: Sequence[Row]) -> list[str]:
+    points = runs[0]["points"]
+    medians = [run["median_s"] for run in runs if run["median_s"] is not None]
+    middle = significant(1e6 * float(np.median(medians))) if medians else "–"
+    return [
+        f"{_span(runs, 'reached_points')} of {points}",
+        _worst(runs, "largest_axis_error_mm", max, "{:.1e}".format),
+        _worst(runs, "largest_rotation_error_rad", max, lambda value: f"{value:.1e}" if value else "–"),
+        _span(runs, "limit_violations"),
+        _span(runs, "colliding_samples"),
+        _worst(runs, "largest_jump_m", max, lambda value: significant(1e3 * value)),
+        _worst(runs, "largest_jump_rad", max, lambda value: significant(float(np.degrees(value)))),
+        _worst(runs, "smallest_singular_value", min, significant),
+        _worst(runs, "smallest_clearance_mm", min, lambda value: f"{value:.1f}"),
+        _worst(runs, "certified_clearance_mm", min, lambda value: f"{value:.1f}"),
+        middle,
+        _worst(runs, "p99_s", max, lambda value: significant(1e6 * value)),
+    ]
+
+
+def _worst(runs: Sequence[Row], key: str, pick: Callable[..., float], write: Callable[[float], str]) -> str:
+    values = [run[key] for run in runs if run[key] is not None]
+    return write(pick(values)) if values else "–"
+
+
+def _span(runs: Sequence[Row], key: str) -> str:
+    low, high = min(run[key] for run in runs), max(run[key] for run in runs)
+    return f"{low:,}" if low == high else f"{low:,}–{high:,}"
+
+
+def make_ends_table(compared: Sequence[Compared]) -> Table:
+    """From how many random starts each method ends before its path does."""
+    names = list(dict.fromkeys(name for one in compared for name in one.data["dead_ends"]["reached_points"]))
+    titles = {**NAMES, "greedy": "greedy: least motion, no way back"}
+    rows = []
+    for one in compared:
+        ends = one.data["dead_ends"]
+        cells = [f"{ends[name]} of {ends['starts']}" if name in ends else "–" for name in names]
+        rows.append((one.data["name"], *cells))
+    columns = [Column(titles[name], mark="ours" if name == OURS else "") for name in names]
+    return Table(
+        columns=(Column("path", align="left"), *columns),
+        rows=tuple(rows),
+        caption="Dead ends: from how many random starts a path is not followed to its end",
+        note="Starts are free configurations at the first pose, near which random ones came to rest. Left to itself, "
+        "`continuation` chooses its start along the whole path; here it must take the one it is given.",
+    )
+
+
+def _make_task(one: Compared) -> Section:
+    blocks: list[Block] = [_make_stops(one)] if any(m.trajectory.stop for m in one.motions.values()) else []
+    shown = {method: motion for method, motion in one.motions.items() if motion.started}
+    blocks.append(_beside(shown, lambda motion, prefix: animate(motion, FRAMES, prefix)))
+    blocks.append(_beside(shown, lambda motion, prefix: draw_moments(motion, prefix, DPI)))
+    for title, drawings in DRAWINGS:
+        blocks.append(Text(f"**{title}**"))
+        blocks += (_beside(shown, partial(draw, drawing)) for drawing in drawings)
+    return Section(one.data["name"], tuple(blocks))
+
+
+def _beside(
+    motions: Mapping[str, TrackSummary], make: Callable[[TrackSummary, str], Figure | Animation | None]
+) -> Gallery:
+    """The same figure of every method."""
+    made = [(method, make(motion, f"{NAMES[method]}: ")) for method, motion in motions.items()]
+    titled = [replace(figure, caption=f"**{NAMES[method]}**") for method, figure in made if figure is not None]
+    return Gallery(tuple(titled), narrow=True)
+
+
+def _make_stops(one: Compared) -> Block:
+    stops = [(name, motion.trajectory.stop) for name, motion in one.motions.items()]
+    lines = [f"- **{NAMES[name]}** stops: {stop.text}" for name, stop in stops if stop is not None]
+    return Text("\n".join(lines))

@@ -1,0 +1,168 @@
+"""A motion as a page: what was measured, figures, and the robot moving."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ikde import __version__
+from ikde.plot.animation import make_animation
+from ikde.plot.images import to_png, to_svg
+from ikde.plot.moments import plot_moments
+from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints
+from ikde.plot.path import plot_path
+from ikde.report.markup import code, verbatim
+from ikde.report.numbers import significant
+from ikde.report.page import (
+    Animation,
+    Block,
+    Code,
+    Column,
+    Facts,
+    Figure,
+    Notice,
+    Number,
+    Numbers,
+    Page,
+    Section,
+    Table,
+)
+from ikde.report.track import list_figures
+from ikde.track.plan import TrackPlan
+from ikde.track.summary import TrackSummary
+
+MOMENTS_DPI = 110
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A figure of a motion: how it is made, and what is to be said about it."""
+
+    make: Callable[[TrackSummary], Any]
+    alt: str
+    caption: str
+
+
+PATH = Drawing(plot_path, "path in space", "Where the tool was asked to go and went, and where the base drove.")
+ERRORS = Drawing(
+    plot_errors,
+    "tracking errors over time",
+    "At the samples along each axis, and how far the tool leaves the path half-way between them: that is what "
+    "the sampling costs.",
+)
+JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
+SPEEDS = Drawing(plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample.")
+BASE = Drawing(plot_base, "the base over time", "The base: its place, its speeds, and what they ask of its wheels.")
+CLEARANCE = Drawing(
+    plot_clearance,
+    "clearance over time",
+    "The smallest gap of any pair: at the samples, and what is certain between them.",
+)
+
+
+def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | None:
+    """A figure of a motion; None if it has nothing to show."""
+    figure = drawing.make(motion)
+    if figure is None:
+        return None
+    return Figure(image=to_svg(figure), alt=prefix + drawing.alt, caption=drawing.caption)
+
+
+def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
+    """The robot at eight moments, as a picture."""
+    image = to_png(plot_moments(motion), dpi=dpi)
+    caption = "Arm red, platform blue, what collides black; the path grey, what was run of it orange."
+    return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
+
+
+def animate(motion: TrackSummary, frames: int = 251, prefix: str = "", caption: str = "") -> Animation:
+    """The motion itself."""
+    data = json.dumps(make_animation(motion, frames), separators=(",", ":"), allow_nan=False)
+    return Animation(
+        data=data, alt=f"{prefix}the robot moving, from the side, from the front and from above", caption=caption
+    )
+
+
+def make_track_page(plan: TrackPlan, motion: TrackSummary) -> Page:
+    """What came of a track, followed to its end or not, as a page."""
+    shown = _list_sections(motion) if motion.started else []
+    return Page(
+        title=plan.name,
+        subtitle=_describe(motion),
+        lead=(*_warn(motion), *_headline(motion)),
+        sections=(*shown, _make_recipe(plan, motion)),
+        footer=f"Made by ikde {__version__}.",
+    )
+
+
+def _describe(motion: TrackSummary) -> str:
+    path, trajectory = motion.trajectory.path, motion.trajectory
+    asked = {"free": "any orientation", "axis": "the tool's axis given", "pose": "the whole pose given"}
+    return (
+        f"A tool path followed by {motion.robot.name}: {path.samples:,} points in {path.duration_s:g} s, "
+        f"{asked[path.orientation]}, {trajectory.drive} drive, method {trajectory.method}."
+    )
+
+
+def _warn(motion: TrackSummary) -> list[Block]:
+    stop = motion.trajectory.stop
+    if stop is None:
+        return []
+    reached = motion.trajectory.reached_points
+    told = "Everything below is about what was followed." if motion.started else "Nothing was followed."
+    return [
+        Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {reached} points reached. {told}")
+    ]
+
+
+def _headline(motion: TrackSummary) -> list[Block]:
+    if not motion.started:
+        return []
+    trajectory, graded = motion.trajectory, motion.verification
+    items = [
+        Number(f"{trajectory.reached_points} of {trajectory.path.samples}", "points reached"),
+        Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
+    ]
+    if motion.detector is not None and np.isfinite(graded.clearance_m):
+        certain = f"{1e3 * motion.certificate.clearance_m:.1f} mm certified between"
+        items.append(Number(f"{1e3 * graded.clearance_m:.1f} mm", "least clearance at samples", certain))
+    items.append(Number(f"{graded.breaches.total}", "limits broken", "of all kinds, at all samples"))
+    if len(trajectory.seconds):
+        most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
+        items.append(Number(f"{significant(1e6 * float(np.median(trajectory.seconds)))} µs", "a sample, median", most))
+    return [Numbers(tuple(items))]
+
+
+def _list_sections(motion: TrackSummary) -> list[Section]:
+    moving = animate(motion, caption="Play it, or drag the slider. What collides is black.")
+    groups = [
+        ("Motion", [moving, draw_moments(motion)]),
+        ("Path and error", [draw(PATH, motion), draw(ERRORS, motion)]),
+        ("Joints", [draw(JOINTS, motion), draw(SPEEDS, motion)]),
+        ("Base", [draw(BASE, motion)]),
+        ("Clearance", [draw(CLEARANCE, motion)]),
+    ]
+    sections = [(title, tuple(block for block in blocks if block is not None)) for title, blocks in groups]
+    return [_make_measured(motion), *(Section(title, blocks) for title, blocks in sections if blocks)]
+
+
+def _make_measured(motion: TrackSummary) -> Section:
+    columns = Column("figure", align="left"), Column("measured", mark="ours"), Column("asked for", align="left")
+    caption = "Measured by code that shares nothing with what searched"
+    return Section("Figures", (Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption),))
+
+
+def _make_recipe(plan: TrackPlan, motion: TrackSummary) -> Section:
+    facts = [
+        ("robot", verbatim(motion.robot.name)),
+        ("drive", motion.trajectory.drive),
+        ("method", code(motion.trajectory.method)),
+        ("detector", verbatim(motion.detector.name) if motion.detector else "none"),
+        ("time between samples", f"{1e3 * motion.trajectory.path.dt_s:g} ms"),
+    ]
+    blocks: list[Block] = [Facts(tuple(facts))]
+    if plan.file:
+        blocks.append(Code(f"ikde track {plan.file} --out FOLDER", "The same again"))
+    return Section("How it was made", tuple(blocks))

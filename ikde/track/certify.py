@@ -1,0 +1,156 @@
+"""Between samples: a lower bound on the clearance of the whole motion, and how far the tool leaves the path.
+
+Joints run linearly. Seen from a body that carries two components, only the joints between them move them, so the place
+of a base does not enter. If joint j turns by |dq_j|, no point of what it carries moves farther than |dq_j| times its
+largest distance from the axis; so the gap of two spheres is nowhere in a segment below (gap(0) + gap(1) - travel) / 2,
+where travel is the sum over those joints. Segments whose bound is too weak are halved.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats, Ints
+from ikde.model.robot import Detector, Robot
+from ikde.model.spheres import expand_rows
+from ikde.model.tree import Tree, build_tree
+from ikde.solver.plain import compute_frames, compute_gaps
+from ikde.solver.verify import compute_orientation_errors
+from ikde.track.drive import base_twist, find_wheels, step_base
+from ikde.track.path import ToolPath
+
+SHARP_M, SHARP = 1e-4, 0.02  # how near the bound shall come to the true clearance: m, and as a share of it
+MOST_HALVINGS = 14
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Certificate:
+    """What is certain about the motion between its samples."""
+
+    clearance_m: float
+    """No gap of the motion is smaller, at any moment; inf without a pair."""
+    segment_m: Floats
+    """[M] the same, of each segment."""
+    evaluations: int
+    """Configurations that were looked at."""
+    deviation_m: Floats
+    """[M] distance of the tool from the path half-way between samples."""
+    deviation_rad: Floats
+    """[M] the same of its orientation, of what the path asks for."""
+
+    @property
+    def is_free(self) -> bool:
+        """True if nothing can touch between samples."""
+        return bool(self.clearance_m > 0.0)
+
+    @property
+    def first_doubt(self) -> int | None:
+        """The first segment, from sample k to k + 1, that is not certified; None if all are."""
+        weak = np.flatnonzero(~(self.segment_m > 0.0))
+        return int(weak[0]) if len(weak) else None
+
+
+def certify(robot: Robot, path: ToolPath, q: Floats, *, drive: str, detector: Detector | None) -> Certificate:
+    """Bound the clearance of the motion through `q` [M + 1, N], and measure the tool at its mid-points."""
+    segments, evaluations = bound_segments(robot, detector, q)
+    position, turn = measure_deviation(robot, path, q, drive)
+    return Certificate(
+        clearance_m=float(segments.min(initial=np.inf)),
+        segment_m=segments,
+        evaluations=evaluations,
+        deviation_m=position,
+        deviation_rad=turn,
+    )
+
+
+def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> tuple[Floats, int]:
+    """Lower bound [M] of the clearance in each segment between rows of `q` [M + 1, N]; and the effort."""
+    pairs = robot.pairs(detector)
+    lower = np.full(max(len(q) - 1, 0), np.inf)
+    if detector is None or not pairs or not len(lower):
+        return lower, 0
+    radii = travel_radii(robot, detector)
+    gaps = compute_gaps(robot, detector.spheres, pairs, q)
+    goal = gaps.min() - max(SHARP_M, SHARP * abs(gaps.min()))
+    which, start, end = np.arange(len(lower)), q[:-1], q[1:]
+    before, after, evaluations = gaps[:-1], gaps[1:], len(q)
+    for halving in range(MOST_HALVINGS + 1):
+        travel = np.abs(end - start) @ radii.T
+        bound = (0.5 * (before + after - travel)).min(axis=1)
+        weak = bound < goal if halving < MOST_HALVINGS else np.zeros(len(bound), dtype=bool)
+        np.minimum.at(lower, which[~weak], bound[~weak])
+        if not weak.any():
+            break
+        which, start, end, before, after = which[weak], start[weak], end[weak], before[weak], after[weak]
+        middle = 0.5 * (start + end)
+        between = compute_gaps(robot, detector.spheres, pairs, middle)
+        evaluations += len(middle)
+        which = np.concatenate([which, which])
+        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+        before, after = np.concatenate([before, between]), np.concatenate([between, after])
+    return lower, evaluations
+
+
+def travel_radii(robot: Robot, detector: Detector) -> Floats:
+    """By how much a joint can change each pair's gap [P, N]: m a rad of a turn, 1 for a slide, else 0."""
+    tree = build_tree(robot)
+    centres: dict[str, list[tuple[int, Floats]]] = {}
+    for sphere in expand_rows(robot, tree, detector.spheres):
+        centres.setdefault(sphere.component, []).append((sphere.body, sphere.p_body_sphere))
+    radii = np.zeros((len(robot.pairs(detector)), len(robot.joints)))
+    for row, names in zip(radii, robot.pairs(detector), strict=True):
+        chains = [_chain(tree, centres[name][0][0]) for name in names]
+        for name, chain, other in zip(names, chains, chains[::-1], strict=True):
+            for body in chain:
+                if body not in other:
+                    joint = tree.bodies[body].joint
+                    row[joint] = max(_farthest(robot, tree, chain, body, p) for _, p in centres[name])
+    return radii
+
+
+def _chain(tree: Tree, body: int) -> list[int]:
+    """Bodies from `body` down to the first that the world carries."""
+    chain = []
+    while body != 0:
+        chain.append(body)
+        body = tree.bodies[body].parent
+    return chain
+
+
+def _farthest(robot: Robot, tree: Tree, chain: list[int], body: int, point: Floats) -> float:
+    """Largest distance from the axis of `body` that a point of the chain's first body can ever have."""
+    joint = tree.bodies[body].joint
+    if joint is None or robot.joints[joint].kind == "prismatic":
+        return 1.0
+    inner, length = chain[: chain.index(body)], 0.0
+    for carried in inner:  # from the point towards the joint: the point may stand anywhere around each
+        length += float(np.linalg.norm(point)) + _slide(robot, tree, carried)
+        point = tree.bodies[carried].T_parent_body[:3, 3]
+    axis = tree.bodies[body].axis
+    return length + float(np.linalg.norm(point - (point @ axis) * axis))
+
+
+def _slide(robot: Robot, tree: Tree, body: int) -> float:
+    """How far a sliding body can be from where it is at q = 0, m."""
+    joint = tree.bodies[body].joint
+    if joint is None or robot.joints[joint].kind != "prismatic":
+        return 0.0
+    return max(abs(robot.joints[joint].lower), abs(robot.joints[joint].upper))
+
+
+def halfway(robot: Robot, q: Floats, drive: str, dt_s: float) -> Floats:
+    """Configurations [M, N] half-way between the rows of `q` [M + 1, N]; a base with wheels is on its arc."""
+    middle = 0.5 * (q[:-1] + q[1:])
+    base: Ints = find_wheels(robot, drive)
+    if base[0] >= 0:
+        v, omega, _ = base_twist(q[:-1, base], q[1:, base], dt_s)
+        middle[:, base] = step_base(q[:-1, base], v, omega, 0.5 * dt_s)
+    return middle
+
+
+def measure_deviation(robot: Robot, path: ToolPath, q: Floats, drive: str) -> tuple[Floats, Floats]:
+    """Distance [M] in m and angle [M] in rad of the tool from the path half-way between samples."""
+    middle = halfway(robot, q, drive, path.dt_s)
+    tool, targets = compute_frames(robot, middle)[robot.tool], path.half_targets()[: len(middle)]
+    position = np.linalg.norm(tool[:, :3, 3] - targets.p_world_tool, axis=1)
+    return position, compute_orientation_errors(targets, tool[:, :3, :3])

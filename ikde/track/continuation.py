@@ -1,0 +1,115 @@
+"""`continuation`, ours: from sample to sample by steps of the fast solver, from a start chosen along the whole path."""
+
+from dataclasses import dataclass, replace
+
+from ikde.kernels.arrays import Floats
+from ikde.solver.result import SolveResult
+from ikde.solver.solve import solve
+from ikde.track.certify import bound_segments
+from ikde.track.courses import choose_course
+from ikde.track.follow import FARTHEST, Course, Follower
+from ikde.track.refusal import (
+    explain_stop,
+    first_out_of_reach,
+    tell_out_of_reach,
+    tell_static,
+    tell_too_far,
+    tell_uncertified,
+)
+from ikde.track.starts import Frozen, draw_starts, settle_start
+from ikde.track.trajectory import TrackStop
+
+WIDER = 8.0  # by how much the margin grows if a motion is not certified between its samples
+MOST_MARGINS = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Found:
+    """A course, and why it ends before its path, if it does."""
+
+    course: Course
+    follower: Follower
+    """What it was followed with."""
+    stop: TrackStop | None
+
+    @property
+    def q(self) -> Floats:
+        """[M + 1, N] joint values of the samples."""
+        return self.course.q[: self.course.last + 1]
+
+
+@dataclass(slots=True, kw_only=True)
+class Continuation:
+    """The search for one course."""
+
+    follower: Follower
+    frozen: Frozen
+    seed: int
+    asked: dict[int, SolveResult]
+    """What the solver says about samples by themselves."""
+
+    def find(self, start: Floats | None) -> Found | TrackStop:
+        """A course that is certified, as far as it goes; a stop if not even the first pose is met."""
+        beyond = self._find_out_of_reach()
+        if beyond is not None and beyond[0] == 0:
+            return tell_out_of_reach(self.follower, *beyond)
+        end = self.follower.path.samples if beyond is None else beyond[0] - 1
+        if start is None:
+            starts, first = draw_starts(self.follower, self.frozen, self.seed)
+            if not len(starts):
+                return tell_too_far(self.follower) if first.reached else tell_static(self.follower, 0, first)
+        else:
+            starts = settle_start(self.follower, start, self.frozen)[None]
+        found = self._certified(starts, end)
+        if found.stop is not None or found.course.last == self.follower.path.samples:
+            return found
+        if found.course.last == end and beyond is not None:
+            return replace(found, stop=tell_out_of_reach(self.follower, *beyond))
+        stop = explain_stop(found.follower, found.course, self._ask(found.course.last + 1))
+        return replace(found, stop=stop)
+
+    def _certified(self, starts: Floats, end: int) -> Found:
+        """The course that comes farthest certified, with margins that grow until nothing is in doubt."""
+        best, follower = None, self.follower
+        for _ in range(MOST_MARGINS):
+            course = choose_course(follower, starts, end, self.seed, self._is_possible)
+            found = cut_at_doubt(Found(course=course, follower=follower, stop=None))
+            if best is None or found.course.last > best.course.last:
+                best = found
+            if found.stop is None:
+                break
+            follower = follower.with_track(margin=WIDER * follower.track.margin)
+        assert best is not None
+        return best
+
+    def _is_possible(self, sample: int) -> bool:
+        return self._ask(sample).reached
+
+    def _ask(self, sample: int) -> SolveResult:
+        """What the solver says about one sample by itself."""
+        if sample not in self.asked:
+            follower = self.follower
+            told = {"detector": follower.detector or "none", "freeze": self.frozen}
+            self.asked[sample] = solve(follower.robot, follower.path.targets()[sample], **told)
+        return self.asked[sample]
+
+    def _find_out_of_reach(self) -> tuple[int, float] | None:
+        """The first sample that is proved to be out of reach, and by how many m."""
+        robot = self.follower.robot
+        lower, upper = robot.lower, robot.upper
+        if not self.follower.limits.ranges:
+            lower[:], upper[:] = -FARTHEST, FARTHEST
+        for name, value in self.frozen.items():
+            index = robot.joint_names.index(name)
+            lower[index] = upper[index] = value
+        return first_out_of_reach(self.follower, lower, upper)
+
+
+def cut_at_doubt(found: Found) -> Found:
+    """The same up to the first segment that may touch on its way."""
+    lower, _ = bound_segments(found.follower.robot, found.follower.detector, found.q)
+    certain = next((k for k, bound in enumerate(lower) if not bound > 0.0), None)
+    if certain is None:
+        return found
+    course = replace(found.course, last=certain)
+    return replace(found, course=course, stop=tell_uncertified(found.follower, certain + 1))

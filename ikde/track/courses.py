@@ -1,0 +1,87 @@
+"""Many courses along one path, and the best of them.
+
+Every start is tried along the whole path, which takes some 20 us a sample. Of those that reach its end the one with the
+largest clearance is taken, in steps of 5 mm, and of those the one that moves least. If none reaches the end, the null
+space is used otherwise; then the one that came farthest goes back some samples, drifts another way, and tries again.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ikde.kernels.arrays import DRIFT, Floats
+from ikde.track.follow import Course, Follower
+
+USES = ((0.3, 0.3, 0.3), (1.0, 0.3, 0.3), (0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.3, 1.0, 1.0))
+"""What the null space is used for: clearance, limits, manipulability, as shares of the largest steps."""
+BIN_M, ENOUGH_M = 0.005, 0.05  # clearance counts in such steps, and up to here
+FIRST_BACK = 8  # samples to go back at first; twice as many each time
+TRIES = 16  # at each
+DRIFT_SHARE = 0.4  # of the largest steps: spread of the drift
+MOST_RETURNS = 300
+
+
+def choose_course(
+    follower: Follower, starts: Floats, end: int, seed: int, is_possible: Callable[[int], bool]
+) -> Course:
+    """The best course from any of the starts [S, N] to the sample `end`, or the one that came farthest.
+
+    `is_possible` says whether any configuration meets a sample: where none does nothing else is tried.
+    """
+    tried: list[Course] = []
+    for use in USES:
+        courses = [follower.follow(follower.begin(start, np.array(use)), end) for start in starts]
+        tried += courses
+        complete = [course for course in courses if course.last == end]
+        if complete:
+            return min(complete, key=_badness)
+        if not is_possible(farthest(tried).last + 1):
+            return farthest(tried)
+    return _return(follower, farthest(tried), end, np.random.default_rng(seed))
+
+
+def farthest(courses: Iterable[Course]) -> Course:
+    """The course that came farthest; the first of equals."""
+    return max(courses, key=lambda course: course.last)
+
+
+def _badness(course: Course) -> tuple[float, float]:
+    """Little clearance first, then much motion."""
+    return -np.floor(min(course.clearance_m, ENOUGH_M) / BIN_M), course.motion
+
+
+def _return(follower: Follower, course: Course, end: int, rng: np.random.Generator) -> Course:
+    """Go back and try again until the end is reached, or nothing comes farther, or the returns are spent."""
+    returns, further = 0, course
+    while further is not None and further.last < end and returns < MOST_RETURNS:
+        course, further = further, None
+        for other in _other_ways(follower, course, end, rng):
+            returns += 1
+            if other.last > course.last:
+                further = other
+                break
+            if returns == MOST_RETURNS:
+                break
+    return course if further is None else further
+
+
+def _other_ways(follower: Follower, course: Course, end: int, rng: np.random.Generator) -> Iterator[Course]:
+    """The same course from some samples before its end, drifting at random; farther and farther back."""
+    back = FIRST_BACK
+    while True:
+        for _ in range(TRIES):
+            yield follower.follow(_rewind(course, max(course.last - back, 0), back, rng), end)
+        if back >= course.last:
+            return
+        back *= 2
+
+
+def _rewind(course: Course, sample: int, back: int, rng: np.random.Generator) -> Course:
+    """A copy that stands at an earlier sample and will use its null space otherwise from there on."""
+    other = replace(course.copy(), last=sample)
+    ahead = other.weights[sample + 1 :]
+    ahead[:, :DRIFT] = USES[rng.integers(len(USES))]
+    ahead[:, DRIFT:] = 0.0
+    ahead[:back, DRIFT:] = DRIFT_SHARE * rng.standard_normal(course.steps.shape[1])
+    return other

@@ -1,0 +1,178 @@
+"""`optimized`, the paper's own: a differential evolution per sample inside the speed limits [Qiao2022, section 3.2].
+
+It meets the limits at samples; between them nothing is looked at. Where the print is unclear or wrong, and for what it
+leaves out, see docs/track.md.
+"""
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats, StepSearchArrays
+from ikde.kernels.mutation import STRATEGIES
+from ikde.kernels.step_evolution import (
+    COLLIDES,
+    LIMITED,
+    NO_BOX,
+    SOLVED,
+    evolve_sample,
+    make_step_workspace,
+)
+from ikde.model.pack import pack_detector, pack_robot
+from ikde.solver.engines.pool import find_base
+from ikde.solver.plain import compute_frames
+from ikde.solver.verify import compute_orientation_errors
+from ikde.track.follow import Follower
+from ikde.track.refusal import first_out_of_reach, tell_out_of_reach
+from ikde.track.trajectory import TrackStop, TrackStopReason
+
+WITHIN = 1.0 - 1e-6  # of the tolerances: what rounding can't undo
+AT_LIMIT = 0.99  # of the largest step, from which on a limit is what stands in the way
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OptimizedSettings:
+    """Numbers of the paper, and those that it does not print."""
+
+    population: int = 50
+    """NP"""
+    generations: int = 1000
+    """G, of one population."""
+    weight: float = 0.5
+    """F"""
+    crossover: float = 0.9
+    """CR"""
+    strategies: tuple[str, str] = ("best/1", "rand/1")
+    """Of odd and of even generations (31): the text's order, and best/1 as named, from the best member."""
+    returns: int = 20
+    """How often a sample's population is drawn again at most; the paper has no end."""
+    base_weight: float = 1.0
+    """W1 of (34), of the square of the base's change, x, y and heading, as in (19)."""
+    arm_weight: float = 1.0
+    """W2, of the square of each joint's, as in (17)."""
+    position_weight: float = 10.0
+    """W3, per m of error: large enough that no motion saved is worth an error."""
+    orientation_weight: float = 3.0
+    """Per rad of error, which the print forgets: 0.3 m of W3 a radian, as far as the tool is from the wrist."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Evolved:
+    """A motion as far as it goes, what each sample took, and why it ends before its path does."""
+
+    q: Floats
+    """[M + 1, N]"""
+    seconds: Floats
+    """[M]"""
+    populations: Floats
+    """[M] drawn for each sample; 1 if the first was solved."""
+    evaluations: Floats
+    """[M] steps looked at."""
+    stop: TrackStop | None
+
+
+def follow_optimized(
+    follower: Follower, start: Floats, seed: int, settings: OptimizedSettings | None = None
+) -> Evolved:
+    """Sample after sample from `start` [N] at the path's first pose, up to the first that no population solves."""
+    settings = settings or OptimizedSettings()
+    robot, samples = follower.robot, follower.path.samples
+    packed, detector = pack_robot(robot), pack_detector(robot, follower.detector)
+    search = pack_step_search(follower, settings)
+    work = make_step_workspace(packed, detector, len(start), follower.size, settings.population)
+    q, steps = np.zeros((samples + 1, len(start))), np.zeros((samples + 1, follower.size))
+    seconds, counts = np.zeros(samples), np.zeros((samples, 2))
+    told = (packed, detector, follower.drive, follower.track, follower.target)
+
+    def evolve(k: int, search: StepSearchArrays) -> Any:
+        row = (np.uint64(seed), q[k - 1], steps[k - 1], k == 1, work, q[k], steps[k])
+        return evolve_sample(*told, k, search, *row)
+
+    q[0] = start
+    evolve(1, search._replace(attempts=0))  # compiled before the clock runs
+    for k in range(1, samples + 1):
+        started = time.perf_counter()
+        verdict, pair, *counts[k - 1] = evolve(k, search)
+        seconds[k - 1] = time.perf_counter() - started
+        if verdict != SOLVED:
+            stop = tell_unsolved(follower, settings, k, verdict, pair, q[k], steps[k])
+            return _cut(k - 1, q, seconds, counts, stop)
+    return _cut(samples, q, seconds, counts, None)
+
+
+def _cut(last: int, q: Floats, seconds: Floats, counts: Floats, stop: TrackStop | None) -> Evolved:
+    return Evolved(
+        q=q[: last + 1],
+        seconds=seconds[:last],
+        populations=counts[:last, 0],
+        evaluations=counts[:last, 1],
+        stop=stop,
+    )
+
+
+def pack_step_search(follower: Follower, settings: OptimizedSettings) -> StepSearchArrays:
+    """The settings for the kernel."""
+    robot, limits = follower.robot, follower.limits
+    is_base = np.isin(np.arange(len(robot.joints)), find_base(robot, robot.lower, robot.upper))
+    odd, even = (STRATEGIES.index(name) for name in settings.strategies)
+    return StepSearchArrays(
+        population=settings.population,
+        generations=settings.generations,
+        attempts=1 + settings.returns,
+        weight=settings.weight,
+        crossover=settings.crossover,
+        odd=odd,
+        even=even,
+        motion=np.where(is_base, settings.base_weight, settings.arm_weight),
+        position_weight=settings.position_weight,
+        orientation_weight=settings.orientation_weight,
+        position_tolerance=WITHIN * limits.position_error_m,
+        orientation_tolerance=WITHIN * limits.orientation_error_rad,
+    )
+
+
+def tell_unsolved(
+    follower: Follower, settings: OptimizedSettings, sample: int, verdict: int, pair: int, q: Floats, step: Floats
+) -> TrackStop:
+    """Why no population was solved: `q` [N] and `step` [D] are the best of all."""
+    when = f"sample {sample} ({sample * follower.path.dt_s:.4g} s)"
+    told = f"the best of {1 + settings.returns} populations"
+    if verdict == NO_BOX:
+        text = f"{when}: no step keeps the joint ranges and the accelerations"
+        return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text)
+    if verdict == COLLIDES:
+        names = follower.robot.pairs(follower.detector)[pair]  # type: ignore[arg-type]  # a pair has a detector
+        text = f"{when}: {names[0]} and {names[1]} collide in {told}"
+        return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=names)
+    if verdict == LIMITED:
+        text = f"{when}: {told} breaks the wheels' limit, the largest distance or the base's range"
+        return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
+    beyond = first_out_of_reach(follower, follower.robot.lower, follower.robot.upper)
+    if beyond is not None and beyond[0] == sample:
+        return tell_out_of_reach(follower, *beyond)
+    far = f"{told} is {_measure_miss(follower, sample, q)} away"
+    fast = np.abs(step) * (follower.drive.largest > 0.0)
+    if fast.max() < AT_LIMIT:
+        return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=f"{when}: {far}")
+    name = _entry_name(follower, int(np.argmax(fast)))
+    text = f"{when}: {far}, with {name} at its speed limit"
+    return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
+
+
+def _measure_miss(follower: Follower, sample: int, q: Floats) -> str:
+    """How far the tool is from its target, in words."""
+    target = follower.path.targets()[sample : sample + 1]
+    tool = compute_frames(follower.robot, q[None])[follower.robot.tool]
+    far = float(np.linalg.norm(tool[0, :3, 3] - target.p_world_tool[0]))
+    turn = float(compute_orientation_errors(target, tool[:, :3, :3])[0])
+    return f"{1e3 * far:.3g} mm" + (f" and {turn:.3g} rad" if turn > 0.0 else "")
+
+
+def _entry_name(follower: Follower, entry: int) -> str:
+    """What an entry of a step moves."""
+    first = follower.size - len(follower.drive.others)
+    if entry < first:
+        return "the base" if entry == 0 else follower.robot.joint_names[follower.drive.base[2]]
+    return follower.robot.joint_names[follower.drive.others[entry - first]]

@@ -1,0 +1,148 @@
+"""What will be tracked: a track file with every name resolved, in m, rad and s."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ikde.errors import InputError, nearest
+from ikde.files.entries import UnitsEntry
+from ikde.files.placed import placed
+from ikde.files.robot_entries import read_detector, to_si, with_ranges
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import Detector, Robot
+from ikde.solver.joints import joints_outside
+from ikde.track.make_path import make_path
+from ikde.track.path import ToolPath
+from ikde.track.spec import Drive, LimitsEntry, TrackMethod, TrackSpec
+
+KINDS = ("prismatic", "revolute")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AskedLimits:
+    """Limits that a track file asks for; joints that it leaves out have none here and keep their defaults."""
+
+    ranges: bool = True
+    """Whether joints must stay in their ranges."""
+    speed: Mapping[str, float] = field(default_factory=dict)
+    """Joint -> m/s or rad/s; infinite where the file says null."""
+    acceleration: Mapping[str, float] = field(default_factory=dict)
+    """Joint -> m/s^2 or rad/s^2."""
+    wheel_speed_rad_s: float | None = None
+    farthest_m: float | None = None
+    """Of the tool from the origin of the frame `center`."""
+    center: str | None = None
+    position_error_m: float | None = None
+    """Along each axis."""
+    orientation_error_rad: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrackPlan:
+    """Everything about a track but where its motion goes."""
+
+    name: str
+    robot: Robot
+    """With the ranges that the file asks for."""
+    path: ToolPath
+    drive: Drive
+    method: TrackMethod
+    limits: AskedLimits
+    detector: Detector | None
+    """What counts as self-collision; None for nothing."""
+    start: Floats | None
+    """Configuration to start in [N], m and rad; None to choose one."""
+    seed: int
+    file: str | None
+    """The file it was read from, for the record only."""
+
+
+def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None = None) -> TrackPlan:
+    """Resolve a track file.
+
+    Args:
+        spec: the track file.
+        robot: the robot that it names.
+        folder: paths in the track file start here.
+        file: the track file's name, for the record.
+
+    Raises:
+        InputError: with the path of the key inside the track file.
+        FileError: for what is wrong inside a table.
+    """
+    robot = with_ranges(robot, spec.ranges, spec.units)
+    name = spec.name or (Path(file).stem if file else "track")
+    with placed("detector"):
+        detector = read_detector(robot, spec.detector, spec.units)
+    return TrackPlan(
+        name=name,
+        robot=robot,
+        path=make_path(spec, name, folder),
+        drive=spec.drive,
+        method=spec.method,
+        limits=_read_limits(spec, robot),
+        detector=detector,
+        start=_read_start(spec, robot),
+        seed=spec.seed,
+        file=file,
+    )
+
+
+def _read_limits(spec: TrackSpec, robot: Robot) -> AskedLimits:
+    limits, units = spec.limits, spec.units
+    with placed("limits"):
+        if limits.wheel_speed is not None and spec.drive == "omnidirectional":
+            raise InputError("an omnidirectional drive has no such wheels", ("wheel_speed",))
+        _check_center(limits, robot)
+        return AskedLimits(
+            ranges=limits.ranges,
+            speed=_by_joint(robot, "speed", limits.speed, units),
+            acceleration=_by_joint(robot, "acceleration", limits.acceleration, units),
+            wheel_speed_rad_s=_scaled(limits.wheel_speed, units.angle_rad),
+            farthest_m=_scaled(limits.farthest, units.length_m),
+            center=limits.center,
+            position_error_m=_scaled(limits.position_error, units.length_m),
+            orientation_error_rad=_scaled(limits.orientation_error, units.angle_rad),
+        )
+
+
+def _check_center(limits: LimitsEntry, robot: Robot) -> None:
+    """A distance and the frame that it is measured from go together."""
+    frames = [frame.name for frame in robot.frames]
+    if limits.center is not None and limits.center not in frames:
+        raise InputError(f"{robot.name} has no frame {limits.center!r}{nearest(limits.center, frames)}", ("center",))
+    if (limits.farthest is None) != (limits.center is None):
+        missing = "center" if limits.center is None else "farthest"
+        raise InputError("`farthest` and `center` go together: one of them is missing", (missing,))
+
+
+def _scaled(value: float | None, unit: float) -> float | None:
+    return None if value is None else value * unit
+
+
+def _by_joint(robot: Robot, key: str, given: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:
+    """Limits by joint; a joint's own comes before that of its kind."""
+    for name in given:
+        if name not in (*robot.joint_names, *KINDS):
+            known = nearest(name, (*robot.joint_names, *KINDS))
+            raise InputError(f"{robot.name} has no joint {name!r}{known}; or say prismatic or revolute", (key, name))
+    limits = {}
+    for joint in robot.joints:
+        name = joint.name if joint.name in given else joint.kind
+        if name in given:
+            value = given[name]
+            unit = units.length_m if joint.kind == "prismatic" else units.angle_rad
+            limits[joint.name] = np.inf if value is None else value * unit
+    return limits
+
+
+def _read_start(spec: TrackSpec, robot: Robot) -> Floats | None:
+    if spec.start is None:
+        return None
+    given = to_si(robot, "start", spec.start, spec.units)
+    start = np.array([given.get(joint.name, joint.home) for joint in robot.joints])
+    for name in joints_outside(robot, start)[:1]:
+        raise InputError(f"{start[robot.joint_names.index(name)]:g} is outside the range", ("start", name))
+    return start

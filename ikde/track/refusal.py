@@ -1,0 +1,199 @@
+"""Why a course ends before its path does.
+
+Every limit is taken away in turn. The one without which the step is possible is what stands in the way, and that step
+tells by how much.
+"""
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.kernels.tracking import REACHED, track_sample
+from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.reach import reach_excess_m
+from ikde.solver.plain import compute_gaps
+from ikde.solver.result import SolveResult, StopReason
+from ikde.track.drive import wheel_speeds
+from ikde.track.follow import FARTHEST, Course, Follower
+from ikde.track.trajectory import TrackStop, TrackStopReason
+
+PATIENT_ROUNDS = 100
+FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
+OF_SOLVER = {
+    StopReason.OUT_OF_REACH: TrackStopReason.OUT_OF_REACH,
+    StopReason.SELF_COLLISION: TrackStopReason.SELF_COLLISION,
+    StopReason.LIMITS: TrackStopReason.JOINT_LIMIT,
+}
+
+Finding = tuple[Floats, Floats]
+"""The end [N] and the step [D] that is possible without a limit."""
+
+
+def first_out_of_reach(follower: Follower, lower: Floats, upper: Floats) -> tuple[int, float] | None:
+    """The first sample that is proved to be out of reach of the ranges [N], and by how many m; None if none is."""
+    excess = reach_excess_m(follower.robot, follower.path.p_world_tool, lower, upper)
+    beyond = np.flatnonzero(excess > follower.limits.position_error_m)
+    return (int(beyond[0]), float(excess[beyond[0]])) if len(beyond) else None
+
+
+def tell_out_of_reach(follower: Follower, sample: int, excess_m: float) -> TrackStop:
+    """A stop at what is proved to be out of reach."""
+    text = f"{_when(follower, sample)}: at least {1e3 * excess_m:.3g} mm out of reach, whatever the joints do"
+    return TrackStop(sample=sample, reason=TrackStopReason.OUT_OF_REACH, text=text)
+
+
+def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackStop:
+    """A stop at a pose that no configuration meets, in the solver's words."""
+    pair = next(iter(result.blocking_pairs), None)
+    reason, text = OF_SOLVER.get(result.stop_reason), result.reason
+    if reason is None:
+        reason = TrackStopReason.OUT_OF_REACH
+        off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
+        text = f"no configuration was found that comes nearer than {off}"
+    return TrackStop(sample=sample, reason=reason, text=f"{_when(follower, sample)}: {text}", pair=pair)
+
+
+def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
+    """A stop at a pose that is met only with the platform's centre too far away."""
+    far = f"the tool would be farther than {follower.limits.farthest_m:.4g} m from {follower.limits.center}"
+    return TrackStop(
+        sample=sample,
+        reason=TrackStopReason.DISTANCE_LIMIT,
+        text=f"{_when(follower, sample)}: {far}",
+        limit=follower.limits.center,
+    )
+
+
+def explain_stop(follower: Follower, course: Course, static: SolveResult) -> TrackStop:
+    """Why the sample after the course's last is not reached; `static` is what the solver says about it alone."""
+    sample = course.last + 1
+    for look in (_without_wheels, _without_distance, _without_acceleration, _without_collision, _without_ranges):
+        stop = look(follower, course, sample)
+        if stop is not None:
+            return stop
+    if not static.reached:
+        return tell_static(follower, sample, static)
+    stop = _without_speed(follower, course, sample)
+    if stop is not None:
+        return stop
+    text = f"{_when(follower, sample)}: no way on within the limits was found"
+    return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
+
+
+def tell_uncertified(follower: Follower, sample: int) -> TrackStop:
+    """A stop before a segment that may touch on its way."""
+    text = f"{_when(follower, sample)}: contact on the way there can't be excluded"
+    return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text)
+
+
+def _try(follower: Follower, course: Course, sample: int, scale: Floats | float = 1.0) -> Finding | None:
+    """The step to a sample, if there is one; `scale` turns shares of the usual largest step into this follower's."""
+    q, step = np.zeros_like(course.q[0]), np.zeros(follower.size)
+    changed = follower.with_track(most_rounds=PATIENT_ROUNDS)
+    status, _, _ = track_sample(
+        pack_robot(follower.robot),
+        pack_detector(follower.robot, follower.detector),
+        changed.drive,
+        changed.track,
+        changed.target,
+        sample,
+        course.weights[sample],
+        course.q[course.last],
+        course.steps[course.last] * scale,
+        sample == 1,
+        changed.room,
+        q,
+        step,
+    )
+    return (q, step) if status == REACHED else None
+
+
+def _without_collision(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    found = _try(follower.with_track(reach=-np.inf), course, sample) if follower.detector else None
+    if found is None or follower.detector is None:
+        return None
+    pairs = follower.robot.pairs(follower.detector)
+    gaps = compute_gaps(follower.robot, follower.detector.spheres, pairs, found[0])
+    worst = int(np.argmin(gaps))
+    pair, gap = pairs[worst], 1e3 * float(gaps[worst])
+    how = f"are {gap:.3g} mm apart" if gap > 0.0 else f"overlap by {-gap:.3g} mm"
+    text = f"{_when(follower, sample)}: {pair[0]} and {pair[1]} {how} in the only step that was found"
+    return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
+
+
+def _without_ranges(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    ranges = follower.track.ranges
+    found = _try(follower.with_track(ranges=np.sign(ranges - ranges.mean(axis=0)) * FARTHEST), course, sample)
+    if found is None:
+        return None
+    beyond = np.maximum(ranges[0] - found[0], found[0] - ranges[1])
+    joint = int(np.argmax(beyond))
+    name = follower.robot.joint_names[joint]
+    limits = f"[{ranges[0, joint]:.4g}, {ranges[1, joint]:.4g}]"
+    text = f"{_when(follower, sample)}: {name} would have to be at {found[0][joint]:.4g}, its range is {limits}"
+    return TrackStop(sample=sample, reason=TrackStopReason.JOINT_LIMIT, text=text, limit=name)
+
+
+def _without_acceleration(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    drive = follower.drive
+    found = _try(follower.with_drive(change=np.full(follower.size, np.inf)), course, sample)
+    if found is None or not np.isfinite(drive.change).any():
+        return None
+    change = np.abs(found[1] - course.steps[course.last])
+    worst = int(np.argmax(change / drive.change))
+    per_second = drive.largest[worst] / follower.path.dt_s**2
+    name = _entry_name(follower, worst)
+    needed, limit = change[worst] * per_second, drive.change[worst] * per_second
+    text = f"{_when(follower, sample)}: {name} would need an acceleration of {needed:.4g}, its limit is {limit:.4g}"
+    return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text, limit=name)
+
+
+def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    if np.isinf(follower.drive.wheel_travel) or follower.drive.base[0] < 0:
+        return None
+    found = _try(follower.with_drive(wheel_travel=np.inf), course, sample)
+    if found is None:
+        return None
+    v, omega = found[1][:2] * follower.drive.largest[:2] / follower.path.dt_s
+    needed = float(np.abs(wheel_speeds(v, omega)).max())
+    limit = follower.limits.wheel_speed_rad_s
+    text = f"{_when(follower, sample)}: a wheel would have to turn at {needed:.4g} rad/s, its limit is {limit:.4g}"
+    return TrackStop(sample=sample, reason=TrackStopReason.WHEEL_LIMIT, text=text, limit="wheels")
+
+
+def _without_distance(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    if np.isinf(follower.drive.farthest) or _try(follower.with_drive(farthest=np.inf), course, sample) is None:
+        return None
+    return tell_too_far(follower, sample)
+
+
+def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    """The least of some factors by which all speed limits would have to grow, and the joint that would use it up."""
+    usual = follower.drive.largest
+    for factor in FACTORS:
+        faster = follower.with_drive(largest=factor * usual, change=np.full(follower.size, np.inf))
+        found = _try(faster, course, sample, 1.0 / factor)
+        if found is None:
+            continue
+        worst = int(np.argmax(np.abs(found[1])))
+        limit, name = usual[worst] / follower.path.dt_s, _entry_name(follower, worst)
+        unit = "m/s" if follower.robot.joints[_entry_joint(follower, worst)].kind == "prismatic" else "rad/s"
+        needed = f"{factor * abs(found[1][worst]) * limit:.4g} {unit}"
+        text = f"{_when(follower, sample)}: {name} would have to move at {needed}, its limit is {limit:.4g} {unit}"
+        return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
+    return None
+
+
+def _entry_joint(follower: Follower, entry: int) -> int:
+    """Index into q of an entry of a step; of a base's drive along its heading, that of x."""
+    drive = follower.drive
+    wheels = follower.size - len(drive.others)
+    return int(drive.others[entry - wheels] if entry >= wheels else drive.base[0 if entry == 0 else 2])
+
+
+def _entry_name(follower: Follower, entry: int) -> str:
+    is_driven = follower.drive.base[0] >= 0 and entry == 0
+    return "the base" if is_driven else follower.robot.joint_names[_entry_joint(follower, entry)]
+
+
+def _when(follower: Follower, sample: int) -> str:
+    return f"sample {sample} ({sample * follower.path.dt_s:.4g} s)"

@@ -1,0 +1,206 @@
+"""The track file as it is written: every key with its type, its default and what it means."""
+
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import ConfigDict, Discriminator, Field, Tag
+
+from ikde.files.entries import (
+    DetectorChoice,
+    Entry,
+    FileEntry,
+    InlineTarget,
+    Interval,
+    Name,
+    Number,
+    OrientationEntry,
+    UnitsEntry,
+    Vector,
+)
+
+Drive = Literal["differential", "omnidirectional"]
+TrackMethod = Literal["continuation", "optimized", "typical"]
+DRIVES: tuple[Drive, ...] = get_args(Drive)
+TRACK_METHODS: tuple[TrackMethod, ...] = get_args(TrackMethod)
+
+Positive = Annotated[Number, Field(gt=0.0)]
+NotNegative = Annotated[Number, Field(ge=0.0)]
+Share = Annotated[float, Field(strict=True, ge=0.0, le=1.0)]
+
+
+def _text_or_number(value: Any) -> str:
+    return "text" if isinstance(value, str) else "number"
+
+
+Formula = Annotated[Annotated[Name, Tag("text")] | Annotated[Number, Tag("number")], Discriminator(_text_or_number)]
+"""A number, or arithmetic over the sample k, the count N and pi."""
+ThreeFormulas = Annotated[list[Formula], Field(min_length=3, max_length=3)]
+FourFormulas = Annotated[list[Formula], Field(min_length=4, max_length=4)]
+
+
+class ExpressionsEntry(Entry):
+    """Formulas for the tool's position at sample k = 0 .. N."""
+
+    x: Formula
+    """World x."""
+    y: Formula
+    """World y."""
+    z: Formula
+    """World z."""
+
+
+class LineEntry(Entry):
+    """A straight line; to where the tool is already, it stands still."""
+
+    to: Vector
+    """Where it ends."""
+
+
+class ArcEntry(Entry):
+    """A circle's arc about an axis."""
+
+    center: Vector
+    """A point of the axis."""
+    normal: Vector
+    """The axis' direction, any length; the turn about it is right-handed."""
+    angle: Number
+    """How far it turns; more than a whole turn and less than none will do."""
+
+
+class ArcThroughEntry(Entry):
+    """The arc of a circle through three points: where the tool is, `via` and `to`."""
+
+    via: Vector
+    """A point on the way."""
+    to: Vector
+    """Where it ends."""
+
+
+class SplineEntry(Entry):
+    """A natural cubic spline from where the tool is."""
+
+    through: Annotated[list[Vector], Field(min_length=1, max_length=1000)]
+    """Points on the way, the last one its end."""
+
+
+class SegmentEntry(Entry):
+    """A piece of a curve: exactly one shape, and how long it takes."""
+
+    duration_s: Positive
+    """Seconds: a whole number of samples."""
+    pace: Literal["even", "smooth"] = "even"
+    """`even`: samples share the way out evenly; `smooth`: from rest to rest with minimum jerk."""
+    line: LineEntry | None = None
+    """A straight line."""
+    arc: ArcEntry | None = None
+    """A circle's arc about an axis."""
+    arc_through: ArcThroughEntry | None = None
+    """A circle's arc through two further points."""
+    spline: SplineEntry | None = None
+    """A smooth curve through points."""
+
+
+class CurveEntry(Entry):
+    """Lines, arcs and splines, each from where the one before it ends."""
+
+    start: Vector = Field(alias="from")
+    """Where the first one begins."""
+    segments: Annotated[list[SegmentEntry], Field(min_length=1, max_length=10_000)]
+    """The pieces, in order."""
+
+
+class PathEntry(Entry):
+    """Where the tool goes: exactly one key."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+    expressions: ExpressionsEntry | None = None
+    """Formulas over k and N."""
+    curve: CurveEntry | None = None
+    """Lines, arcs and splines."""
+    waypoints: Annotated[list[InlineTarget], Field(min_length=2)] | None = None
+    """A list of poses, written here: straight lines between them, turns on the shortest way."""
+    file: FileEntry | None = None
+    """A table of waypoints: CSV, Parquet or NPZ."""
+
+
+class KeyframeEntry(OrientationEntry):
+    """An orientation at a moment of the path."""
+
+    at: Share
+    """When: share of the path's time, 0 to 1."""
+
+
+class TurnEntry(Entry):
+    """How the tool is turned: exactly one key."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+    axis: ThreeFormulas | None = None
+    """Direction of the tool's z axis, any length; the turn about it stays free. Numbers or formulas."""
+    rpy: ThreeFormulas | None = None
+    """Roll, pitch, yaw about the fixed axes of the world. Numbers or formulas."""
+    quat_wxyz: FourFormulas | None = None
+    """Quaternion, w first, any length. Numbers or formulas."""
+    keyframes: Annotated[list[KeyframeEntry], Field(min_length=1, max_length=10_000)] | None = None
+    """Orientations at moments: even turns on the shortest way between them."""
+
+
+def _free_or_turn(value: Any) -> str:
+    return "free" if isinstance(value, str) else "turn"
+
+
+Orientation = Annotated[
+    Annotated[Literal["free"], Tag("free")] | Annotated[TurnEntry, Tag("turn")], Discriminator(_free_or_turn)
+]
+
+
+class LimitsEntry(Entry):
+    """What the motion must keep; what is left out stays as it is by default."""
+
+    ranges: bool = Field(default=True, strict=True)
+    """Whether joints must stay in their ranges."""
+    speed: dict[Name, NotNegative | None] = {}
+    """Joint, or `prismatic` or `revolute` for all others of that kind: units a second; 0: frozen, null: no limit."""
+    acceleration: dict[Name, Positive | None] = {}
+    """Likewise, units a second squared (default: no limits)."""
+    wheel_speed: Positive | None = None
+    """Of the wheels of a differential drive, angle a second (default: what the base's speeds imply)."""
+    farthest: Positive | None = None
+    """Of the tool from the frame `center`, at every sample (default: any distance)."""
+    center: Name | None = None
+    """The frame that `farthest` is measured from: the platform's centre."""
+    position_error: Positive | None = None
+    """Accepted error of the tool's position along each axis, at every sample."""
+    orientation_error: Positive | None = None
+    """Accepted error of its orientation, at every sample."""
+
+
+class TrackSpec(Entry):
+    """A track: a path for the tool, and how the robot is to follow it."""
+
+    name: Name | None = None
+    """What to call the track (default: the file's name)."""
+    robot: Name
+    """A robot that ships with ikde, or its file, relative to the track file."""
+    units: UnitsEntry = UnitsEntry()
+    """Units of everything written here; seconds are seconds."""
+    dt_s: Positive
+    """Time from a sample to the next, s."""
+    samples: Annotated[int, Field(strict=True, ge=1, le=10**6)] | None = None
+    """N, samples after the start (default: one a waypoint, or what the segments' durations make)."""
+    path: PathEntry
+    """Where the tool goes."""
+    orientation: Orientation | None = None
+    """`free`, or how the tool is turned (default: what the waypoints say, else free)."""
+    drive: Drive = "differential"
+    """How the base moves: on arcs of constant v and omega, or freely in the plane."""
+    method: TrackMethod = "continuation"
+    """ikde's own, or one of the paper's two."""
+    limits: LimitsEntry = LimitsEntry()
+    """What the motion must keep."""
+    detector: DetectorChoice | None = None
+    """What counts as self-collision: a name, `none`, or a detector of your own (default: the robot's)."""
+    ranges: dict[Name, Interval] = {}
+    """Joint ranges instead of the robot's: joint: [lower, upper]."""
+    start: dict[Name, Number] | None = None
+    """Configuration to start in; joints left out stand at home (default: chosen)."""
+    seed: Annotated[int, Field(strict=True, ge=0, le=2**64 - 1)] = 0
+    """Same seed, same motion."""

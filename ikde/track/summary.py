@@ -1,0 +1,140 @@
+"""What a motion is like: every figure that its page and its table show, measured by plain numpy."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import Detector, Robot
+from ikde.track.certify import Certificate, certify
+from ikde.track.dexterity import smallest_singular_values
+from ikde.track.drive import find_wheels, implied_wheel_speed
+from ikde.track.limits import MotionLimits
+from ikde.track.trajectory import Trajectory
+from ikde.track.verify_track import TrackVerification, verify_track
+
+Worst = tuple[str, float, float]
+"""A joint, its value, and its limit."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TrackSummary:
+    """A motion with its figures, at its samples 0 .. M and between them."""
+
+    robot: Robot
+    detector: Detector | None
+    trajectory: Trajectory
+    verification: TrackVerification
+    certificate: Certificate
+    singular_values: Floats
+    """[M + 1] smallest of the arm's Jacobian, m and rad."""
+
+    @property
+    def limits(self) -> MotionLimits:
+        """What the motion was made under."""
+        return self.trajectory.limits
+
+    @property
+    def started(self) -> bool:
+        """False if not even the first pose was met."""
+        return len(self.trajectory.q) > 0
+
+    @property
+    def arm(self) -> list[int]:
+        """Joints that do not drive the base."""
+        return [k for k, name in enumerate(self.robot.joint_names) if name not in self.trajectory.base_joints]
+
+    @property
+    def largest_axis_errors_m(self) -> Floats:
+        """Along x, y and z, at any sample [3]."""
+        return np.abs(self.verification.error_m).max(axis=0, initial=0.0)
+
+    @property
+    def met_points(self) -> int:
+        """Samples after the start where the tool is within its tolerances."""
+        graded, limits = self.verification, self.limits
+        near = (np.abs(graded.error_m) <= limits.position_error_m).all(axis=1)
+        near &= graded.orientation_error_rad <= limits.orientation_error_rad
+        return int(near[1:].sum())
+
+    @cached_property
+    def colliding(self) -> list[set[str]]:
+        """Components within the safe distance of another, for each sample."""
+        safe = self.detector.safe_distance_m if self.detector else 0.0
+        pairs = self.robot.pairs(self.detector)
+        touching = self.verification.gaps_m <= safe
+        return [{name for pair in np.flatnonzero(row) for name in pairs[pair]} for row in touching]
+
+    @property
+    def closest_pair(self) -> tuple[str, str] | None:
+        """The pair with the smallest clearance at any sample."""
+        gaps = self.verification.gaps_m
+        return self.robot.pairs(self.detector)[int(np.argmin(gaps.min(axis=0)))] if gaps.size else None
+
+    @property
+    def steps(self) -> Floats:
+        """Change of every joint from sample to sample [M, N], m and rad; of a base with wheels along its arc."""
+        return self.driven * self.trajectory.path.dt_s
+
+    @cached_property
+    def driven(self) -> Floats:
+        """Speeds [M, N] as the limits mean them: of a base with wheels along its heading, in the columns of x and y."""
+        speeds, base = self.verification.speeds.copy(), find_wheels(self.robot, self.trajectory.drive)
+        if base[0] >= 0:
+            speeds[:, base[:2]] = self.verification.v[:, None]
+        return speeds
+
+    def largest_step(self, kind: str) -> float:
+        """Largest change of a joint of a kind between two samples, m or rad."""
+        chosen = self.robot.slides if kind == "prismatic" else ~self.robot.slides
+        return float(np.abs(self.steps[:, chosen]).max(initial=0.0))
+
+    @property
+    def fastest(self) -> Worst | None:
+        """The joint nearest to its speed limit, or farthest beyond it; None without a limit or a motion."""
+        return self._worst(np.abs(self.driven), self.limits.speed)
+
+    @property
+    def wheel_limit_rad_s(self) -> float:
+        """The wheels' own limit, else what the base's speed limits imply; inf without either."""
+        own, base = self.limits.wheel_speed_rad_s, find_wheels(self.robot, self.trajectory.drive)
+        if own is not None:
+            return own
+        return np.inf if self.limits.speed is None or base[0] < 0 else implied_wheel_speed(self.limits.speed, base)
+
+    @property
+    def largest_acceleration(self) -> Worst | None:
+        """The joint nearest to its acceleration limit."""
+        return self._worst(np.abs(np.diff(self.driven, axis=0)) / self.trajectory.path.dt_s, self.limits.acceleration)
+
+    def _worst(self, values: Floats, limit: Floats | None) -> Worst | None:
+        if limit is None or not len(values):
+            return None
+        largest = values.max(axis=0)
+        share = np.divide(largest, limit, out=np.where(largest > 0.0, np.inf, 0.0), where=limit > 0.0)
+        joint = int(np.argmax(share))
+        return self.robot.joint_names[joint], float(largest[joint]), float(limit[joint])
+
+    @property
+    def range_left(self) -> Worst | None:
+        """The joint that comes nearest to an end of its range: what is left of it (negative: beyond), and that end."""
+        q, robot = self.trajectory.q, self.robot
+        if not len(q):
+            return None
+        left = np.stack([q - robot.lower, robot.upper - q]).min(axis=1)
+        end, joint = np.unravel_index(int(np.argmin(np.where(robot.slides, np.inf, left))), left.shape)
+        return robot.joint_names[joint], float(left[end, joint]), float((robot.lower, robot.upper)[end][joint])
+
+
+def summarise_track(robot: Robot, detector: Detector | None, trajectory: Trajectory) -> TrackSummary:
+    """Measure a motion: at its samples and between them."""
+    path, q, drive = trajectory.path, trajectory.q, trajectory.drive
+    return TrackSummary(
+        robot=robot,
+        detector=detector,
+        trajectory=trajectory,
+        verification=verify_track(robot, path, q, drive=drive, limits=trajectory.limits, detector=detector),
+        certificate=certify(robot, path, q, drive=drive, detector=detector),
+        singular_values=smallest_singular_values(robot, q, trajectory.base_joints),
+    )

@@ -1,0 +1,127 @@
+"""`track`: follow a path of the tool with the whole robot, or say where and why it ends."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import Detector, Robot
+from ikde.solver.engines.pool import find_base
+from ikde.solver.joints import JointValues, read_configuration
+from ikde.solver.problem import Freeze, make_problem
+from ikde.solver.settings import SolveSettings, check_seed
+from ikde.track.certify import certify
+from ikde.track.continuation import Continuation
+from ikde.track.drive import DriveName
+from ikde.track.follow import make_follower
+from ikde.track.limits import MotionLimits
+from ikde.track.methods import TrackSettings, check_method, follow_by
+from ikde.track.path import ToolPath
+from ikde.track.spec import TrackMethod
+from ikde.track.trajectory import TrackStop, Trajectory
+from ikde.track.verify_track import verify_track
+
+
+def track(
+    robot: Robot,
+    path: ToolPath,
+    *,
+    drive: DriveName = "differential",
+    method: TrackMethod = "continuation",
+    limits: MotionLimits | None = None,
+    start: JointValues | None = None,
+    seed: int = 0,
+    detector: str | Detector | None = None,
+    freeze: Freeze | None = None,
+    settings: TrackSettings | None = None,
+    announce_compile: Callable[[], None] | None = None,
+) -> Trajectory:
+    """Follow the path inside all limits, free of self-collision at the samples and between them.
+
+    Args:
+        robot: the robot.
+        path: poses of the tool, a sample every `path.dt_s`.
+        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself, with no base, too.
+        method: `continuation`; or one of the paper's: `optimized`, which keeps the limits at samples only, or
+            `typical`, which goes on to the end whatever it breaks: see `Trajectory.breaches`.
+        limits: None for those of the paper (`MotionLimits.of`).
+        start: the configuration at the first pose [N], or by name; None for the one that `continuation` finds best.
+        seed: same seed, same bits.
+        detector: a name, a `Detector`, `"none"`, or None for the robot's default.
+        freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
+        settings: of one of the paper's methods; None for the paper's numbers.
+        announce_compile: called once if kernels must be compiled first.
+
+    Returns:
+        The motion, as far as it goes; except for `typical` it never jumps. `stop` says where and why it ended
+        before the path did.
+
+    Raises:
+        InputError: for what does not fit the robot, and a start that is not at the first pose or collides.
+    """
+    check_method(method, settings)
+    limits = MotionLimits.of(robot) if limits is None else limits.check(robot)
+    chosen = robot.detector(detector)
+    if start is not None:
+        start = read_configuration(robot, start)
+    problem = make_problem(robot, SolveSettings(), detector=chosen or "none", near=start, freeze=freeze)
+    frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
+    follower = make_follower(robot, path, drive=drive, limits=limits, detector=chosen, frozen=problem.frozen)
+    search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), asked={})
+    q, stop, seconds = follow_by(method, search, start, settings, announce_compile)
+    return grade_motion(robot, path, q, stop, seconds, drive=drive, method=method, limits=limits, detector=chosen)
+
+
+def grade_motion(
+    robot: Robot,
+    path: ToolPath,
+    q: Floats,
+    stop: TrackStop | None,
+    seconds: Floats,
+    *,
+    drive: DriveName,
+    method: str,
+    limits: MotionLimits,
+    detector: Detector | None,
+) -> Trajectory:
+    """The motion through `q` [M + 1, N] with the figures that the judge and the certificate give it.
+
+    What `typical` does between samples means nothing, and is not looked at.
+    """
+    graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
+    proof = None if method == "typical" else certify(robot, path, q, drive=drive, detector=detector)
+    v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
+    return Trajectory(
+        path=path,
+        joint_names=robot.joint_names,
+        base_joints=base_joints(robot),
+        drive=drive,
+        method=method,
+        limits=limits,
+        q=q,
+        v=v,
+        omega=omega,
+        wheel_speeds=None if drive == "omnidirectional" else graded.wheel_speeds,
+        stop=stop,
+        seconds=seconds,
+        error_m=graded.error_m,
+        orientation_error_rad=graded.orientation_error_rad,
+        clearance_m=graded.gaps_m.min(axis=1, initial=np.inf) if detector else None,
+        certified_clearance_m=proof.clearance_m if proof and detector and len(q) else None,
+        deviation_m=proof.deviation_m if proof else None,
+        deviation_rad=proof.deviation_rad if proof else None,
+        breaches=graded.breaches,
+    )
+
+
+def base_joints(robot: Robot) -> tuple[str, ...]:
+    """Names of x, y and heading of a base that drives in the plane; none for a robot without."""
+    return tuple(robot.joint_names[k] for k in find_base(robot, robot.lower, robot.upper) if k >= 0)
+
+
+def base_speeds(robot: Robot, speeds: Floats) -> tuple[Floats, Floats]:
+    """Speeds of a base along x and y [M, 2] in m/s and of its heading [M] in rad/s, out of all joints' [M, N]."""
+    base = find_base(robot, robot.lower, robot.upper)
+    if base[0] < 0:
+        return np.zeros((len(speeds), 2)), np.zeros(len(speeds))
+    return speeds[:, base[:2]], speeds[:, base[2]]

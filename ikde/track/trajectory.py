@@ -1,0 +1,113 @@
+"""What a track gives back, as plain data: joint values, the base's twist, figures, and why it stopped."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.track.path import ToolPath
+from ikde.track.spec import Drive
+from ikde.track.verify_track import Breaches
+
+
+class TrackStopReason(StrEnum):
+    """What stands in the way of the rest of a path."""
+
+    OUT_OF_REACH = "out_of_reach"
+    """No joint values bring the tool there."""
+    SPEED_LIMIT = "speed_limit"
+    """A joint or the base would have to move faster than it may."""
+    ACCELERATION_LIMIT = "acceleration_limit"
+    """It would have to change its speed faster than it may."""
+    WHEEL_LIMIT = "wheel_limit"
+    """A wheel would have to turn faster than it may."""
+    JOINT_LIMIT = "joint_limit"
+    """A joint would have to leave its range."""
+    DISTANCE_LIMIT = "distance_limit"
+    """The tool would be too far from the platform's centre."""
+    SELF_COLLISION = "self_collision"
+    """What is fast enough collides."""
+    BUDGET = "budget"
+    """The attempts were spent and nothing tells why."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackStop:
+    """Where a motion ends before its path does, and why."""
+
+    sample: int
+    """The first sample that was not reached."""
+    reason: TrackStopReason
+    text: str
+    """One line: what happened."""
+    pair: tuple[str, str] | None = None
+    """The components in the way."""
+    limit: str | None = None
+    """The joint, or `v`, `omega`, `wheels`, whose limit is in the way."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trajectory:
+    """A motion through the samples 0 .. M of a path of K: all of them, M = K, or those before the stop.
+
+    Between samples joints run evenly; the base of a differential drive runs on an arc of constant `v` and `omega`, that
+    of an omnidirectional one evenly in x, y and heading.
+    """
+
+    path: ToolPath
+    joint_names: tuple[str, ...]
+    base_joints: tuple[str, ...]
+    """Those of them that drive the base: x, y and heading; none for a robot that stands still."""
+    drive: Drive
+    method: str
+    limits: Any
+    """The `MotionLimits` that the motion was made under."""
+    q: Floats
+    """[M + 1, N] in the robot's own convention, m and rad."""
+    v: Floats
+    """[M] m/s, forward, from sample k to k + 1; of an omnidirectional drive [M, 2], along x and y of the world."""
+    omega: Floats
+    """[M] rad/s, to the left."""
+    wheel_speeds: Floats | None
+    """[M, 2] rad/s, left and right; None for an omnidirectional drive."""
+    stop: TrackStop | None
+    """Why the motion ends before its path does; None if it does not."""
+    seconds: Floats
+    """[M] wall time of each sample after the start, without compilation."""
+    error_m: Floats
+    """[M + 1, 3] tool minus path, along x, y, z, by plain numpy."""
+    orientation_error_rad: Floats
+    """[M + 1] of what the path asks for."""
+    clearance_m: Floats | None
+    """[M + 1] smallest over the detector's pairs; None without a detector."""
+    certified_clearance_m: float | None = None
+    """What no pair falls below at any moment, samples or between; None if nothing was certified."""
+    deviation_m: Floats | None = None
+    """[M] distance of the tool from the path half-way between samples; None if it was not measured."""
+    deviation_rad: Floats | None = None
+    """[M] the same of its orientation, of what the path asks for."""
+    breaches: Breaches | None = None
+    """How often `verify_track` finds a limit broken; None if it was not asked."""
+
+    @property
+    def reached_points(self) -> int:
+        """M: samples reached after the start."""
+        return max(len(self.q) - 1, 0)
+
+    @property
+    def reached(self) -> bool:
+        """True if the whole path was followed and no limit is broken."""
+        is_kept = self.breaches is None or self.breaches.total == 0
+        return self.stop is None and self.reached_points == self.path.samples and is_kept
+
+    @property
+    def times_s(self) -> Floats:
+        """When the samples 0 .. M are due, s."""
+        return self.path.times_s[: len(self.q)]
+
+    @property
+    def joint_speeds(self) -> Floats:
+        """[M, N] m/s and rad/s from sample k to k + 1: what even motion between them needs."""
+        return np.diff(self.q, axis=0) / self.path.dt_s

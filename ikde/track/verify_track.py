@@ -1,0 +1,157 @@
+"""The judge of a motion: plain numpy, straight from the path and the joint values; it shares nothing with the search.
+
+Everything is computed again from `q` alone: the base's twist from its places, speeds from differences. Between samples
+joints run linearly and a base with wheels along its arc, so speeds are constant there and joint values lie between
+those of the samples; how far the base's arc leaves the chord is added to what its ranges must hold.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats, Ints
+from ikde.model.robot import Detector, Robot
+from ikde.solver.plain import compute_frames, compute_gaps
+from ikde.solver.verify import Bools, compute_orientation_errors
+from ikde.track.drive import base_twist, find_wheels, wheel_speeds
+from ikde.track.limits import MotionLimits
+from ikde.track.path import ToolPath
+
+ROUNDING = 1e-9  # share of a limit, and m or rad of a range, that rounding may take
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Breaches:
+    """How often each limit is broken; all 0 for a motion that keeps them."""
+
+    error: int
+    """Samples beyond the error per axis, or the orientation error."""
+    range: int
+    """Joint values outside their range."""
+    speed: int
+    """Speeds of joints, or of a base with wheels along its heading, in a segment."""
+    acceleration: int
+    wheel: int
+    distance: int
+    """Samples with the tool too far from the platform's centre."""
+    collision: int
+    """Samples within the safe distance."""
+    sideways: int
+    """Segments in which a base with wheels would slide, by more than 1e-9 m/s."""
+
+    @property
+    def total(self) -> int:
+        """All of them."""
+        return sum(getattr(self, name) for name in type(self).__slots__)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TrackVerification:
+    """The figures of a motion of M segments, at its samples 0 .. M."""
+
+    error_m: Floats
+    """[M + 1, 3] tool minus path."""
+    orientation_error_rad: Floats
+    """[M + 1]"""
+    speeds: Floats
+    """[M, N] m/s and rad/s of each segment; of a base with wheels the chord's."""
+    v: Floats
+    """[M] m/s along the base's heading; NaN without wheels."""
+    omega: Floats
+    """[M] rad/s"""
+    wheel_speeds: Floats
+    """[M, 2] rad/s, left and right; NaN without wheels."""
+    sideways_m_s: Floats
+    """[M] chord velocity across the mid heading (5); 0 without wheels."""
+    gaps_m: Floats
+    """[M + 1, P] clearance of each pair."""
+    distance_m: Floats
+    """[M + 1] of the tool from the platform's centre (18); NaN if none is named."""
+    breaches: Breaches
+
+    @cached_property
+    def largest_axis_error_m(self) -> float:
+        """Largest error of any axis at any sample."""
+        return float(np.abs(self.error_m).max(initial=0.0))
+
+    @cached_property
+    def total_error_m(self) -> float:
+        """Largest distance of the tool from the path at a sample."""
+        return float(np.linalg.norm(self.error_m, axis=1).max(initial=0.0))
+
+    @cached_property
+    def largest_orientation_error_rad(self) -> float:
+        """Largest at any sample."""
+        return float(self.orientation_error_rad.max(initial=0.0))
+
+    @cached_property
+    def clearance_m(self) -> float:
+        """Smallest at any sample; inf without a pair."""
+        return float(self.gaps_m.min(initial=np.inf))
+
+    @property
+    def accepted(self) -> bool:
+        """True if no limit is broken."""
+        return self.breaches.total == 0
+
+
+def verify_track(
+    robot: Robot, path: ToolPath, q: Floats, *, drive: str, limits: MotionLimits, detector: Detector | None
+) -> TrackVerification:
+    """Grade the joint values `q` [M + 1, N] of the samples 0 .. M, M <= K, against path and limits."""
+    dt_s = path.dt_s
+    targets = path.targets()[: len(q)]
+    frames = compute_frames(robot, q)
+    tool = frames[robot.tool]
+    error = tool[:, :3, 3] - targets.p_world_tool
+    turn = compute_orientation_errors(targets, tool[:, :3, :3])
+    speeds = np.diff(q, axis=0) / dt_s
+    base = find_wheels(robot, drive)
+    nothing = np.full(max(len(q) - 1, 0), np.nan)
+    v, omega, across = (nothing, nothing, np.zeros(len(nothing)))
+    if base[0] >= 0:
+        v, omega, across = base_twist(q[:-1, base], q[1:, base], dt_s)
+    wheels = wheel_speeds(v, omega)
+    gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), q) if detector else np.empty((len(q), 0))
+    centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
+    distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
+    safe = detector.safe_distance_m if detector else 0.0
+    driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)
+    wrong = (np.abs(error) > limits.position_error_m).any(axis=1) | (turn > limits.orientation_error_rad)
+    return TrackVerification(
+        error_m=error,
+        orientation_error_rad=turn,
+        speeds=speeds,
+        v=v,
+        omega=omega,
+        wheel_speeds=wheels,
+        sideways_m_s=across,
+        gaps_m=gaps,
+        distance_m=distance,
+        breaches=Breaches(
+            error=int(wrong.sum()),
+            range=int(_leaves_range(robot, q, base, v, omega, dt_s).sum()) if limits.ranges else 0,
+            speed=_count_above(driven, limits.speed),
+            acceleration=_count_above(np.diff(driven, axis=0) / dt_s, limits.acceleration),
+            wheel=_count_above(wheels, limits.wheel_speed_rad_s),
+            distance=_count_above(distance, limits.farthest_m),
+            collision=int((gaps <= safe).any(axis=1).sum()),
+            sideways=int((np.abs(across) > ROUNDING).sum()),
+        ),
+    )
+
+
+def _count_above(values: Floats, limit: Floats | float | None) -> int:
+    """How many values exceed the limit in size; NaN does not."""
+    return 0 if limit is None else int((np.abs(values) > np.asarray(limit) * (1.0 + ROUNDING)).sum())
+
+
+def _leaves_range(robot: Robot, q: Floats, base: Ints, v: Floats, omega: Floats, dt_s: float) -> Bools:
+    """Which joint values [M + 1, N] are outside; x and y of an arc by its sagitta, |v omega| dt^2 / 8, earlier."""
+    extra = np.zeros_like(q)
+    if base[0] >= 0 and len(q) > 1:
+        sagitta = np.abs(v * omega) * dt_s**2 / 8.0
+        rows = np.maximum(np.append(sagitta, 0.0), np.insert(sagitta, 0, 0.0))
+        extra[:, base[0]] = extra[:, base[1]] = rows
+    return (q - extra < robot.lower - ROUNDING) | (q + extra > robot.upper + ROUNDING)

@@ -1,0 +1,106 @@
+"""`ikde track`: files that are whole, a stop that says why, and words for what is wrong."""
+
+import json
+
+import pytest
+
+SPEC = """
+name: short
+robot: qiao2021
+dt_s: 0.02
+samples: 6
+path: {expressions: {x: 0.9 + 0.002*k, y: 0.2, z: 0.9}}
+"""
+FILES = [
+    *("base.json", "base.yaml", "joint_trajectory.json", "joint_trajectory.yaml"),
+    *("report.html", "summary.json", "trajectory.csv", "trajectory.parquet"),
+]
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "short.yaml"
+    path.write_text(SPEC)
+    return path
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_path_is_followed_into_a_folder(cli, spec, tmp_path):
+    out = tmp_path / "runs" / "a"
+    outcome = cli("track", spec, "--out", out)
+    assert outcome.code == 0, outcome
+    assert outcome.out.startswith("followed: 6 of 6 points of short, 0.12 s, differential\n")
+    assert f"files   {out}: report.html, summary.json" in outcome.out
+    assert names(out) == FILES
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "</html>" in page
+    assert json.loads((out / "summary.json").read_text())["reached_points"] == 6
+
+
+def test_without_a_folder_nothing_is_written(cli, spec, tmp_path):
+    outcome = cli("track", spec, "--drive", "omnidirectional", "--json")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert (outcome.data["drive"], outcome.data["reached"], outcome.data["files"]) == ("omnidirectional", True, [])
+    assert names(tmp_path) == ["short.yaml"]
+
+
+def test_without_figures_and_from_a_start(cli, spec, tmp_path):
+    chosen = cli("track", spec, "--out", tmp_path / "a", "--no-plot", "--json").data
+    assert "report.html" not in names(tmp_path / "a")
+    start = ",".join(f"{name}={value}" for name, value in chosen["start"].items())
+    again = cli("track", spec, "--start", start, "--seed", "5", "--json").data
+    assert again["start"] == pytest.approx(chosen["start"])
+
+
+def test_a_path_that_ends_early_says_where_and_exits_with_1(cli, spec, tmp_path):
+    spec.write_text(SPEC.replace("0.002*k", "(0 if k < 4 else 0.5)"))
+    outcome = cli("track", spec, "--out", tmp_path / "a")
+    assert outcome.code == 1
+    first, second = outcome.out.splitlines()[:2]
+    assert first == "stopped after 3 of 6 points of short"
+    assert second.startswith("sample 4 (0.08 s): ")
+    assert names(tmp_path / "a") == FILES
+    assert len((tmp_path / "a" / "trajectory.csv").read_text().splitlines()) == 5
+    assert "not followed to its end" in (tmp_path / "a" / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_first_pose_out_of_reach_leaves_a_page_without_a_motion(cli, spec, tmp_path):
+    spec.write_text(SPEC.replace("z: 0.9", "z: 9"))
+    outcome = cli("track", spec, "--out", tmp_path / "a")
+    assert outcome.code == 1
+    assert outcome.out.startswith("stopped after 0 of 6 points of short\nsample 0 (0 s): at least ")
+    assert names(tmp_path / "a") == ["report.html", "summary.json"]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("robot: qiao2022\n", "short.yaml, line 2: robot"),
+        (SPEC.replace("0.2,", "sin(,"), "line 6: path.expressions.y"),
+        (SPEC + "drive: sideways\n", "line 7: drive"),
+    ],
+)
+def test_a_wrong_file_is_one_line_and_nothing_is_written(refuse, spec, text, line):
+    spec.write_text(text)
+    refuse("track", spec, "--out", "run")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--method", "magic"], "method: expected one of"),
+        (["--drive", "sideways"], "drive: expected one of"),
+        (["--start", "q9=1"], "q9"),
+        (["--start", "q1=0"], "start"),
+        (["--seed", "-1"], "seed"),
+    ],
+)
+def test_a_wrong_option_is_one_line_and_nothing_is_written(refuse, spec, options, words):
+    assert words in refuse("track", spec, "--out", "run", *options)
+
+
+def test_a_file_that_is_not_there(refuse):
+    assert "nowhere.yaml" in refuse("track", "nowhere.yaml", "--out", "run")

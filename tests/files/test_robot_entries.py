@@ -1,0 +1,31 @@
+"""Joints and detectors as files name them. What is wrong with them: `tests/batch/test_arms.py`."""
+
+import pytest
+
+from ikde.errors import InputError
+from ikde.files.entries import DetectorEntry, UnitsEntry
+from ikde.files.robot_entries import read_detector, to_si, with_ranges
+
+SI, MM_DEG = UnitsEntry(), UnitsEntry(length="mm", angle="deg")
+
+
+def test_detectors_are_names_or_the_users_own(qiao):
+    assert read_detector(qiao, None, SI) is qiao.detectors["improved"]
+    assert read_detector(qiao, "none", SI) is None
+    own = read_detector(qiao, DetectorEntry(name="own", spheres="single"), SI)
+    assert (own.name, own.spheres, own.pairs, own.safe_distance_m) == ("own", "single", "non_adjacent", 0.0)
+
+
+def test_joint_values_become_metres_and_radians(qiao):
+    values = to_si(qiao, "near", {"d_x": 500, "q1": 180, "q2": None}, MM_DEG)
+    assert values == {"d_x": 0.5, "q1": pytest.approx(3.141592653589793), "q2": None}
+    with pytest.raises(InputError, match=r"^near\.q9: qiao2021 has no joint 'q9'; it has d_x"):
+        to_si(qiao, "near", {"q9": 0}, SI)
+
+
+def test_ranges_replace_those_of_the_robot(qiao):
+    robot = with_ranges(qiao, {"d_x": [-1, 1]}, SI)
+    assert (robot.joints[0].lower, robot.joints[0].upper, robot.joints[1:]) == (-1.0, 1.0, qiao.joints[1:])
+    assert with_ranges(qiao, {}, SI) is qiao
+    with pytest.raises(InputError, match=r"^ranges\.d_x: this range is upside down"):
+        with_ranges(qiao, {"d_x": [1, -1]}, SI)

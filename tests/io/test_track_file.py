@@ -1,0 +1,176 @@
+"""Track files: the shipped ones are the paper's tasks, and what is wrong is said with file, line and key."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ikde.errors import FileError, InputError
+from ikde.io.track_file import load_track
+
+SHIPPED = {path.stem: path for path in sorted((Path(__file__).parents[2] / "configs" / "tracks").glob("*.yaml"))}
+GOOD = """\
+robot: qiao2021
+units: {length: mm, angle: deg}
+dt_s: 0.02
+samples: 100
+path:
+  expressions:
+    x: "900"
+    y: 200*sin(2*pi*k/N)
+    z: 920
+orientation: {axis: [0, 0, 1]}
+drive: differential
+limits:
+  speed: {prismatic: 500}
+"""
+Y = "y: 200*sin(2*pi*k/N)"
+
+# [Qiao2022, section 4], mm: written a second time, in numpy.
+k = np.arange(501)
+turn = 2 * np.pi * k / 500
+PRINTED = {
+    "task1": (
+        900 + 0 * k,
+        200 * np.sin(2 * turn) + 200 * np.cos(turn),
+        920 + 200 * np.sin(turn) + 200 * np.cos(2 * turn),
+    ),
+    "task2": (572 + 4 * k, 300 * np.sin(3 * turn), 920 + 300 * np.cos(3 * turn)),
+    "task3": (53.1 + 2.0378 * k, 241 + 0 * k, 1068.2 + 0 * k),
+    "task4": (np.where(k <= 250, 600 + 0.8 * k, 1000 - 0.8 * k), 150 * np.sin(2 * turn), 1220 + 150 * np.cos(turn)),
+}
+AXES = {"task3": [0, 0, 1], "task4": [1, 0, 0], "task4_minus_x": [-1, 0, 0]}
+
+
+def complaint(text, folder):
+    path = folder / "track.yaml"
+    path.write_text(text)
+    with pytest.raises(FileError) as caught:
+        load_track(path)
+    assert "\n" not in str(caught.value)
+    return str(caught.value).replace(f"{folder}/", "")
+
+
+@pytest.mark.parametrize("path", SHIPPED.values(), ids=SHIPPED)
+def test_the_shipped_tracks_load_and_say_how_to_run_them(path):
+    plan = load_track(path)
+    assert path.read_text().startswith("# ")
+    assert f"ikde track configs/tracks/{path.name}" in path.read_text()
+    assert plan.file == str(path)
+
+
+@pytest.mark.parametrize("task", ["task1", "task2", "task3", "task4", "task4_minus_x"])
+def test_the_tasks_are_as_the_paper_has_them(task):
+    plan = load_track(SHIPPED[f"qiao2022_{task}"])
+    assert (plan.path.samples, plan.path.dt_s, plan.method, plan.drive) == (500, 0.02, "continuation", "differential")
+    printed = np.column_stack(PRINTED[task.removesuffix("_minus_x")]) / 1e3
+    np.testing.assert_allclose(plan.path.p_world_tool, printed, rtol=0, atol=1e-12)
+    assert plan.path.orientation == ("axis" if task in AXES else "free")
+    np.testing.assert_array_equal(plan.path.R_world_tool[:, :, 2], np.tile(AXES.get(task, [0, 0, 1]), (501, 1)))
+    assert plan.limits.speed == pytest.approx(
+        {name: 0.5 if name in ("d_x", "d_y") else np.pi / 2 for name in plan.robot.joint_names}
+    )
+
+
+def test_the_shipped_robot_has_the_angle_limits_of_the_tasks(qiao):
+    limits = {"q_z": 180, "q1": 169, "q2": 165, "q3": 150, "q4": 102.5, "q5": 167.5, "q6": 167.5}  # deg, symmetric
+    upper = dict(zip(qiao.joint_names, np.degrees(qiao.upper), strict=True))
+    assert {name: upper[name] for name in limits} == pytest.approx(limits)
+    np.testing.assert_allclose(qiao.lower, -qiao.upper)
+
+
+def test_a_mapping_is_the_same_track(tmp_path):
+    (tmp_path / "track.yaml").write_text(GOOD)
+    a, b = load_track(tmp_path / "track.yaml"), load_track(yaml.safe_load(GOOD))
+    np.testing.assert_array_equal(a.path.p_world_tool, b.path.p_world_tool)
+    assert (a.file, b.file) == (str(tmp_path / "track.yaml"), None)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "words"),
+    [
+        (Y, "y: 200*sinn(k)", ":8 → path.expressions.y:", "no function is called 'sinn' (did you mean 'sin'?)"),
+        (Y, "y: k.real", ":8 → path.expressions.y:", "'k.real' is not allowed here"),
+        (Y, "y: [1]", ":8 → path.expressions.y:", "expected a number, got [1]"),
+        (Y, "", ":6 → path.expressions.y:", "this key is missing"),
+        (Y, f"{Y}\n    w: 1", ":9 → path.expressions.w:", "unknown key"),
+        ("expressions:", "expression:", ":6 → path.expression:", "unknown key (did you mean 'expressions'?)"),
+        ("samples: 100", "samples: 1.5", ":4 → samples:", "expected a whole number"),
+        ("samples: 100", "", ":1 → samples:", "formulas need to know how many samples there are"),
+        ("dt_s: 0.02", "dt_s: 0", ":3 → dt_s:", "expected more than 0"),
+        ("dt_s: 0.02", "dt: 0.02", ":3 → dt:", "unknown key (did you mean 'dt_s'?)"),
+        ("{axis: [0, 0, 1]}", "{axis: [0, 0, 0]}", ":10 → orientation.axis:", "a length of 0 has no direction"),
+        ("{axis: [0, 0, 1]}", "{axs: [0, 0, 1]}", ":10 → orientation.axs:", "unknown key (did you mean 'axis'?)"),
+        ("{axis: [0, 0, 1]}", "{axis: [0, 1]}", ":10 → orientation.axis:", "expected 3 values, got 2"),
+        ("{axis: [0, 0, 1]}", "fre", ":10 → orientation:", "expected 'free', got 'fre'"),
+        ("drive: diff", "drive: d", ":11 → drive:", "expected 'differential' or 'omnidirectional'"),
+        ("prismatic: 500", "prismatic: -5", ":13 → limits.speed.prismatic:", "expected at least 0, got -5"),
+        ("prismatic: 500", "q9: 5", ":13 → limits.speed.q9:", "qiao2021 has no joint 'q9'"),
+        ("robot: qiao2021", "robot: qiao", ":1 → robot:", "no robot is called 'qiao'"),
+    ],
+)
+def test_what_is_wrong_is_one_line_with_its_place(tmp_path, old, new, place, words):
+    assert old in GOOD
+    message = complaint(GOOD.replace(old, new), tmp_path)
+    assert message.startswith(f"track.yaml{place}")
+    assert words in message
+
+
+@pytest.mark.parametrize("bad", [None, 3, ["robot"]])
+def test_what_is_neither_path_nor_mapping_is_refused(bad):
+    with pytest.raises(InputError, match="expected the path of a track file or a mapping"):
+        load_track(bad)
+
+
+FULL = {
+    "robot": "qiao2021",
+    "units": {"length": "mm", "angle": "deg"},
+    "dt_s": 0.1,
+    "path": {
+        "curve": {
+            "from": [800, 0, 900],
+            "segments": [
+                {"duration_s": 1, "pace": "smooth", "line": {"to": [800, 100, 900]}},
+                {"duration_s": 1, "arc": {"center": [800, 0, 900], "normal": [0, 0, 1], "angle": 90}},
+                {"duration_s": 1, "arc_through": {"via": [700, 50, 900], "to": [800, 100, 900]}},
+                {"duration_s": 1, "spline": {"through": [[800, 0, 900], [800, 0, 1000]]}},
+            ],
+        }
+    },
+    "orientation": {"keyframes": [{"at": 0, "rpy": [0, 0, 0]}, {"at": 1, "quat_wxyz": [1, 0, 0, 1]}]},
+    "limits": {"speed": {"q1": 90}, "farthest": 1400, "center": "Oc"},
+    "detector": "improved",
+    "ranges": {"d_x": [-1000, 1000]},
+    "start": {"q1": 0},
+}
+
+
+def places(data, where=()):
+    """Paths of every value in nested data."""
+    children = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, child in children:
+        yield (*where, key)
+        yield from places(child, (*where, key))
+
+
+scalars = st.none() | st.booleans() | st.integers(-(10**30), 10**30) | st.floats() | st.text(max_size=8)
+anything = scalars | st.lists(scalars, max_size=4) | st.dictionaries(st.text(max_size=5), scalars, max_size=2)
+
+
+@settings(derandomize=True, deadline=None, max_examples=300)
+@given(whole=st.sampled_from([FULL, yaml.safe_load(GOOD)]), data=st.data(), value=anything)
+def test_nothing_that_is_written_ends_in_a_traceback(whole, data, value):
+    changed = copy.deepcopy(whole)
+    *path, last = data.draw(st.sampled_from(list(places(whole))))
+    inner = changed
+    for key in path:
+        inner = inner[key]
+    inner[last] = value
+    try:
+        load_track(changed)
+    except InputError as error:
+        assert "\n" not in str(error)

@@ -1,0 +1,138 @@
+"""Motions as files: every number comes back, ROS's shapes are kept, and files are whole or not there."""
+
+import json
+import os
+
+import numpy as np
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
+import pytest
+import yaml
+
+from ikde.errors import FileError, InputError
+from ikde.io.trajectory_files import base_motion, joint_trajectory, trajectory_table, write_trajectory
+from tests.track.motions import NAMES, make_motion
+
+FILES = ["base.json", "base.yaml", "joint_trajectory.json", "joint_trajectory.yaml"]
+TABLES = ["trajectory.csv", "trajectory.parquet"]
+
+
+def names_in(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_folder_holds_every_format(tmp_path):
+    paths = write_trajectory(tmp_path / "runs" / "a", make_motion())
+    assert sorted(path.name for path in paths) == sorted(FILES + TABLES)
+    assert names_in(tmp_path / "runs" / "a") == sorted(FILES + TABLES)
+
+
+def test_csv_and_parquet_give_the_same_bits_back(tmp_path):
+    motion = make_motion()
+    write_trajectory(tmp_path, motion, ["csv", "parquet"])
+    assert names_in(tmp_path) == TABLES
+    csv, parquet = pa_csv.read_csv(tmp_path / TABLES[0]), pq.read_table(tmp_path / TABLES[1])
+    assert csv.column_names == parquet.column_names
+    for table in (csv, parquet):
+        q = np.column_stack([table[f"q_{name}"].to_numpy() for name in NAMES])
+        np.testing.assert_array_equal(q, motion.q)
+
+
+def test_a_row_is_a_sample_and_its_speeds_last_until_the_next():
+    table = trajectory_table(make_motion()).to_pydict()
+    assert table["sample"] == [0, 1, 2, 3, 4]
+    np.testing.assert_allclose(table["speed_q1"], [0.5, 0.5, 0.5, 0.5, 0.0])
+    np.testing.assert_allclose(table["v_m_s"], [1.5, 1.5, 1.5, 1.5, 0.0])
+    assert table["wheel_left_rad_s"][3:] == [0.5, 0.0]
+    assert (table["path_x_m"][2], table["error_z_m"][2], table["clearance_m"][2]) == (0.02, 1e-9, 0.05)
+
+
+def test_columns_without_numbers_are_left_out():
+    free, turned = trajectory_table(make_motion()), trajectory_table(make_motion(orientation="axis", clearance_m=None))
+    assert set(free.column_names) - set(turned.column_names) == {"clearance_m"}
+    assert set(turned.column_names) - set(free.column_names) == {"orientation_error_rad"}
+    still = trajectory_table(make_motion(base=False)).column_names
+    assert not {"v_m_s", "omega_rad_s", "wheel_left_rad_s"} & set(still)
+    omni = trajectory_table(make_motion(drive="omnidirectional")).column_names
+    assert {"world_v_x_m_s", "world_v_y_m_s", "omega_rad_s"} < set(omni)
+    assert "v_m_s" not in omni
+
+
+def test_the_arm_is_a_ros_message():
+    message = joint_trajectory(make_motion())
+    assert list(message) == ["header", "joint_names", "points"]
+    assert message["joint_names"] == ["q1", "q2"]
+    keys = ["positions", "velocities", "accelerations", "effort", "time_from_start"]
+    assert [list(point) for point in message["points"]] == [keys] * 5
+    assert message["points"][3]["time_from_start"] == {"sec": 0, "nanosec": 60_000_000}
+    assert message["points"][1]["velocities"] == []
+    with_speeds = joint_trajectory(make_motion(), velocities=True)["points"]
+    assert with_speeds[0]["velocities"][0] == pytest.approx(0.5)
+    assert with_speeds[-1]["velocities"] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("dt_s", [0.02, 1 / 3, 0.7, 1e-3])
+def test_times_are_whole_nanoseconds(dt_s):
+    for k, point in enumerate(joint_trajectory(make_motion(dt_s=dt_s))["points"]):
+        time = point["time_from_start"]
+        assert 0 <= time["nanosec"] < 10**9
+        assert abs(time["sec"] * 10**9 + time["nanosec"] - k * dt_s * 1e9) <= 0.5
+
+
+def test_the_base_stands_beside_it():
+    base = base_motion(make_motion())
+    assert list(base) == [
+        *("drive", "t_s", "x_m", "y_m", "heading_rad"),
+        *("v_m_s", "omega_rad_s", "wheel_left_rad_s", "wheel_right_rad_s"),
+    ]
+    assert {len(column) for name, column in base.items() if name != "drive"} == {5}
+    np.testing.assert_allclose(base["heading_rad"], [0, 0.1, 0.2, 0.3, 0.4])
+
+
+@pytest.mark.parametrize("drive", ["differential", "omnidirectional"])
+def test_yaml_and_json_say_the_same_with_the_same_bits(tmp_path, drive):
+    motion = make_motion(drive=drive)
+    write_trajectory(tmp_path, motion, ["yaml", "json"])
+    for name, data in {"base": base_motion(motion), "joint_trajectory": joint_trajectory(motion)}.items():
+        assert json.loads((tmp_path / f"{name}.json").read_text()) == data
+        assert yaml.safe_load((tmp_path / f"{name}.yaml").read_text()) == data
+
+
+def test_a_robot_that_stands_still_has_no_base(tmp_path):
+    write_trajectory(tmp_path, make_motion(base=False), ["json"])
+    assert names_in(tmp_path) == ["joint_trajectory.json"]
+    assert json.loads((tmp_path / "joint_trajectory.json").read_text())["joint_names"] == list(NAMES)
+
+
+def test_what_was_reached_is_written(tmp_path):
+    write_trajectory(tmp_path, make_motion(reached=0), ["csv", "json"])
+    assert len(json.loads((tmp_path / "joint_trajectory.json").read_text())["points"]) == 1
+    with pytest.raises(InputError, match="this motion has no samples"):
+        write_trajectory(tmp_path / "none", make_motion(reached=-1))
+    assert not (tmp_path / "none").exists()
+
+
+def test_an_unknown_format_is_refused_before_anything_is_made(tmp_path):
+    with pytest.raises(InputError, match="formats: expected one of csv, parquet, yaml, json, got 'xml'"):
+        write_trajectory(tmp_path / "a", make_motion(), ["csv", "xml"])
+    assert names_in(tmp_path) == []
+
+
+def test_files_are_whole_or_as_they_were(tmp_path, monkeypatch):
+    write_trajectory(tmp_path, make_motion(), ["csv"])
+    before = (tmp_path / "trajectory.csv").read_bytes()
+
+    def full(descriptor):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(FileError, match=r"trajectory.csv: cannot be written: No space left on device"):
+        write_trajectory(tmp_path, make_motion(reached=2), ["csv", "parquet"])
+    assert names_in(tmp_path) == ["trajectory.csv"]
+    assert (tmp_path / "trajectory.csv").read_bytes() == before
+
+
+def test_a_file_is_no_folder(tmp_path):
+    (tmp_path / "a").write_text("")
+    with pytest.raises(FileError, match="this is a file; expected a folder"):
+        write_trajectory(tmp_path / "a", make_motion())

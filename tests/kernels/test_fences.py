@@ -1,0 +1,108 @@
+"""Rows of a step against differences of what they hold."""
+
+import numpy as np
+import pytest
+
+from ikde.kernels import fences as kernels
+from ikde.kernels.drive import take_drive_step
+from ikde.kernels.fences import MOST_PAIRS, make_fences
+from ikde.kernels.tracking import pose
+from ikde.solver.plain import compute_frames, compute_gaps
+from tests.conftest import random_q
+from tests.kernels.driving import Stand
+from tests.uncompiled import plain
+
+fence, fence_pairs = plain(kernels.fence), plain(kernels.fence_pairs)
+DIFFERENCE = 1e-6
+
+
+def end_of(stand, step):
+    out = np.empty_like(stand.q)
+    plain(take_drive_step)(stand.drive, stand.q, step, out)
+    return out
+
+
+def rows_at(stand, step):
+    """All rows at a step: slack, slope and pair, and where it ends."""
+    q_end = end_of(stand, step)
+    plain(pose)(stand.arrays, q_end, stand.work)
+    fences = make_fences(stand.spheres, len(q_end), stand.size)
+    T_body, T_tool = stand.work.T_world_body, stand.work.T_world_tool
+    count = fence(stand.arrays, stand.spheres, stand.drive, stand.track, T_body, T_tool, stand.q, q_end, step, fences)
+    return fences.slack[:count].copy(), fences.slope[:count].copy(), fences.pair[:count].copy()
+
+
+@pytest.mark.parametrize("name", ["differential", "omnidirectional"])
+def test_pairs_are_the_nearest_with_their_gaps_and_slopes(qiao, rng, name):
+    detector = qiao.detector(None)
+    pairs = qiao.pairs(detector)
+    for _ in range(2):
+        stand = Stand(qiao, random_q(qiao, rng), name)
+        stand.q[:2] = 0.0
+        stand.track = stand.track._replace(reach=0.3)
+        step = rng.uniform(-1, 1, stand.size)
+        slack, slope, pair = rows_at(stand, step)
+        gaps = compute_gaps(qiao, detector.spheres, pairs, end_of(stand, step))
+        near = np.sort(gaps[gaps < 0.3])[:MOST_PAIRS]
+        np.testing.assert_allclose(np.sort(slack), near - stand.track.margin, atol=1e-12)
+        for k in range(stand.size):
+            move = DIFFERENCE * np.eye(stand.size)[k]
+            ends = [compute_gaps(qiao, detector.spheres, pairs, end_of(stand, step + d))[pair] for d in (move, -move)]
+            np.testing.assert_allclose(slope[:, k], (ends[0] - ends[1]) / (2 * DIFFERENCE), atol=1e-6)
+
+
+def test_nobody_is_looked_at_without_reach(qiao):
+    stand = Stand(qiao, qiao.home)
+    stand.track = stand.track._replace(reach=-np.inf)
+    assert len(rows_at(stand, np.zeros(8))[0]) == 0
+
+
+def test_a_base_keeps_its_place(qiao, rng):
+    stand = Stand(qiao, qiao.home)
+    stand.q[:3] = [4.99, -4.97, 0.4]
+    stand.track = stand.track._replace(reach=-np.inf)
+    step = rng.uniform(-1, 1, 8)
+    slack, slope, _ = rows_at(stand, step)
+    x, y, _ = end_of(stand, step)[:3]
+    inside = kernels.INSIDE + 0.125 * stand.drive.largest[0] * stand.drive.largest[1]
+    np.testing.assert_allclose(slack, [5.0 - x - inside, y + 5.0 - inside], atol=1e-12)
+    for k in range(8):
+        move = DIFFERENCE * np.eye(8)[k]
+        change = (end_of(stand, step + move) - end_of(stand, step - move)) / (2 * DIFFERENCE)
+        np.testing.assert_allclose(slope[:, k], [-change[0], change[1]], atol=1e-8)
+
+
+def test_wheels_keep_their_speed(qiao, rng):
+    stand = Stand(qiao, qiao.home, wheel_speed_rad_s=3.0)
+    stand.track = stand.track._replace(reach=-np.inf)
+    step = rng.uniform(-1, 1, 8)
+    slack, slope, _ = rows_at(stand, step)
+    travel = 3.0 * 0.1 * 0.02
+    left, right = (0.01 * step[0] + sign * 0.259 * 0.5 * np.pi * 0.02 * step[1] for sign in (-1, 1))
+    np.testing.assert_allclose(slack, [travel - left, travel + left, travel - right, travel + right], atol=1e-15)
+    np.testing.assert_allclose(slack - slope @ step, np.full(4, travel), atol=1e-15)
+
+
+def test_wheels_that_the_base_implies_need_no_rows(qiao):
+    stand = Stand(qiao, qiao.home, wheel_speed_rad_s=(0.5 + 0.259 * 0.5 * np.pi) / 0.1)
+    stand.track = stand.track._replace(reach=-np.inf)
+    assert len(rows_at(stand, np.zeros(8))[0]) == 0
+
+
+@pytest.mark.parametrize("name", ["differential", "omnidirectional"])
+def test_the_tool_keeps_near_the_platform(qiao, rng, name):
+    stand = Stand(qiao, 0.5 * random_q(qiao, rng), name, farthest_m=1.2, center="Oc")
+    stand.q[:2] = 0.0
+    stand.track = stand.track._replace(reach=-np.inf)
+    step = rng.uniform(-1, 1, stand.size)
+
+    def slack_at(step):
+        frames = compute_frames(qiao, end_of(stand, step))
+        return 1.2 - np.linalg.norm(frames["tool"][:3, 3] - frames["Oc"][:3, 3]) - kernels.INSIDE
+
+    slack, slope, _ = rows_at(stand, step)
+    assert slack == pytest.approx([slack_at(step)], abs=1e-12)
+    for k in range(stand.size):
+        move = DIFFERENCE * np.eye(stand.size)[k]
+        change = (slack_at(step + move) - slack_at(step - move)) / (2 * DIFFERENCE)
+        assert slope[0, k] == pytest.approx(change, abs=1e-8)

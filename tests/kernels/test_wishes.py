@@ -1,0 +1,93 @@
+"""What the null space is used for: gradients against differences, and the ways they point."""
+
+import numpy as np
+import pytest
+
+from ikde.kernels import tracking, wishes
+from ikde.kernels.arrays import CLEARANCE, DRIFT, LIMITS, MANIPULABILITY
+from ikde.kernels.drive import take_drive_step
+from ikde.solver.plain import compute_gaps
+from tests.conftest import random_q
+from tests.kernels.driving import Stand
+from tests.uncompiled import plain
+
+set_wish, make_agile, pose = plain(tracking.set_wish), plain(tracking.make_agile), plain(tracking.pose)
+NAMES = ("differential", "omnidirectional")
+
+
+def wish_of(stand, kind="position", **weights):
+    stand.weights[:] = 0.0
+    for column, value in ((CLEARANCE, "apart"), (LIMITS, "middle"), (MANIPULABILITY, "agile")):
+        stand.weights[column] = weights.get(value, 0.0)
+    parts = (stand.arrays, stand.spheres, stand.drive, stand.track, stand.target(kind), 0, stand.weights)
+    set_wish(*parts, stand.q, np.zeros(stand.size), stand.work)
+    return stand.work.wish.copy()
+
+
+def agility(stand, kind, q):
+    """Log det(I + stiffness J^T J) / 2 at `q`, with the stiffness of where it stands."""
+    work = stand.work
+    pose(stand.arrays, stand.q, work)
+    fill = plain(tracking.fill_step_jacobian)
+    still = np.zeros(stand.size)
+    rows = fill(stand.arrays, stand.drive, stand.track, stand.target(kind), 0, stand.q, still, work)
+    stiffness = wishes.AGILE / ((work.jacobian[:rows] ** 2).sum() / rows)
+    pose(stand.arrays, q, work)
+    fill(stand.arrays, stand.drive, stand.track, stand.target(kind), 0, q, still, work)
+    J = work.jacobian[:rows]
+    return 0.5 * np.linalg.slogdet(np.eye(stand.size) + stiffness * J.T @ J)[1]
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("kind", ["position", "pose"])
+def test_agility_is_a_gradient(qiao, rng, name, kind):
+    for _ in range(3):
+        stand = Stand(qiao, random_q(qiao, rng), name)
+        stand.weights[MANIPULABILITY] = 1.0
+        stand.work.wish[:] = 0.0
+        pose(stand.arrays, stand.q, stand.work)
+        parts = (stand.arrays, stand.drive, stand.track, stand.target(kind), 0, stand.weights)
+        make_agile(*parts, stand.q, np.zeros(stand.size), stand.work)
+        found = stand.work.wish.copy()
+        first = stand.size - len(stand.drive.others)
+        np.testing.assert_array_equal(found[:first], 0.0)
+        for k in range(first, stand.size):
+            ends = []
+            for sign in (1e-4, -1e-4):
+                end = np.empty(9)
+                plain(take_drive_step)(stand.drive, stand.q, sign * np.eye(stand.size)[k], end)
+                ends.append(agility(stand, kind, end))
+            assert found[k] == pytest.approx((ends[0] - ends[1]) / 2e-4, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_apart_opens_the_nearest_pair(qiao, rng, name):
+    detector = qiao.detector(None)
+    opened = 0
+    for _ in range(8):
+        stand = Stand(qiao, random_q(qiao, rng), name)
+        gaps = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), stand.q)
+        if not -0.05 < gaps.min() < 0.05:
+            continue
+        end = np.empty(9)
+        plain(take_drive_step)(stand.drive, stand.q, 1e-3 * wish_of(stand, apart=1.0), end)
+        opened += compute_gaps(qiao, detector.spheres, qiao.pairs(detector), end).min() >= gaps.min()
+    assert opened
+
+
+def test_middle_is_minded_near_the_ends_only(qiao):
+    stand = Stand(qiao, qiao.home)
+    stand.q[3:] = 0.4 * qiao.upper[3:]
+    np.testing.assert_array_equal(wish_of(stand, middle=1.0), 0.0)
+    stand.q[4], stand.q[5] = 0.75 * qiao.upper[4], 0.9 * qiao.lower[5]
+    wish = wish_of(stand, middle=0.5)
+    np.testing.assert_allclose(wish, [0, 0, 0, -0.25, 0.4, 0, 0, 0], atol=1e-12)
+
+
+def test_drift_is_taken_as_it_is_within_reason(qiao):
+    stand = Stand(qiao, qiao.home, speed=np.array([0.5] * 8 + [0.0]))
+    stand.weights[DRIFT:] = [0.1, -0.2, 3.0, -3.0, 0, 0, 0, 0.5]
+    parts = (stand.arrays, stand.spheres, stand.drive, stand.track, stand.target(), 0, stand.weights)
+    set_wish(*parts, stand.q, np.zeros(8), stand.work)
+    most = wishes.LARGEST_WISH
+    np.testing.assert_allclose(stand.work.wish, [0.1, -0.2, most, -most, 0, 0, 0, 0.0])

@@ -1,0 +1,53 @@
+"""The page of several methods: one table over all, ours marked, and their figures side by side."""
+
+import pytest
+
+import ikde
+from ikde.bench.tracks import Compared, TrackBudget, measure
+from ikde.report import track_comparison
+from ikde.report.html import render_html
+from ikde.report.track_comparison import compare_json, make_comparison_page, make_ends_table, make_runs_table
+from ikde.report.track_page import CLEARANCE, PATH
+from tests.track.measured import make_measured
+
+BUDGET = TrackBudget(seeds=2, starts=4)
+
+
+@pytest.fixture(scope="module")
+def compared(qiao):
+    path = {"expressions": {"x": 1, "y": 0, "z": 1}}
+    plan = ikde.load_track({"name": "wave", "robot": "qiao2021", "dt_s": 0.02, "samples": 20, "path": path})
+    motions = {"typical": make_measured(qiao, amplitude=1.5), "continuation": make_measured(qiao)}
+    runs = [
+        {"method": name, "drive": motion.trajectory.drive, "seed": seed, **measure(motion)}
+        for name, motion in motions.items()
+        for seed in (0, 1)
+    ]
+    runs[0] = {**runs[0], "colliding_samples": 2, "smallest_clearance_mm": -99.0}
+    ends = {"starts": 4, "greedy": 3, "continuation": 1, "reached_points": {"greedy": [], "continuation": []}}
+    return [Compared(plan=plan, motions=motions, data={"name": "wave", "points": 20, "runs": runs, "dead_ends": ends})]
+
+
+def test_a_row_is_the_worst_of_the_seeds(compared):
+    table = make_runs_table(compared)
+    typical, ours = (dict(zip([c.title for c in table.columns], row, strict=True)) for row in table.rows)
+    assert typical["method"] == "typical DE"
+    assert typical["points reached"] == "20 of 20"
+    assert typical["colliding samples"] == "0–2"
+    assert typical["clearance"] == "-99.0"
+    assert (ours["limits broken"].text, ours["limits broken"].mark) == ("0", "ours")
+
+
+def test_dead_ends_are_of_all_starts(compared):
+    table = make_ends_table(compared)
+    assert table.rows == (("wave", "3 of 4", "1 of 4"),)
+    assert [column.mark for column in table.columns] == ["", "", "ours"]
+
+
+def test_the_page_shows_the_methods_side_by_side(compared, monkeypatch):
+    monkeypatch.setattr(track_comparison, "DRAWINGS", (("Path and clearance", (PATH, CLEARANCE)),))
+    text = render_html(make_comparison_page(compared, BUDGET, "ikde bench track wave.yaml --out FOLDER"))
+    assert text.count("<canvas") == text.count("data:image/png") == 2
+    assert text.count("<svg") == 4
+    assert "ikde bench track wave.yaml" in text
+    assert compare_json(compared, BUDGET)["made"]["budget"] == {"seeds": 2, "starts": 4}

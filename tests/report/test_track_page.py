@@ -1,0 +1,77 @@
+"""The page of a track: self-contained, with its figures and the robot moving."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+import ikde
+from ikde.report.html import render_html
+from ikde.report.markdown import render_markdown
+from ikde.report.track_page import make_track_page
+from ikde.track.summary import summarise_track
+from ikde.track.trajectory import TrackStop, TrackStopReason
+from tests.track.measured import make_measured
+
+MOST_BYTES = 5_000_000
+STOP = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
+
+
+@pytest.fixture(scope="module")
+def plan():
+    path = {"expressions": {"x": 1, "y": 0, "z": 1}}
+    return ikde.load_track({"name": "wave <1>", "robot": "qiao2021", "dt_s": 0.02, "samples": 20, "path": path})
+
+
+@pytest.fixture(scope="module")
+def page(qiao, plan):
+    return make_track_page(plan, make_measured(qiao, further=5, stop=STOP))
+
+
+def test_the_page_needs_nothing_else(page):
+    text = render_html(page)
+    assert len(text) < MOST_BYTES
+    assert re.findall(r'(?:src|href)="(?!#|data:image/png)', text) == []
+    assert re.findall(r"@import|@font-face|url\((?!#)|https?://(?!www.w3.org)", text) == []
+    assert "wave &lt;1&gt;" in text
+
+
+def test_it_shows_everything(page):
+    assert [section.title for section in page.sections] == [
+        *("Figures", "Motion", "Path and error", "Joints", "Base", "Clearance", "How it was made"),
+    ]
+    text = render_html(page)
+    assert text.count("<svg") == 6
+    assert text.count("<canvas") == 1
+    assert text.count("data:image/png") == 1
+    assert "drawView" in text
+    assert "Animation in the HTML page" in render_markdown(page)
+
+
+def test_a_stop_is_not_overlooked(page):
+    text = render_html(page)
+    assert "The path was not followed to its end" in text
+    assert STOP.text in text
+
+
+def make_empty(motion):
+    """The same, but not even its start was met."""
+    trajectory = motion.trajectory
+    none = {name: getattr(trajectory, name)[:0] for name in ("q", "v", "omega", "wheel_speeds", "seconds", "error_m")}
+    empty = replace(trajectory, **none, orientation_error_rad=trajectory.orientation_error_rad[:0], clearance_m=None)
+    return summarise_track(motion.robot, motion.detector, empty)
+
+
+def test_nothing_followed_is_a_short_page(qiao, plan):
+    stop = TrackStop(sample=0, reason=TrackStopReason.OUT_OF_REACH, text="sample 0: out of reach")
+    motion = make_measured(qiao, stop=stop)
+    nothing = make_empty(motion)
+    page = make_track_page(plan, nothing)
+    assert [section.title for section in page.sections] == ["How it was made"]
+    assert "Nothing was followed" in render_html(page)
+
+
+def test_a_start_alone_is_shown(qiao, plan):
+    page = make_track_page(plan, make_measured(qiao, steps=0, further=5))
+    assert "Motion" in [section.title for section in page.sections]
+    assert render_html(page)

@@ -1,0 +1,58 @@
+"""A motion of the 9-DoF robot, made up and measured: the base drives on arcs while the arm waves, without a search."""
+
+import numpy as np
+
+from ikde.solver.plain import compute_frames
+from ikde.track.drive import base_twist, step_base, wheel_speeds
+from ikde.track.limits import MotionLimits
+from ikde.track.path import ToolPath
+from ikde.track.summary import summarise_track
+from ikde.track.trajectory import Trajectory
+
+DT_S = 0.02
+
+
+def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="axis", drive="differential", **changes):
+    """A motion through `steps` samples that meets its own path; `changes` are of the path's length and of limits."""
+    q = wave(robot, steps, amplitude)
+    tool = compute_frames(robot, q)[robot.tool]
+    further = changes.pop("further", 0)
+    rows = np.minimum(np.arange(steps + 1 + further), steps)
+    path = ToolPath(
+        name="wave",
+        dt_s=DT_S,
+        p_world_tool=tool[rows, :3, 3],
+        orientation=orientation,
+        R_world_tool=None if orientation == "free" else tool[rows, :3, :3],
+    )
+    v, omega, _ = base_twist(q[:-1, :3], q[1:, :3], DT_S)
+    omni = drive == "omnidirectional"
+    chosen = robot.detector(changes.pop("detector", None))
+    motion = Trajectory(
+        path=path,
+        joint_names=robot.joint_names,
+        base_joints=robot.joint_names[:3],
+        drive=drive,
+        method="continuation",
+        limits=MotionLimits.of(robot, **changes),
+        q=q,
+        v=np.diff(q[:, :2], axis=0) / DT_S if omni else v,
+        omega=omega,
+        wheel_speeds=None if omni else wheel_speeds(v, omega),
+        stop=stop,
+        seconds=np.full(steps, 2e-5),
+        error_m=np.zeros((steps + 1, 3)),
+        orientation_error_rad=np.zeros(steps + 1),
+        clearance_m=np.full(steps + 1, 0.05),
+    )
+    return summarise_track(robot, chosen, motion)
+
+
+def wave(robot, steps, amplitude):
+    """Joint values [steps + 1, 9]: v = 0.2 m/s, omega = 0.3 rad/s, joints around home."""
+    q = np.tile(robot.home, (steps + 1, 1))
+    for k in range(steps):
+        q[k + 1, :3] = step_base(q[k, :3], np.array(0.2), np.array(0.3), DT_S)
+    phase = np.linspace(0.0, np.pi, steps + 1)
+    q[:, 3:] += amplitude * np.sin(phase)[:, None] * np.array([0.5, 0.8, -1.0, 0.3, 0.6, 0.2])
+    return q

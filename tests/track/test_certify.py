@@ -1,0 +1,116 @@
+"""The certificate between samples: never above what dense sampling sees, and near it."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from ikde.solver.forward import forward
+from ikde.solver.plain import compute_gaps
+from ikde.track.certify import bound_segments, certify, halfway, travel_radii
+from ikde.track.drive import step_base
+from ikde.track.path import ToolPath
+from tests.conftest import random_q
+from tests.random_robots import random_robot
+
+DENSE = 100
+
+
+def sample_densely(robot, detector, q):
+    """Smallest clearance [M] of each segment at many places."""
+    shares = np.linspace(0, 1, DENSE + 1)[:, None]
+    pairs = robot.pairs(detector)
+    return np.array([compute_gaps(robot, detector.spheres, pairs, a + shares * (b - a)).min() for a, b in pairwise(q)])
+
+
+def walk(robot, rng, steps, size):
+    """Joint values [steps + 1, N] of a random walk in the middle of the ranges."""
+    width = np.minimum(robot.upper - robot.lower, 2.0)
+    middle = np.clip(random_q(robot, rng), robot.lower + 0.3 * width, robot.upper - 0.3 * width)
+    return middle + np.cumsum(rng.uniform(-size, size, (steps + 1, len(width))) * width / 10, axis=0)
+
+
+@pytest.mark.parametrize("size", [0.02, 0.3, 3.0])
+def test_it_never_promises_too_much_and_hardly_too_little(qiao, rng, size):
+    detector = qiao.detector(None)
+    for _ in range(2):
+        q = walk(qiao, rng, 12, size)
+        lower, _ = bound_segments(qiao, detector, q)
+        seen = sample_densely(qiao, detector, q)
+        assert (lower <= seen + 1e-12).all()
+        assert lower.min() > seen.min() - max(2e-4, 0.03 * abs(seen.min())) - 1e-3 * size
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_it_holds_for_any_tree(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    detector = robot.detector(None)
+    q = walk(robot, rng, 6, 2.0)
+    lower, _ = bound_segments(robot, detector, q)
+    assert (lower <= sample_densely(robot, detector, q) + 1e-12).all()
+
+
+def test_a_contact_between_free_samples_is_seen(qiao):
+    detector = qiao.detector(None)
+    sweep = np.tile(qiao.home, (400, 1))
+    sweep[:, 3], sweep[:, 4] = np.linspace(qiao.lower[3], qiao.upper[3], 400), 1.2
+    free = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), sweep).min(axis=1) > 0.01
+    first = int(np.flatnonzero(free[:-1] & ~free[1:])[0])
+    last = first + 1 + int(np.argmax(free[first + 1 :]))
+    q = sweep[[first, last]]
+    lower, _ = bound_segments(qiao, detector, q)
+    assert free[[first, last]].all()
+    assert lower[0] <= sample_densely(qiao, detector, q)[0] < 0.01
+
+
+def test_only_joints_between_two_components_count(qiao):
+    radii = travel_radii(qiao, qiao.detector(None))
+    pairs = qiao.pairs(qiao.detector(None))
+    np.testing.assert_array_equal(radii[:, :3], 0.0)
+    row = radii[pairs.index(("J1", "J4"))]
+    np.testing.assert_array_equal(row != 0.0, [False] * 4 + [True] * 2 + [False] * 3)
+    row = radii[pairs.index(("M", "LT"))]
+    np.testing.assert_array_equal(row > 0.0, [False] * 3 + [True] * 5 + [False])  # the tool lies on the last axis
+
+
+def test_a_base_does_not_enter(qiao, rng):
+    q = walk(qiao, rng, 5, 0.2)
+    moved = q.copy()
+    moved[:, :3] += rng.uniform(-3, 3, (6, 3))
+    np.testing.assert_allclose(
+        bound_segments(qiao, qiao.detector(None), q)[0], bound_segments(qiao, qiao.detector(None), moved)[0], atol=1e-12
+    )
+
+
+def test_without_a_detector_nothing_can_touch(qiao, rng):
+    assert (bound_segments(qiao, None, walk(qiao, rng, 3, 1.0))[0] == np.inf).all()
+
+
+@pytest.mark.parametrize("samples", [0, 1])
+def test_no_segment_no_doubt(qiao, samples):
+    path = ToolPath.through([[0, 0, 1], [0, 0.1, 1]], dt_s=0.02)
+    proof = certify(qiao, path, np.zeros((samples, 9)), drive="differential", detector=qiao.detector(None))
+    assert (proof.clearance_m, proof.first_doubt, proof.is_free, len(proof.deviation_m)) == (np.inf, None, True, 0)
+
+
+def test_halfway_a_base_is_on_its_arc(qiao):
+    q = np.tile(qiao.home, (2, 1))
+    q[1, :3] = step_base(q[0, :3], np.array(0.5), np.array(1.5), 0.2)
+    q[1, 5] += 0.2
+    arc, chord = halfway(qiao, q, "differential", 0.2)[0], halfway(qiao, q, "omnidirectional", 0.2)[0]
+    np.testing.assert_allclose(arc[:3], step_base(q[0, :3], np.array(0.5), np.array(1.5), 0.1), atol=1e-15)
+    np.testing.assert_allclose(chord, q.mean(axis=0))
+    assert arc[5] == chord[5]
+
+
+def test_deviation_is_from_where_the_path_is_halfway(qiao):
+    q = np.tile(qiao.home, (3, 1))
+    q[:, 5] = [0.0, 0.1, 0.2]
+    p = forward(qiao, q)["tool"][:, :3, 3]
+    middle = forward(qiao, 0.5 * (q[:-1] + q[1:]))["tool"]
+    told = {"drive": "differential", "detector": None}
+    on_it = ToolPath(dt_s=0.02, p_world_tool=p, p_half=middle[:, :3, 3])
+    assert certify(qiao, on_it, q, **told).deviation_m.max() < 1e-12
+    chords = ToolPath(dt_s=0.02, p_world_tool=p)
+    expected = np.linalg.norm(middle[:, :3, 3] - 0.5 * (p[:-1] + p[1:]), axis=1)
+    np.testing.assert_allclose(certify(qiao, chords, q, **told).deviation_m, expected)

@@ -1,0 +1,91 @@
+"""Bases: arcs and twists are each other's inverse, wheels, and what is packed."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.track.drive import (
+    HALF_TRACK_M,
+    WHEEL_RADIUS_M,
+    base_twist,
+    find_wheels,
+    implied_wheel_speed,
+    pack_drive,
+    step_base,
+    wheel_speeds,
+)
+from ikde.track.limits import MotionLimits
+
+
+def test_a_twist_is_what_an_arc_was_driven_with(rng):
+    start = rng.uniform(-1, 1, (200, 3))
+    v, omega = rng.uniform(-1, 1, 200), rng.uniform(-3, 3, 200)
+    omega[:3] = 0.0, 1e-9, -1e-5
+    end = step_base(start, v, omega, 0.3)
+    found = base_twist(start, end, 0.3)
+    np.testing.assert_allclose(found[0], v, atol=1e-12)
+    np.testing.assert_allclose(found[1], omega, atol=1e-12)
+    np.testing.assert_allclose(found[2], 0.0, atol=1e-14)
+
+
+def test_half_an_arc_twice_is_the_arc(rng):
+    start, v, omega = rng.uniform(-1, 1, 3), np.array(0.7), np.array(-2.0)
+    once = step_base(start, v, omega, 0.4)
+    np.testing.assert_allclose(step_base(step_base(start, v, omega, 0.2), v, omega, 0.2), once, atol=1e-15)
+
+
+def test_a_quarter_turn():
+    end = step_base(np.zeros(3), np.array(0.5 * np.pi), np.array(0.5 * np.pi), 1.0)
+    np.testing.assert_allclose(end, [1.0, 1.0, 0.5 * np.pi], atol=1e-15)
+
+
+def test_sliding_sideways_is_told():
+    residual = base_twist(np.array([0, 0, 0.3]), np.array([-np.sin(0.3), np.cos(0.3), 0.3]), 0.5)[2]
+    assert residual == pytest.approx(2.0)
+
+
+def test_wheels():
+    left, right = wheel_speeds(np.array(0.3), np.array(0.5))
+    assert left == pytest.approx((0.3 - HALF_TRACK_M * 0.5) / WHEEL_RADIUS_M)
+    assert right == pytest.approx((0.3 + HALF_TRACK_M * 0.5) / WHEEL_RADIUS_M)
+    speed = np.array([0.5, 0.4, 1.0])
+    assert implied_wheel_speed(speed, np.arange(3)) == pytest.approx(wheel_speeds(np.array(0.4), np.array(1.0))[1])
+
+
+def test_what_is_packed(qiao):
+    limits = MotionLimits.of(qiao, acceleration=np.full(9, 10.0), wheel_speed_rad_s=4.0, farthest_m=1.2, center="Oc")
+    drive = pack_drive(qiao, "differential", limits, 0.02, frozen=("q6",))
+    assert drive.base.tolist() == [0, 1, 2]
+    assert drive.others.tolist() == [3, 4, 5, 6, 7, 8]
+    np.testing.assert_allclose(drive.largest, [0.01] + 6 * [0.01 * np.pi] + [0.0])
+    np.testing.assert_allclose(drive.change, [0.4] + 6 * [0.004 / (0.01 * np.pi)] + [np.inf])
+    assert (drive.wheel_travel, drive.farthest, drive.centre_body) == (4.0 * 0.1 * 0.02, 1.2, 3)
+    np.testing.assert_allclose(drive.p_body_centre, [0.34, 0.0, 0.119])
+
+
+def test_a_base_with_wheels_keeps_to_the_lower_of_two_speeds(qiao):
+    speed = np.array([0.5, 0.2, *np.ones(7)])
+    assert pack_drive(qiao, "differential", MotionLimits(speed=speed), 0.1).largest[0] == pytest.approx(0.02)
+    largest = pack_drive(qiao, "omnidirectional", MotionLimits(speed=speed), 0.1).largest
+    np.testing.assert_allclose(largest, 0.1 * speed)
+
+
+def test_without_speed_limits_a_step_is_large_not_endless(qiao):
+    for speed in (None, np.full(9, np.inf)):
+        largest = pack_drive(qiao, "omnidirectional", MotionLimits(speed=speed), 0.02).largest
+        assert ((largest > 0.2) & (largest < 2.0)).all()
+
+
+def test_an_arm_without_base_moves_joint_by_joint():
+    panda = ikde.load_robot("panda")
+    drive = pack_drive(panda, "omnidirectional", MotionLimits.of(panda), 0.01)
+    assert drive.base.tolist() == [-1, -1, -1]
+    assert len(drive.largest) == len(panda.joints)
+
+
+def test_what_is_refused(qiao):
+    with pytest.raises(InputError, match="no base that drives"):
+        find_wheels(ikde.load_robot("panda"), "differential")
+    with pytest.raises(InputError, match="expected one of differential, omnidirectional"):
+        find_wheels(qiao, "tracked")

@@ -1,0 +1,66 @@
+"""One attempt along a path: it stops where it can't go on, goes on where it stopped, and can be timed."""
+
+import numpy as np
+import pytest
+
+from ikde.track.follow import MARGIN_M, REACH_M, make_follower
+from ikde.track.limits import MotionLimits
+from tests.track.tracks import follow_task, make_line, robot
+
+USE = np.array([0.3, 0.3, 0.3])
+
+
+@pytest.fixture(scope="module")
+def start():
+    """A configuration at the first pose of task 1, and its follower."""
+    motion = follow_task("task1", "differential")
+    told = {"limits": MotionLimits.of(robot()), "detector": robot().detector(None)}
+    return motion.q[0], make_follower(robot(), motion.path, drive="differential", **told)
+
+
+def test_it_goes_on_where_it_stopped(start):
+    q, follower = start
+    whole = follower.follow(follower.begin(q, USE), 100)
+    parts = follower.follow(follower.follow(follower.begin(q, USE), 37), 100)
+    assert (whole.last, parts.last) == (100, 100)
+    np.testing.assert_array_equal(whole.q[:101], parts.q[:101])
+
+
+def test_it_can_be_timed_without_being_changed(start):
+    q, follower = start
+    course = follower.follow(follower.begin(q, USE), 50)
+    before = course.copy()
+    seconds = follower.follow_timed(course)
+    assert (seconds.shape, bool((seconds > 0.0).all())) == ((50,), True)
+    np.testing.assert_array_equal(course.q, before.q)
+
+
+def test_its_figures(start):
+    q, follower = start
+    course = follower.follow(follower.begin(q, USE), 40)
+    assert 0.0 < course.clearance_m <= REACH_M
+    assert course.motion == pytest.approx((course.steps[:41] ** 2).sum())
+    assert follower.begin(q, USE).clearance_m == REACH_M
+
+
+def test_it_stops_where_it_cannot_go_on(start):
+    q, follower = start
+    slow = follower.with_drive(largest=0.02 * follower.drive.largest)
+    course = slow.follow(slow.begin(q, USE))
+    assert course.last == 0
+    assert np.abs(course.steps[1]).max() == 1.0
+
+
+def test_what_the_kernels_are_told():
+    path = make_line([0.9, 0, 1], [0.9, 0.1, 1], 5)
+    told = {"drive": "omnidirectional", "detector": robot().detector(None)}
+    limits = MotionLimits.of(robot(), position_error_m=1e-10)
+    track = make_follower(robot(), path, limits=limits, **told).track
+    assert (track.margin, track.reach) == (MARGIN_M, REACH_M)
+    assert track.position_goal <= track.position_tolerance < 1e-10
+    assert (track.ranges[0] > robot().lower).all()
+    assert (track.ranges[1] < robot().upper).all()
+    loose = make_follower(robot(), path, limits=MotionLimits.of(robot(), ranges=False), **told).track
+    assert np.abs(loose.ranges).min() > 1e4
+    blind = make_follower(robot(), path, limits=limits, drive="differential", detector=None)
+    assert (blind.track.reach, blind.size) == (-np.inf, 8)

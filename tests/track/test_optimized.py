@@ -1,0 +1,80 @@
+"""`optimized`: the limits at samples are kept, and what ends it is named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ikde.track.optimized import OptimizedSettings, follow_optimized
+from ikde.track.path import ToolPath
+from ikde.track.track import track
+from tests.track.paper_tasks import follower_of, short_task, start_of
+
+FEW = OptimizedSettings(generations=100, returns=1)
+
+
+@pytest.mark.parametrize("drive", ["differential", "omnidirectional"])
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_the_tasks_begin_well(qiao, number, drive):
+    path, start = short_task(number), start_of("qiao2021", number)
+    motion = track(qiao, path, drive=drive, method="optimized", start=start)
+    assert motion.stop is None
+    assert motion.reached
+    assert motion.breaches.total == 0
+    assert np.abs(motion.error_m).max() <= 1e-6
+    assert motion.orientation_error_rad.max() <= 1e-4
+    assert motion.clearance_m.min() > 0.0
+    assert motion.certified_clearance_m is not None
+    np.testing.assert_array_equal(motion.q[0], start)
+
+
+def test_same_seed_same_bits(qiao):
+    told = {"method": "optimized", "start": start_of("qiao2021", 1)}
+    first, again, other = (track(qiao, short_task(1), seed=seed, **told) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first.q, again.q)
+    assert (first.q[1:] != other.q[1:]).any()
+
+
+def test_a_frozen_joint_stays(qiao):
+    start = start_of("qiao2021", 1)
+    motion = track(qiao, short_task(1), method="optimized", start=start, freeze=["q1"])
+    assert (motion.q[:, 3] == start[3]).all()
+    assert motion.reached
+
+
+def test_an_acceleration_limit_is_kept_too(qiao):
+    follower = follower_of(qiao, short_task(1), acceleration=np.full(9, 5.0))
+    evolved = follow_optimized(follower, start_of("qiao2021", 1), 0)
+    rates = np.diff(evolved.q[:, 3:], axis=0) / 0.02
+    assert evolved.stop is None
+    assert np.abs(np.diff(rates, axis=0) / 0.02).max() <= 5.0 * (1 + 1e-9)
+
+
+def moved(shift, samples=2):
+    """Task 1's first pose, and then as many shifted ones."""
+    p = short_task(1).p_world_tool[0] + np.outer(np.arange(samples + 1), shift)
+    return ToolPath(dt_s=0.02, p_world_tool=p)
+
+
+def test_what_is_too_fast_names_the_limit(qiao):
+    evolved = follow_optimized(follower_of(qiao, moved([0.0, 0.2, 0.0])), start_of("qiao2021", 1), 0, FEW)
+    assert evolved.stop.sample == 1
+    assert evolved.stop.reason == "speed_limit"
+    assert evolved.stop.limit in ("the base", *qiao.joint_names)
+    assert "mm away, with" in evolved.stop.text
+    assert len(evolved.q) == 1
+
+
+def test_what_is_out_of_reach_is_said_to_be(qiao):
+    evolved = follow_optimized(follower_of(qiao, moved([0.0, 0.0, 2.0])), start_of("qiao2021", 1), 0, FEW)
+    assert evolved.stop.reason == "out_of_reach"
+
+
+def test_a_collision_names_its_pair(qiao):
+    start = start_of("qiao2021", 1)
+    tight = replace(qiao.detector(None), safe_distance_m=1.0)
+    follower = replace(follower_of(qiao, short_task(1)), detector=tight)
+    evolved = follow_optimized(follower, start, 0, OptimizedSettings(returns=1, generations=300))
+    assert evolved.stop.reason == "self_collision"
+    assert evolved.stop.pair in qiao.pairs(tight)
+    assert evolved.stop.text.startswith("sample 1 (0.02 s): ")

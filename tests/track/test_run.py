@@ -1,0 +1,53 @@
+"""Plans of track files are followed as they say, or otherwise."""
+
+import numpy as np
+import pytest
+
+from ikde.errors import InputError
+from ikde.io.track_file import load_track
+from ikde.track.run import make_limits, run_track
+from tests.track.tracks import load_task, robot
+
+PLAN = {
+    "robot": "qiao2021",
+    "dt_s": 0.02,
+    "samples": 20,
+    "path": {"expressions": {"x": "0.9", "y": "0.2*k/N", "z": "1"}},
+    "drive": "omnidirectional",
+    "limits": {"speed": {"d_x": 0.1, "q6": None}, "acceleration": {"q1": 3}, "position_error": 1e-5},
+    "seed": 4,
+}
+
+
+def test_a_plan_is_followed():
+    motion = run_track(load_track(PLAN))
+    assert motion.reached
+    assert (motion.drive, motion.method, motion.path.samples) == ("omnidirectional", "continuation", 20)
+    assert motion.limits.position_error_m == 1e-5
+
+
+def test_limits_that_are_left_out_are_those_of_the_paper():
+    limits = make_limits(robot(), load_track(PLAN).limits)
+    np.testing.assert_allclose(limits.speed, [0.1, 0.5] + [0.5 * np.pi] * 6 + [np.inf])
+    assert limits.acceleration[3] == 3.0
+    assert np.isinf(np.delete(limits.acceleration, 3)).all()
+    assert limits.orientation_error_rad == 1e-4
+
+
+@pytest.mark.parametrize("task", ["task1", "task3"])
+def test_the_papers_tasks_ask_for_the_papers_limits(task):
+    limits = make_limits(robot(), load_task(task).limits)
+    np.testing.assert_allclose(limits.speed, [0.5, 0.5] + [0.5 * np.pi] * 7)
+    assert limits.acceleration is None
+
+
+def test_what_the_caller_wants_comes_before_the_file():
+    motion = run_track(load_track(PLAN))
+    other = run_track(load_track(PLAN), drive="differential", start=motion.q[0], seed=5)
+    assert other.drive == "differential"
+    np.testing.assert_array_equal(other.q[0], motion.q[0])
+
+
+def test_a_wrong_method_is_refused():
+    with pytest.raises(InputError, match="method"):
+        run_track(load_track(PLAN), method="magic")

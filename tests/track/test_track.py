@@ -1,0 +1,228 @@
+"""Whole paths: the paper's tasks, singularities, refusals, and what holds of every motion."""
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import ikde
+from ikde.errors import InputError
+from ikde.solver.forward import forward
+from ikde.solver.plain import compute_gaps
+from ikde.track.certify import certify
+from ikde.track.follow import make_follower
+from ikde.track.limits import MotionLimits
+from ikde.track.path import ToolPath
+from ikde.track.starts import draw_starts
+from ikde.track.track import track
+from ikde.track.trajectory import TrackStopReason
+from ikde.track.verify_track import verify_track
+from tests.track.tracks import DRIVES, TASKS, follow_task, load_task, make_line, robot
+
+BASE = ("d_x", "d_y", "q_z")
+
+
+def judge(motion, detector="improved"):
+    told = {"drive": motion.drive, "detector": robot().detector(detector)}
+    return verify_track(robot(), motion.path, motion.q, limits=motion.limits, **told), certify(
+        robot(), motion.path, motion.q, **told
+    )
+
+
+def must_hold(motion):
+    """What holds of every motion, wherever it ends."""
+    verdict, proof = judge(motion)
+    assert verdict.breaches.total == 0
+    assert proof.is_free
+    assert (motion.stop is None) == (motion.reached_points == motion.path.samples)
+    if motion.stop is not None:
+        assert motion.stop.sample == motion.reached_points + 1
+        assert "\n" not in motion.stop.text
+    return verdict, proof
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("task", TASKS)
+def test_the_papers_tasks_are_followed_to_their_end(task, drive):
+    motion = follow_task(task, drive)
+    verdict, proof = must_hold(motion)
+    assert motion.reached_points == 500
+    assert verdict.largest_axis_error_m < 1e-8
+    assert verdict.largest_orientation_error_rad < 1e-7
+    assert np.abs(verdict.sideways_m_s).max() < 1e-9
+    assert 0.01 < proof.clearance_m <= verdict.clearance_m
+    assert proof.deviation_m.max() < 2e-4
+    assert motion.certified_clearance_m == proof.clearance_m
+    np.testing.assert_array_equal(motion.error_m, verdict.error_m)
+
+
+def test_the_same_seed_is_the_same_motion_and_a_start_is_kept():
+    motion = follow_task("task1", "differential")
+    again = track(robot(), motion.path, start=motion.q[0])
+    np.testing.assert_array_equal(again.q[0], motion.q[0])
+    np.testing.assert_array_equal(again.q, track(robot(), motion.path, start=motion.q[0]).q)
+    assert again.reached
+
+
+def pass_through(orientation, turns, seed):
+    """A path that an arm on a base at rest follows through joint angles of 0; and how."""
+    rng = np.random.default_rng(seed)
+    while True:
+        middle = 0.6 * rng.uniform(robot().lower, robot().upper)
+        rate = rng.uniform(-0.6, 0.6, 9) * 0.005 * np.pi
+        middle[:3], rate[:3] = (0.0, 0.0, 0.3), 0.0
+        for joint in turns:
+            index = robot().joint_names.index(joint)
+            middle[index], rate[index] = 0.0, 0.6 * 0.005 * np.pi
+        q = middle + np.outer(np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 201)) * 200 / np.pi, rate)
+        inside = ((robot().lower < q) & (q < robot().upper)).all()
+        if inside and compute_gaps(robot(), "improved", robot().pairs(robot().detector(None)), q).min() > 0.02:
+            break
+    T = forward(robot(), q)["tool"]
+    asked = {"pose": {"R_world_tool": T[:, :3, :3]}, "axis": {"axis_world_tool": T[:, :3, 2]}, "free": {}}[orientation]
+    return ToolPath.through(T[:, :3, 3], dt_s=0.02, **asked), q
+
+
+@pytest.mark.parametrize("frozen", [True, False])
+@pytest.mark.parametrize(
+    ("orientation", "turns"), [("free", ("q3",)), ("axis", ("q5",)), ("pose", ("q3",)), ("pose", ("q3", "q5"))]
+)
+def test_singularities_are_passed(orientation, turns, frozen):
+    path, q = pass_through(orientation, turns, seed=len(turns))
+    freeze = dict(zip(BASE, q[0, :3], strict=True)) if frozen else None
+    motion = track(robot(), path, start=q[0], freeze=freeze)
+    must_hold(motion)
+    assert motion.reached
+    if frozen:
+        np.testing.assert_array_equal(motion.q[:, :3], np.tile(q[0, :3], (201, 1)))
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_path_out_of_the_workspace_ends_at_its_rim(drive):
+    motion = track(robot(), make_line([0.9, 0, 1.64], [0.9, 0, 1.70], 240), drive=drive)
+    must_hold(motion)
+    assert motion.stop.reason == TrackStopReason.OUT_OF_REACH
+    at, height = motion.stop.sample, 1.64 + 0.06 / 240 * np.arange(241)
+    assert ikde.solve(robot(), ikde.Target([0.9, 0, height[at - 1]])).reached
+    assert not ikde.solve(robot(), ikde.Target([0.9, 0, height[at]])).reached
+
+
+def test_what_is_proved_to_be_out_of_reach_is_told_at_its_sample():
+    frozen = dict.fromkeys(BASE, 0.0)
+    p = np.tile([0.9, 0.3, 1.0], (31, 1))
+    p[20:, 0] = 3.0
+    motion = track(robot(), ToolPath.through(p, dt_s=0.02), freeze=frozen)
+    must_hold(motion)
+    assert (motion.stop.sample, motion.stop.reason) == (20, TrackStopReason.OUT_OF_REACH)
+    nowhere = track(robot(), make_line([0.9, 0.3, -5.0], [0.9, 0.3, 1.0], 10))
+    assert (nowhere.stop.sample, nowhere.reached_points, len(nowhere.q)) == (0, 0, 0)
+    assert nowhere.certified_clearance_m is None
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_path_that_is_too_fast_ends_where_it_is(drive):
+    p = np.tile([0.9, 0.0, 1.0], (41, 1))
+    p[:, 1] += 0.002 * np.arange(41)
+    p[20:, 0] += 0.5
+    motion = track(robot(), ToolPath.through(p, dt_s=0.02), drive=drive)
+    must_hold(motion)
+    assert (motion.stop.sample, motion.stop.reason) == (20, TrackStopReason.SPEED_LIMIT)
+    assert motion.stop.limit in (*robot().joint_names, "the base")
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_path_into_the_robot_itself_ends_before_contact(drive):
+    load, radius = np.array([0.271, 0.0, 0.433]), 0.224 + 0.045  # of the load and of the tool's last sphere
+    path = make_line([0.271, 0.75, 0.75], load, 300)
+    first = int(np.argmax(np.linalg.norm(path.p_world_tool - load, axis=1) < radius))
+    motion = track(robot(), path, drive=drive, freeze=dict.fromkeys(BASE, 0.0))
+    must_hold(motion)
+    assert (motion.stop.sample, motion.stop.reason) == (first, TrackStopReason.SELF_COLLISION)
+    assert "LT" in motion.stop.pair
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"acceleration": np.full(9, 0.5)},
+        {"wheel_speed_rad_s": 2.0},
+        {"farthest_m": 0.95, "center": "Oc"},
+        {"speed": None},
+        {"speed": np.array([0.1] * 2 + [0.2] * 7)},
+        {"ranges": False},
+    ],
+)
+def test_every_limit_is_kept(told, drive):
+    limits = MotionLimits.of(robot(), **told)
+    motion = track(robot(), make_line([0.9, 0, 1.0], [1.1, 0.3, 1.0], 150), drive=drive, limits=limits)
+    must_hold(motion)
+    assert motion.reached
+
+
+def test_without_a_detector_nothing_is_said_about_clearance():
+    motion = track(robot(), make_line([0.9, 0, 1.0], [0.9, 0.1, 1.0], 20), detector="none")
+    assert motion.reached
+    assert (motion.clearance_m, motion.certified_clearance_m) == (None, None)
+
+
+def test_an_arm_on_the_floor_has_no_wheels():
+    arm = ikde.load_robot("panda")
+    p = forward(arm, arm.home)["tool"][:3, 3]
+    path = make_line(p, p + np.array([0.05, 0.1, -0.05]), 60)
+    motion = track(arm, path, drive="omnidirectional", start=arm.home)
+    assert motion.reached
+    assert (motion.base_joints, motion.wheel_speeds, motion.v.shape) == ((), None, (60, 2))
+    with pytest.raises(InputError, match="no base that drives"):
+        track(arm, path)
+
+
+def test_twists_and_wheels_are_those_of_the_motion():
+    motion, other = follow_task("task2", "differential"), follow_task("task2", "omnidirectional")
+    verdict, _ = judge(motion)
+    np.testing.assert_array_equal(motion.v, verdict.v)
+    np.testing.assert_array_equal(motion.wheel_speeds, verdict.wheel_speeds)
+    np.testing.assert_allclose(other.v, np.diff(other.q[:, :2], axis=0) / 0.02)
+    assert (other.wheel_speeds, other.omega.shape, len(motion.seconds)) == (None, (500,), 500)
+
+
+@pytest.mark.parametrize(
+    ("given", "where"),
+    [
+        ({"method": "magic"}, ("method",)),
+        ({"drive": "legs"}, ("drive",)),
+        ({"start": np.zeros(9)}, ("start",)),
+        ({"seed": -1}, ("seed",)),
+        ({"limits": MotionLimits(speed=np.ones(3))}, ("limits", "speed")),
+    ],
+)
+def test_what_is_refused(given, where):
+    with pytest.raises(InputError) as caught:
+        track(robot(), load_task("task1").path, **given)
+    assert caught.value.where == where
+
+
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(
+    task=st.sampled_from(TASKS),
+    drive=st.sampled_from(DRIVES),
+    seed=st.integers(0, 2**63),
+    pick=st.integers(0, 10**6),
+    shift=st.floats(0.0, 0.5),
+)
+def test_from_any_start_the_motion_keeps_all_limits(task, drive, seed, pick, shift):
+    path = load_task(task).path
+    path = ToolPath(
+        dt_s=0.02,
+        p_world_tool=path.p_world_tool[:121],
+        orientation=path.orientation,
+        R_world_tool=path.R_world_tool[:121],
+    )
+    limits = MotionLimits.of(robot())
+    told = {"drive": drive, "limits": limits, "detector": robot().detector(None)}
+    starts, _ = draw_starts(make_follower(robot(), path, **told), {}, seed)
+    start = starts[pick % len(starts)].copy()
+    start[3] += shift * 1e-6  # still within the tolerance of 1e-6 m
+    motion = track(robot(), path, drive=drive, start=start, seed=seed)
+    must_hold(motion)
+    np.testing.assert_array_equal(motion.q[0], start)

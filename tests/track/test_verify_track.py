@@ -1,0 +1,129 @@
+"""The judge of motions: made ones keep all limits, and each limit is broken on purpose, once."""
+
+import numpy as np
+import pytest
+
+from ikde.solver.forward import forward
+from ikde.solver.plain import compute_gaps
+from ikde.track.drive import step_base
+from ikde.track.limits import MotionLimits
+from ikde.track.path import ToolPath
+from ikde.track.verify_track import verify_track
+
+V, OMEGA, DT_S = 0.3, 0.5, 0.02
+
+
+def make_q(robot, samples=11):
+    """An arc of the base and even turns of the arm."""
+    q = np.tile(robot.home, (samples, 1))
+    for k in range(1, samples):
+        q[k, :3] = step_base(q[k - 1, :3], np.array(V), np.array(OMEGA), DT_S)
+    q[:, 4:] += 0.01 * np.arange(samples)[:, None]
+    return q
+
+
+def judge(robot, q, limits=None, drive="differential", along=None, detector="improved", **told):
+    tool = forward(robot, q if along is None else along)["tool"]
+    path = ToolPath.through(tool[:, :3, 3], dt_s=DT_S, R_world_tool=tool[:, :3, :3])
+    limits = limits or MotionLimits.of(robot, **told)
+    return verify_track(robot, path, q, drive=drive, limits=limits, detector=robot.detector(detector))
+
+
+def test_figures_of_a_made_motion(qiao):
+    q = make_q(qiao)
+    found = judge(qiao, q)
+    assert found.accepted
+    np.testing.assert_allclose(found.v, V)
+    np.testing.assert_allclose(found.omega, OMEGA)
+    np.testing.assert_allclose(found.wheel_speeds, np.tile([1.705, 4.295], (10, 1)))
+    np.testing.assert_allclose(found.speeds[:, 4:], 0.5)
+    assert np.abs(found.sideways_m_s).max() < 1e-14
+    assert (found.largest_axis_error_m, found.largest_orientation_error_rad) == pytest.approx((0, 0), abs=1e-7)
+    gaps = compute_gaps(qiao, "improved", qiao.pairs(qiao.detector(None)), q)
+    assert found.clearance_m == gaps.min()
+
+
+def test_errors_are_along_the_axes(qiao):
+    q = make_q(qiao)
+    shifted = q.copy()
+    shifted[5, 1] += 2e-6
+    found = judge(qiao, shifted, along=q, drive="omnidirectional")
+    np.testing.assert_allclose(found.error_m[5], [0, 2e-6, 0], atol=1e-12)
+    assert (found.largest_axis_error_m, found.total_error_m) == pytest.approx((2e-6, 2e-6))
+    assert (found.breaches.error, found.breaches.total) == (1, 1)
+
+
+def test_orientation_counts_where_it_is_asked_for(qiao):
+    q = make_q(qiao)
+    turned = q.copy()
+    turned[3, 8] += 2e-4
+    found = judge(qiao, turned, along=q)
+    assert found.breaches.error == 1
+    assert found.largest_orientation_error_rad == pytest.approx(2e-4)
+
+
+@pytest.mark.parametrize(
+    ("told", "name", "count"),
+    [
+        ({"speed": np.array([0.5] * 8 + [0.49])}, "speed", 10),
+        ({"speed": np.array([0.5, 0.29] + [2.0] * 7)}, "speed", 10),
+        ({"speed": np.array([0.5, 0.5, 0.49] + [2.0] * 6)}, "speed", 10),
+        ({"wheel_speed_rad_s": 4.2}, "wheel", 10),
+        ({"farthest_m": 0.9, "center": "Oc"}, "distance", 11),
+    ],
+)
+def test_each_limit_is_looked_at(qiao, told, name, count):
+    found = judge(qiao, make_q(qiao), **told)
+    assert getattr(found.breaches, name) == count
+    assert not found.accepted
+
+
+def test_acceleration_is_of_neighbouring_segments(qiao):
+    q = make_q(qiao)
+    q[6:, 7] += 0.002
+    found = judge(qiao, q, acceleration=np.full(9, 4.0))
+    assert found.breaches.acceleration == 2
+    assert judge(qiao, q, acceleration=np.full(9, 5.1)).accepted
+
+
+def test_ranges_can_be_switched_off(qiao):
+    q = make_q(qiao)
+    q[7, 6] = qiao.upper[6] + 0.01
+    loose = np.full(9, 1e3)
+    assert judge(qiao, q, speed=loose).breaches.range == 1
+    assert judge(qiao, q, speed=loose, ranges=False).breaches.range == 0
+
+
+def test_an_arc_bulges_beyond_its_ends(qiao):
+    start = np.array([qiao.upper[0] - 1e-6, 0.0, 0.5 * np.pi - 0.015])
+    q = np.tile(qiao.home, (2, 1))
+    q[0, :3], q[1, :3] = start, step_base(start, np.array(0.5), np.array(1.5), DT_S)
+    q[:, 0] += qiao.upper[0] - q[:, 0].max()
+    assert judge(qiao, q).breaches.range == 2
+    assert judge(qiao, q, drive="omnidirectional").breaches.range == 0
+
+
+def test_sliding_sideways_is_a_breach_of_wheels_only(qiao):
+    q = make_q(qiao)
+    q[4:, 1] += 1e-5
+    assert judge(qiao, q).breaches.sideways == 1
+    assert judge(qiao, q, drive="omnidirectional").breaches.sideways == 0
+
+
+def test_collisions_are_counted_by_sample(qiao):
+    q = make_q(qiao)
+    q[2:5, 4] = 2.5
+    found = judge(qiao, q, speed=None)
+    assert found.breaches.collision == 3
+    assert judge(qiao, q, speed=None, detector="none").breaches.collision == 0
+
+
+@pytest.mark.parametrize("samples", [0, 1])
+def test_nothing_is_no_motion(qiao, samples):
+    q = make_q(qiao)
+    tool = forward(qiao, q)["tool"]
+    path = ToolPath.through(tool[:, :3, 3], dt_s=DT_S)
+    told = {"limits": MotionLimits.of(qiao, acceleration=np.ones(9)), "detector": qiao.detector(None)}
+    found = verify_track(qiao, path, q[:samples], drive="differential", **told)
+    assert found.accepted
+    assert (found.speeds.shape, found.wheel_speeds.shape, len(found.error_m)) == ((0, 9), (0, 2), samples)
