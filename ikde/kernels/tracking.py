@@ -17,7 +17,7 @@ from ikde.kernels.fences import Fences, fence, fence_pairs, make_fences
 from ikde.kernels.frames import compute_bodies, compute_jacobian, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.pose_error import POSITION
-from ikde.kernels.wishes import AGILE, limit_wish, start_wish, wish_agile, wish_apart, wish_middle
+from ikde.kernels.wishes import AGILE, finish_wish, start_wish, wish_agile, wish_apart, wish_middle
 
 STIFFNESS = 1e6  # of the tool's error, against the wish, if both are measured in largest steps
 SLACK = -1e-9  # m: fences are kept to it
@@ -94,8 +94,8 @@ def make_agile(robot, drive, track, target, index, weights, q, still, work):
 
 
 @leaf_kernel
-def set_wish(robot, detector, drive, track, target, index, weights, q, still, work):
-    """What the null space is used for in the step from `q` [N]; `still` [D] is zero."""
+def set_wish(robot, detector, drive, track, target, index, weights, q, last, still, work):
+    """What the null space is used for in the step from `q` [N] after the step `last` [D]; `still` [D] is zero."""
     pose(robot, q, work)
     start_wish(weights, work.wish)
     wish_middle(drive, track, weights, q, work.wish)
@@ -103,7 +103,7 @@ def set_wish(robot, detector, drive, track, target, index, weights, q, still, wo
     wish_apart(track, weights, count, work.fences, work.wish)
     if weights[MANIPULABILITY] > 0.0:
         make_agile(robot, drive, track, target, index, weights, q, still, work)
-    limit_wish(drive, work.wish)
+    finish_wish(drive, last, work.wish)
 
 
 @inline_kernel
@@ -126,7 +126,7 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
     """
     for k in range(out_step.size):
         out_step[k] = 0.0
-    set_wish(robot, detector, drive, track, target, index, weights, q, out_step, work)
+    set_wish(robot, detector, drive, track, target, index, weights, q, last, out_step, work)
     if not set_step_box(drive, track.ranges, q, last, first_step, work.system.lower, work.system.upper):
         return NO_STEP, 0, 0.0
     for k in range(out_step.size):

@@ -10,6 +10,7 @@ from ikde.kernels.arrays import CLEARANCE, DRIFT, LIMITS, MANIPULABILITY
 from ikde.kernels.jit import inline_kernel, leaf_kernel
 
 LARGEST_WISH = 0.7
+INERTIA = 0.8  # share of the step before in a wish
 FREE_SHARE = 0.5  # of half a range, about its middle, where the ends are not minded
 AGILE = 1e3  # a direction of the tool counts as free if the largest steps move it 1 / sqrt(AGILE) of the usual
 
@@ -82,8 +83,12 @@ def start_wish(weights, out_wish):
 
 
 @inline_kernel
-def limit_wish(drive, out_wish):
-    """No wish is nearly as large as the largest step, and what is frozen has none."""
+def finish_wish(drive, last, out_wish):
+    """No wish is nearly as large as the largest step; it changes little from one sample to the next; the frozen rest.
+
+    A pair may be equally near to two others, a push from either then answers the other: without inertia that chatters.
+    """
     for k in range(out_wish.size):
         wish = min(max(out_wish[k], -LARGEST_WISH), LARGEST_WISH)
+        wish += INERTIA * (last[k] - wish)
         out_wish[k] = wish if drive.largest[k] > 0.0 else 0.0

@@ -81,8 +81,8 @@ def make_runs_table(compared: Sequence[Compared]) -> Table:
         caption="What each method reaches, breaks and costs",
         note="Counts are ranges over the seeds; errors, jumps and clearances the worst; times the middle of the "
         "seeds' medians and the largest p99. A jump is what the base or a joint does in one sample. The arm's Jacobian "
-        "is taken in m and rad. Limits broken counts every joint, wheel and sample by itself. The typical DE is "
-        "graded as if the base could slide.",
+        "is taken in m and rad, and in what the path asks for. Limits broken counts every joint, wheel and sample by "
+        "itself. The typical DE is graded as if the base could slide.",
     )
 
 

@@ -28,7 +28,7 @@ class TrackSummary:
     verification: TrackVerification
     certificate: Certificate
     singular_values: Floats
-    """[M + 1] smallest of the arm's Jacobian, m and rad."""
+    """[M + 1] smallest of the arm's Jacobian, m and rad, in what the path asks for."""
 
     @property
     def limits(self) -> MotionLimits:
@@ -136,5 +136,5 @@ def summarise_track(robot: Robot, detector: Detector | None, trajectory: Traject
         trajectory=trajectory,
         verification=verify_track(robot, path, q, drive=drive, limits=trajectory.limits, detector=detector),
         certificate=certify(robot, path, q, drive=drive, detector=detector),
-        singular_values=smallest_singular_values(robot, q, trajectory.base_joints),
+        singular_values=smallest_singular_values(robot, q, trajectory.base_joints, path.orientation),
     )

@@ -20,8 +20,9 @@ def wish_of(stand, kind="position", **weights):
     for column, value in ((CLEARANCE, "apart"), (LIMITS, "middle"), (MANIPULABILITY, "agile")):
         stand.weights[column] = weights.get(value, 0.0)
     parts = (stand.arrays, stand.spheres, stand.drive, stand.track, stand.target(kind), 0, stand.weights)
-    set_wish(*parts, stand.q, np.zeros(stand.size), stand.work)
-    return stand.work.wish.copy()
+    still = np.zeros(stand.size)
+    set_wish(*parts, stand.q, still, still, stand.work)
+    return stand.work.wish / (1.0 - wishes.INERTIA)
 
 
 def agility(stand, kind, q):
@@ -88,6 +89,15 @@ def test_drift_is_taken_as_it_is_within_reason(qiao):
     stand = Stand(qiao, qiao.home, speed=np.array([0.5] * 8 + [0.0]))
     stand.weights[DRIFT:] = [0.1, -0.2, 3.0, -3.0, 0, 0, 0, 0.5]
     parts = (stand.arrays, stand.spheres, stand.drive, stand.track, stand.target(), 0, stand.weights)
-    set_wish(*parts, stand.q, np.zeros(8), stand.work)
-    most = wishes.LARGEST_WISH
-    np.testing.assert_allclose(stand.work.wish, [0.1, -0.2, most, -most, 0, 0, 0, 0.0])
+    set_wish(*parts, stand.q, np.zeros(8), np.zeros(8), stand.work)
+    most, share = wishes.LARGEST_WISH, 1.0 - wishes.INERTIA
+    np.testing.assert_allclose(stand.work.wish, share * np.array([0.1, -0.2, most, -most, 0, 0, 0, 0.0]))
+
+
+def test_a_wish_goes_on_with_the_step_before(qiao):
+    stand = Stand(qiao, qiao.home, speed=np.array([0.5] * 8 + [0.0]))
+    stand.weights[:] = 0.0
+    parts = (stand.arrays, stand.spheres, stand.drive, stand.track, stand.target(), 0, stand.weights)
+    last = np.array([0.9, -0.5, 0.0, 1.0, 0.1, 0, 0, 0.3])
+    set_wish(*parts, stand.q, last, np.zeros(8), stand.work)
+    np.testing.assert_allclose(stand.work.wish, wishes.INERTIA * last * (stand.drive.largest > 0.0))

@@ -18,8 +18,8 @@ def test_it_is_the_derivative_of_the_tool(any_robot):
         moved = q.copy()
         moved[joint] += step
         there = compute_frames(any_robot, moved)[any_robot.tool]
-        turn = (there[:3, :3] - here[:3, :3]) @ here[:3, :3].T / step
-        np.testing.assert_allclose(column[:3], (there[:3, 3] - here[:3, 3]) / step, atol=1e-5)
+        turn = here[:3, :3].T @ (there[:3, :3] - here[:3, :3]) / step
+        np.testing.assert_allclose(column[:3], here[:3, :3].T @ (there[:3, 3] - here[:3, 3]) / step, atol=1e-5)
         np.testing.assert_allclose(column[3:], [turn[2, 1], turn[0, 2], turn[1, 0]], atol=1e-5)
 
 
@@ -30,6 +30,16 @@ def test_a_stretched_arm_is_singular():
     least = smallest_singular_values(robot, np.array([bent, stretched]))
     assert least[0] > 0.05
     assert least[1] < 1e-9
+
+
+def test_a_singularity_counts_only_for_what_is_asked():
+    robot = ikde.load_robot("ur5")
+    flat_wrist = np.array([0.0, -1.2, 1.5, -1.0, 0.0, 0.0])
+    least = {
+        asked: smallest_singular_values(robot, flat_wrist, orientation=asked) for asked in ("free", "axis", "pose")
+    }
+    assert max(least["pose"], least["axis"]) < 1e-9
+    assert least["free"] > 0.05
 
 
 def test_the_base_is_left_out(qiao):
