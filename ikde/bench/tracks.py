@@ -1,12 +1,16 @@
 """Ways to follow a path beside one another: what each reaches, breaks and costs, over seeds and random starts."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from functools import partial
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.solver.search import usable_cores
 from ikde.solver.settings import SolveSettings
 from ikde.solver.solve import solve_many
 from ikde.track.drive import DriveName
@@ -15,6 +19,9 @@ from ikde.track.plan import TrackPlan
 from ikde.track.run import make_limits, run_track
 from ikde.track.spec import TrackMethod
 from ikde.track.summary import TrackSummary, summarise_track
+from ikde.track.trajectory import TrackStop, Trajectory
+
+Item, Result = TypeVar("Item"), TypeVar("Result")
 
 METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
 NINE_VARIABLES: Mapping[str, DriveName] = {"typical": "omnidirectional"}
@@ -68,12 +75,14 @@ def count_runs(tracks: int, methods: Sequence[TrackMethod], budget: TrackBudget)
 def compare_methods(
     plan: TrackPlan, methods: Sequence[TrackMethod], budget: TrackBudget, progress: Progress
 ) -> Compared:
-    """Follow one track by each method with every seed, and from every start."""
-    motions, runs = {}, []
+    """Follow one track by each method with every seed, and from every start; all begin where `continuation` does."""
+    motions, runs, seeds = {}, [], range(plan.seed, plan.seed + budget.seeds)
+    start = find_start(plan) if set(methods) - {"continuation"} else None
     for method in methods:
         progress.begin(f"{plan.name}: {method}")
-        for seed in range(plan.seed, plan.seed + budget.seeds):
-            motion = follow(plan, method, seed=seed)
+        given = None if method == "continuation" else start
+        run = partial(_follow_seed, plan, method, given)
+        for seed, motion in zip(seeds, _side_by_side(run, seeds, threads=1 if given is None else None), strict=True):
             motions.setdefault(method, motion)
             runs.append({"method": method, "drive": motion.trajectory.drive, "seed": seed, **measure(motion)})
             progress.advance(1)
@@ -83,10 +92,26 @@ def compare_methods(
     return Compared(plan=plan, motions=motions, data={**told, "runs": runs, "dead_ends": ends})
 
 
-def follow(plan: TrackPlan, method: TrackMethod, **changes: Any) -> TrackSummary:
+def find_start(plan: TrackPlan) -> Floats | None:
+    """Where `continuation` begins; None if it does not even begin."""
+    q = run_track(plan, method="continuation").q
+    return q[0] if len(q) else None
+
+
+def _follow_seed(plan: TrackPlan, method: TrackMethod, start: Floats | None, seed: int) -> TrackSummary:
     """One motion, measured."""
-    trajectory = run_track(plan, method=method, drive=NINE_VARIABLES.get(method), **changes)
+    trajectory = run_track(plan, method=method, drive=NINE_VARIABLES.get(method), start=start, seed=seed)
     return summarise_track(plan.robot, plan.detector, trajectory)
+
+
+def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item], threads: int | None = None) -> Iterator[Result]:
+    """Results in order, an item a core: the kernels let go of Python's lock."""
+    with ThreadPoolExecutor(threads or usable_cores()) as pool:
+        try:
+            yield from pool.map(run, items)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 def measure(motion: TrackSummary) -> dict[str, Any]:
@@ -118,11 +143,14 @@ def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int,
     limits = make_limits(plan.robot, plan.limits)
     follower = make_follower(plan.robot, plan.path, drive=plan.drive, limits=limits, detector=plan.detector)
     starts = draw_random_starts(follower, count, plan.seed)
-    reached = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}
+    reached, stops = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}, {}
     for method in methods:
-        reached[method] = list(_reach(plan, method, starts, progress))
+        motions = list(_follow_from(plan, method, starts, progress))
+        reached[method] = [motion.reached_points for motion in motions]
+        stops[method] = Counter(tell_shortly(motion.stop) for motion in motions if motion.stop)
     early = {name: sum(points < plan.path.samples for points in ends) for name, ends in reached.items()}
-    return {"starts": len(starts), **early, "reached_points": reached}
+    why = {name: dict(counts.most_common()) for name, counts in stops.items()}
+    return {"starts": len(starts), **early, "stops": why, "reached_points": reached}
 
 
 def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
@@ -141,10 +169,15 @@ def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
     return np.array(found).reshape(-1, len(robot.joints))
 
 
-def _reach(plan: TrackPlan, method: TrackMethod, starts: Floats, progress: Progress) -> Iterator[int]:
-    for start in starts:
-        yield run_track(plan, method=method, start=start).reached_points
+def _follow_from(plan: TrackPlan, method: TrackMethod, starts: Floats, progress: Progress) -> Iterator[Trajectory]:
+    for motion in _side_by_side(lambda start: run_track(plan, method=method, start=start), starts):
+        yield motion
         progress.advance(1)
+
+
+def tell_shortly(stop: TrackStop) -> str:
+    """The reason, and the pair or the limit that it names."""
+    return f"{stop.reason.value} {'-'.join(stop.pair or (stop.limit or '',))}".strip()
 
 
 def _finite(value: float) -> float | None:

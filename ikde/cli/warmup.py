@@ -13,13 +13,15 @@ if TYPE_CHECKING:
 
 
 def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_json: JsonOption = False) -> None:
-    """Compile the kernels of a robot ahead, for every engine and every kind of target; seconds if they are compiled."""
+    """Compile the kernels of a robot ahead: every engine, every kind of target, tracks; seconds if they are compiled."""
     from ikde.io.robots import load_robot
     from ikde.report.render import make_table, render
     from ikde.solver.warmup import list_stages, warm_up
+    from ikde.track.warmup import list_track_stages
 
     model = load_robot(robot)
-    stages = list_stages(model, model.detector(detector) or "none")
+    chosen = model.detector(detector) or "none"
+    stages = [*list_stages(model, chosen), *list_track_stages(model, chosen)]
     with _progress(len(stages)) as tell:
         done = warm_up(stages, tell)
     if as_json:

@@ -73,7 +73,7 @@ def make_runs_table(compared: Sequence[Compared]) -> Table:
     for one in compared:
         for method in one.motions:
             runs = [run for run in one.data["runs"] if run["method"] == method]
-            cells = [one.data["name"], NAMES[method], *_summarise(runs)]
+            cells = [one.data["name"], NAMES[method], *list_cells(runs)]
             rows.append(tuple(Cell(cell, "ours") if method == OURS else cell for cell in cells))
     return Table(
         columns=columns,
@@ -86,7 +86,8 @@ def make_runs_table(compared: Sequence[Compared]) -> Table:
     )
 
 
-def _summarise(runs: Sequence[Row]) -> list[str]:
+def list_cells(runs: Sequence[Row]) -> list[str]:
+    """A method over its seeds, column by column of the table."""
     points = runs[0]["points"]
     medians = [run["median_s"] for run in runs if run["median_s"] is not None]
     middle = significant(1e6 * float(np.median(medians))) if medians else "–"

@@ -1,0 +1,23 @@
+"""Compile ahead what follows a path: a robot that stands still at home, by each method."""
+
+from functools import partial
+
+import numpy as np
+
+from ikde.model.robot import Detector, Robot
+from ikde.solver.plain import compute_frames
+from ikde.solver.warmup import Stage
+from ikde.track.path import ToolPath
+from ikde.track.spec import TRACK_METHODS
+from ikde.track.track import track
+
+SAMPLES = 2
+DT_S = 0.02
+
+
+def list_track_stages(robot: Robot, detector: str | Detector | None = None) -> list[Stage]:
+    """A stage a method; kernels are the same for either drive and every kind of path."""
+    tool = compute_frames(robot, robot.home)[robot.tool]
+    path = ToolPath.through(np.tile(tool[:3, 3], (SAMPLES + 1, 1)), dt_s=DT_S)
+    follow = partial(track, robot, path, drive="omnidirectional", detector=detector)
+    return [Stage(name=f"track, {method}", run=partial(follow, method=method)) for method in TRACK_METHODS]
