@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_json: JsonOption = False) -> None:
-    """Compile the kernels of a robot ahead: every engine, every kind of target, tracks; seconds if they are compiled."""
+    """Compile the kernels of a robot ahead: all engines and kinds of target, and tracks; seconds if that is done."""
     from ikde.io.robots import load_robot
     from ikde.report.render import make_table, render
     from ikde.solver.warmup import list_stages, warm_up
