@@ -13,18 +13,17 @@ from ikde.kernels.arrays import Floats
 from ikde.solver.search import usable_cores
 from ikde.solver.settings import SolveSettings
 from ikde.solver.solve import solve_many
-from ikde.track.drive import DriveName
 from ikde.track.follow import Follower, make_follower
 from ikde.track.plan import TrackPlan
 from ikde.track.run import make_limits, run_track
-from ikde.track.spec import TrackMethod
+from ikde.track.spec import Drive, TrackMethod
 from ikde.track.summary import TrackSummary, summarise_track
 from ikde.track.trajectory import TrackStop, Trajectory
 
 Item, Result = TypeVar("Item"), TypeVar("Result")
 
 METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
-NINE_VARIABLES: Mapping[str, DriveName] = {"typical": "omnidirectional"}
+NINE_VARIABLES: Mapping[str, Drive] = {"typical": "omnidirectional"}
 """`typical` searches x, y and heading as if the base could move anywhere, whatever drives it."""
 STARTED_ANYWHERE = ("optimized", "continuation")
 """Methods for which the start matters: `typical` begins anew at every sample."""

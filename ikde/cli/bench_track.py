@@ -5,6 +5,7 @@ import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +17,7 @@ from ikde.cli.progress import Bar, Lines
 
 if TYPE_CHECKING:
     from ikde.bench.tracks import Progress
+    from ikde.track.plan import TrackPlan
     from ikde.track.spec import TrackMethod
 
 
@@ -28,6 +30,9 @@ def bench_track(
     ),
     methods: Annotated[
         str | None, typer.Option(metavar="METHOD,...", help="Compare these alone (default: all three).")
+    ] = None,
+    drive: Annotated[
+        str | None, typer.Option(help="differential or omnidirectional, instead of what the files say.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="2 seeds and 5 starts instead of 10 and 100.")] = False,
     as_json: JsonOption = False,
@@ -45,13 +50,13 @@ def bench_track(
 
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
-    plans = [load_track(path) for path in tracks]
+    plans = [_with_drive(load_track(path), drive) for path in tracks]
     prepare_folder(out)
     with _show_progress(count_runs(len(plans), chosen, budget)) as progress:
         with compile_clock(lambda: announce_compile("about a minute")):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
-        page = make_comparison_page(compared, budget, _repeat(tracks, methods, quick))
+        page = make_comparison_page(compared, budget, _repeat(tracks, methods, drive, quick))
         data = compare_json(compared, budget)
         write_report(out, {RESULTS: format_results(data), "report.html": render_html(page)})
     if as_json:
@@ -71,9 +76,21 @@ def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":
     return tuple(method for method in METHODS if method in chosen)
 
 
-def _repeat(tracks: Sequence[Path], methods: str | None, quick: bool) -> str:
+def _with_drive(plan: "TrackPlan", drive: str | None) -> "TrackPlan":
+    from ikde.track.spec import DRIVES
+
+    if drive is None:
+        return plan
+    if drive not in DRIVES:
+        raise typer.BadParameter(f"expected one of {', '.join(DRIVES)}, got {drive!r}", param_hint="--drive")
+    return replace(plan, drive=drive)
+
+
+def _repeat(tracks: Sequence[Path], methods: str | None, drive: str | None, quick: bool) -> str:
     """The command that makes the page again."""
-    options = [*(["--methods", methods] if methods else []), *(["--quick"] if quick else [])]
+    given = {"--methods": methods, "--drive": drive}
+    options = [part for option, value in given.items() if value for part in (option, value)]
+    options += ["--quick"] if quick else []
     return shlex.join(["ikde", "bench", "track", *map(str, tracks), *options, "--out", "FOLDER"])
 
 

@@ -5,7 +5,6 @@ never slides sideways (5). `omnidirectional`: x, y and heading run linearly. So 
 """
 
 from collections.abc import Collection
-from typing import Literal, get_args
 
 import numpy as np
 
@@ -16,9 +15,8 @@ from ikde.model.robot import Robot
 from ikde.model.tree import build_tree
 from ikde.solver.engines.pool import find_base
 from ikde.track.limits import MotionLimits
+from ikde.track.spec import DRIVES
 
-DriveName = Literal["differential", "omnidirectional"]
-DRIVES = get_args(DriveName)
 WHEEL_RADIUS_M = 0.100  # [Qiao2022]
 HALF_TRACK_M = 0.259  # calibrated: not printed
 FREE_M, FREE_RAD = 0.25, 0.5 * np.pi  # the largest step of one sample where no speed limit is asked for

@@ -7,10 +7,9 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues
-from ikde.track.drive import DriveName
 from ikde.track.limits import MotionLimits
 from ikde.track.plan import AskedLimits, TrackPlan
-from ikde.track.spec import TrackMethod
+from ikde.track.spec import Drive, TrackMethod
 from ikde.track.track import track
 from ikde.track.trajectory import Trajectory
 
@@ -19,7 +18,7 @@ def run_track(
     plan: TrackPlan,
     *,
     method: TrackMethod | None = None,
-    drive: DriveName | None = None,
+    drive: Drive | None = None,
     seed: int | None = None,
     start: JointValues | None = None,
     announce_compile: Callable[[], None] | None = None,

@@ -12,12 +12,11 @@ from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
 from ikde.track.certify import certify
 from ikde.track.continuation import Continuation
-from ikde.track.drive import DriveName
 from ikde.track.follow import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.methods import TrackSettings, check_method, follow_by
 from ikde.track.path import ToolPath
-from ikde.track.spec import TrackMethod
+from ikde.track.spec import Drive, TrackMethod
 from ikde.track.trajectory import TrackStop, Trajectory
 from ikde.track.verify_track import verify_track
 
@@ -26,7 +25,7 @@ def track(
     robot: Robot,
     path: ToolPath,
     *,
-    drive: DriveName = "differential",
+    drive: Drive = "differential",
     method: TrackMethod = "continuation",
     limits: MotionLimits | None = None,
     start: JointValues | None = None,
@@ -79,7 +78,7 @@ def grade_motion(
     stop: TrackStop | None,
     seconds: Floats,
     *,
-    drive: DriveName,
+    drive: Drive,
     method: str,
     limits: MotionLimits,
     detector: Detector | None,

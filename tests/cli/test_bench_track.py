@@ -36,3 +36,11 @@ def test_an_unknown_method_is_refused(refuse, spec, methods):
 def test_a_wrong_file_is_found_before_anything_runs(refuse, spec):
     spec.write_text(SPEC + "drive: sideways\n")
     assert "drive" in refuse("bench", "track", spec, "--out", "page")
+
+
+def test_the_drive_replaces_that_of_the_files(cli, refuse, spec, tmp_path, monkeypatch):
+    monkeypatch.setattr(tracks, "QUICK", tracks.TrackBudget(seeds=1, starts=0))
+    told = ("--quick", "--methods", "continuation", "--json", "--out", tmp_path / "page")
+    outcome = cli("bench", "track", spec, "--drive", "omnidirectional", *told)
+    assert outcome.data["tracks"][0]["runs"][0]["drive"] == "omnidirectional"
+    assert "expected one of differential, omnidirectional" in refuse("bench", "track", spec, "--drive", "sideways")
