@@ -21,7 +21,7 @@ from rich.table import Table
 
 from ikde.bench.tracks import FULL, METHODS, TrackBudget, compare_methods
 from ikde.io.track_file import load_track
-from ikde.report.track_comparison import list_cells
+from ikde.report.track_comparison import FIGURES, list_cells
 from ikde.track.spec import Drive, TrackMethod
 
 HERE = Path(__file__).parent
@@ -67,21 +67,8 @@ def main() -> None:
 
 def show(records: list[dict[str, Any]]) -> None:
     """One row for each track, base and method: the worst of the seeds, times in the middle."""
-    titles = (
-        "points",
-        "mm",
-        "rad",
-        "limits",
-        "colliding",
-        "jump mm",
-        "deg",
-        "sigma",
-        "clear mm",
-        "certified",
-        "µs",
-        "p99",
-    )
-    table, ends = Table("track", "base", "method", *titles), Table("track", "base", "dead ends", "why")
+    table = Table("track", "base", "method", *(column.head for column in FIGURES))
+    ends = Table("track", "base", "dead ends", "why")
     for record in records:
         for method in dict.fromkeys(run["method"] for run in record["runs"]):
             runs = [run for run in record["runs"] if run["method"] == method]

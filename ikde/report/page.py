@@ -11,6 +11,8 @@ from typing import Literal
 Align = Literal["left", "right"]
 Mark = Literal["", "published", "ours", "off"]
 
+MOST_ROOMY_COLUMNS = 12
+
 
 @dataclass(frozen=True, slots=True)
 class Text:
@@ -96,6 +98,11 @@ class Table:
         for number, row in enumerate(self.rows):
             if len(row) != len(self.columns):
                 raise ValueError(f"{self.caption}: row {number} has {len(row)} cells for {len(self.columns)} columns")
+
+    @property
+    def is_dense(self) -> bool:
+        """True if it is shown in small print, to fit."""
+        return len(self.columns) > MOST_ROOMY_COLUMNS
 
     def cells(self) -> list[list[Cell]]:
         """All cells, each with the mark it is shown with."""

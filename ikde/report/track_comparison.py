@@ -21,6 +21,15 @@ DRAWINGS = (
     ("Base and clearance", (BASE, CLEARANCE)),
 )
 OURS = "continuation"
+FIGURES = (
+    Column("points reached"),
+    *(Column("mm", group="largest error"), Column("rad", group="largest error")),
+    *(Column("limits", group="broken"), Column("collisions", group="broken")),
+    *(Column("mm", group="largest step"), Column("deg", group="largest step")),
+    Column("least σ"),
+    Column("clearance", "mm"),
+    *(Column("median", "µs", group="a sample"), Column("p99", "µs", group="a sample")),
+)
 NAMES = {"typical": "typical DE", "optimized": "optimized DE", "continuation": "ours, continuation"}
 
 Row = Mapping[str, Any]
@@ -60,51 +69,54 @@ def _make_legend() -> Block:
 
 
 def make_runs_table(compared: Sequence[Compared]) -> Table:
-    """A row a track and method: the worst of all seeds, times in the middle."""
-    columns = (
-        *(Column("path", align="left"), Column("method", align="left"), Column("points reached")),
-        *(Column("largest error of an axis", "mm"), Column("orientation error", "rad")),
-        *(Column("limits broken"), Column("colliding samples")),
-        *(Column("largest jump", "mm"), Column("largest turn", "deg")),
-        *(Column("smallest singular value"), Column("clearance", "mm"), Column("certified", "mm")),
-        *(Column("a sample, median", "µs"), Column("p99", "µs")),
-    )
-    rows = []
-    for one in compared:
+    """A row a track and method: the worst of all seeds, times in the middle; and dead ends."""
+    rows, names = [], shorten_names([one.data["name"] for one in compared])
+    for one, path in zip(compared, names, strict=True):
         for method in one.motions:
             runs = [run for run in one.data["runs"] if run["method"] == method]
-            cells = [one.data["name"], NAMES[method], *list_cells(runs)]
+            cells = [path, method, *list_cells(runs), _tell_ends(one, method)]
             rows.append(tuple(Cell(cell, "ours") if method == OURS else cell for cell in cells))
     return Table(
-        columns=columns,
+        columns=(Column("path", align="left"), Column("method", align="left"), *FIGURES, Column("dead ends")),
         rows=tuple(rows),
         caption="What each method reaches, breaks and costs",
-        note="Counts are ranges over the seeds; errors, jumps and clearances the worst; times the middle of the "
-        "seeds' medians and the largest p99. A jump is what the base or a joint does in one sample. The arm's Jacobian "
-        "is taken in m and rad, and in what the path asks for. Limits broken counts every joint, wheel and sample by "
-        "itself. The typical DE is graded as if the base could slide.",
+        note="Counts are ranges over the seeds; errors, steps and clearances the worst; times the middle of the "
+        "seeds' medians and the largest p99. A step is what the base or a joint does in one sample. Clearance is the "
+        "certified one, between the samples, too. σ is the smallest singular value of the arm's Jacobian, in m and "
+        "rad, in what the path asks for. Limits counts every joint, wheel and sample by itself. Dead ends are random "
+        "starts from which the path's end is not reached. The typical DE is graded as if the base could slide.",
     )
+
+
+def shorten_names(names: Sequence[str]) -> list[str]:
+    """Names without what stands before the comma, where that is the same in all of them."""
+    parts = [name.partition(", ") for name in names]
+    alike = len({head for head, _, _ in parts}) == 1 and all(tail for _, _, tail in parts)
+    return [tail for _, _, tail in parts] if alike else list(names)
 
 
 def list_cells(runs: Sequence[Row]) -> list[str]:
-    """A method over its seeds, column by column of the table."""
-    points = runs[0]["points"]
+    """A method over its seeds, column by column of `FIGURES`."""
     medians = [run["median_s"] for run in runs if run["median_s"] is not None]
     middle = significant(1e6 * float(np.median(medians))) if medians else "–"
     return [
-        f"{_span(runs, 'reached_points')} of {points}",
-        _worst(runs, "largest_axis_error_mm", max, "{:.1e}".format),
-        _worst(runs, "largest_rotation_error_rad", max, lambda value: f"{value:.1e}" if value else "–"),
+        f"{_span(runs, 'reached_points')} of {runs[0]['points']}",
+        _worst(runs, "largest_axis_error_mm", max, "{:.0e}".format),
+        _worst(runs, "largest_rotation_error_rad", max, lambda value: f"{value:.0e}" if value else "–"),
         _span(runs, "limit_violations"),
         _span(runs, "colliding_samples"),
-        _worst(runs, "largest_jump_m", max, lambda value: significant(1e3 * value)),
-        _worst(runs, "largest_jump_rad", max, lambda value: significant(float(np.degrees(value)))),
-        _worst(runs, "smallest_singular_value", min, significant),
-        _worst(runs, "smallest_clearance_mm", min, lambda value: f"{value:.1f}"),
+        _worst(runs, "largest_jump_m", max, lambda value: f"{1e3 * value:.1f}"),
+        _worst(runs, "largest_jump_rad", max, lambda value: f"{float(np.degrees(value)):.1f}"),
+        _worst(runs, "smallest_singular_value", min, "{:.2g}".format),
         _worst(runs, "certified_clearance_mm", min, lambda value: f"{value:.1f}"),
         middle,
         _worst(runs, "p99_s", max, lambda value: significant(1e6 * value)),
     ]
+
+
+def _tell_ends(one: Compared, method: str) -> str:
+    ends = one.data["dead_ends"]
+    return f"{ends[method]} of {ends['starts']}" if method in ends else "–"
 
 
 def _worst(runs: Sequence[Row], key: str, pick: Callable[..., float], write: Callable[[float], str]) -> str:
@@ -118,21 +130,24 @@ def _span(runs: Sequence[Row], key: str) -> str:
 
 
 def make_ends_table(compared: Sequence[Compared]) -> Table:
-    """From how many random starts each method ends before its path does."""
-    names = list(dict.fromkeys(name for one in compared for name in one.data["dead_ends"]["reached_points"]))
-    titles = {**NAMES, "greedy": "greedy: least motion, no way back"}
-    rows = []
-    for one in compared:
+    """From how many random starts each method ends before its path does, and what is then in the way."""
+    rows, names = [], shorten_names([one.data["name"] for one in compared])
+    for one, path in zip(compared, names, strict=True):
         ends = one.data["dead_ends"]
-        cells = [f"{ends[name]} of {ends['starts']}" if name in ends else "–" for name in names]
-        rows.append((one.data["name"], *cells))
-    columns = [Column(titles[name], mark="ours" if name == OURS else "") for name in names]
+        for name in ends["reached_points"]:
+            why = ", ".join(
+                f"{count} {reason.replace('_', ' ')}" for reason, count in ends["stops"].get(name, {}).items()
+            )
+            cells = (path, name, f"{ends[name]} of {ends['starts']}", why)
+            rows.append(tuple(Cell(cell, "ours") if name == OURS else cell for cell in cells))
+    columns = Column("path", align="left"), Column("method", align="left"), Column("dead ends")
     return Table(
-        columns=(Column("path", align="left"), *columns),
+        columns=(*columns, Column("what is in the way", align="left")),
         rows=tuple(rows),
-        caption="Dead ends: from how many random starts a path is not followed to its end",
-        note="Starts are free configurations at the first pose, near which random ones came to rest. Left to itself, "
-        "`continuation` chooses its start along the whole path; here it must take the one it is given.",
+        caption="Dead ends: random starts from which a path is not followed to its end",
+        note="Starts are free configurations at the first pose, near which random ones came to rest. Greedy is "
+        "`continuation` with least motion alone and no way back. Left to itself, `continuation` chooses its start "
+        "along the whole path; here it must take the one it is given.",
     )
 
 

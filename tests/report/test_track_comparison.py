@@ -23,25 +23,30 @@ def compared(qiao):
         for name, motion in motions.items()
         for seed in (0, 1)
     ]
-    runs[0] = {**runs[0], "colliding_samples": 2, "smallest_clearance_mm": -99.0}
-    ends = {"starts": 4, "greedy": 3, "continuation": 1, "reached_points": {"greedy": [], "continuation": []}}
+    runs[0] = {**runs[0], "colliding_samples": 2, "certified_clearance_mm": -99.0}
+    reached = {"greedy": [], "continuation": []}
+    stops = {"continuation": {"speed_limit q3": 1}}
+    ends = {"starts": 4, "greedy": 3, "continuation": 1, "stops": stops, "reached_points": reached}
     return [Compared(plan=plan, motions=motions, data={"name": "wave", "points": 20, "runs": runs, "dead_ends": ends})]
 
 
 def test_a_row_is_the_worst_of_the_seeds(compared):
     table = make_runs_table(compared)
-    typical, ours = (dict(zip([c.title for c in table.columns], row, strict=True)) for row in table.rows)
-    assert typical["method"] == "typical DE"
+    typical, ours = (dict(zip([c.head for c in table.columns], row, strict=True)) for row in table.rows)
+    assert typical["method"] == "typical"
     assert typical["points reached"] == "20 of 20"
-    assert typical["colliding samples"] == "0–2"
-    assert typical["clearance"] == "-99.0"
-    assert (ours["limits broken"].text, ours["limits broken"].mark) == ("0", "ours")
+    assert typical["broken: collisions"] == "0–2"
+    assert typical["clearance [mm]"] == "-99.0"
+    assert typical["dead ends"] == "–"
+    assert (ours["broken: limits"].text, ours["broken: limits"].mark) == ("0", "ours")
+    assert ours["dead ends"].text == "1 of 4"
 
 
 def test_dead_ends_are_of_all_starts(compared):
     table = make_ends_table(compared)
-    assert table.rows == (("wave", "3 of 4", "1 of 4"),)
-    assert [column.mark for column in table.columns] == ["", "", "ours"]
+    greedy, ours = table.rows
+    assert greedy == ("wave", "greedy", "3 of 4", "")
+    assert [cell.text for cell in ours] == ["wave", "continuation", "1 of 4", "1 speed limit q3"]
 
 
 def test_the_page_shows_the_methods_side_by_side(compared, monkeypatch):
@@ -51,3 +56,15 @@ def test_the_page_shows_the_methods_side_by_side(compared, monkeypatch):
     assert text.count("<svg") == 4
     assert "ikde bench track wave.yaml" in text
     assert compare_json(compared, BUDGET)["made"]["budget"] == {"seeds": 2, "starts": 4}
+
+
+@pytest.mark.parametrize(
+    ("names", "short"),
+    [
+        (["Qiao 2022, task 1", "Qiao 2022, task 2"], ["task 1", "task 2"]),
+        (["Qiao 2022, task 1", "weld, seam"], ["Qiao 2022, task 1", "weld, seam"]),
+        (["wave", "wave"], ["wave", "wave"]),
+    ],
+)
+def test_names_lose_the_words_they_share(names, short):
+    assert track_comparison.shorten_names(names) == short
