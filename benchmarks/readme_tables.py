@@ -1,12 +1,15 @@
-"""Write the tables of README.md and docs/speed.md from the recorded results, so that nobody types a figure.
+"""Write the tables of README.md, docs/speed.md and docs/following.md from what was recorded: nobody types a figure.
 
 python benchmarks/readme_tables.py
 """
 
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from ikde.report.track_comparison import FIGURES, list_cells
 
 ROOT = Path(__file__).parent.parent
 RESULTS = ROOT / "benchmarks" / "results"
@@ -173,7 +176,7 @@ PEER_TABLES = (("pose", "hard pose"), ("position", "hard position"), ("paper tas
 ENOUGH = {"median": 1, "p95": 20, "p99": 100, "max": 1}  # targets that a figure asks for
 
 
-def format_peers(record: dict[str, Any]) -> str:
+def format_peers(record: dict[str, Any], tables: Sequence[tuple[str, str]], adapters: str) -> str:
     """Other solvers beside ikde, a row a solver, quickest first; two cases a table."""
     options = record["options"]
     position, orientation = options["tolerance"]
@@ -181,9 +184,9 @@ def format_peers(record: dict[str, Any]) -> str:
         f"ikde beside other solvers, interleaved, one core each, tolerances {position:g} m and {orientation:g} rad, "
         "limits and self-collision inside success, every answer graded by plain numpy; ms over all targets asked, "
         f"median / p95 / p99 / max ({options['limit']:g} s at most, slow ones are asked fewer). How each is used: "
-        "[benchmarks/peers](benchmarks/peers/README.md).",
+        f"[benchmarks/peers]({adapters}).",
     ]
-    for names in PEER_TABLES:
+    for names in tables:
         cases = [name for name in names if name in record["cases"]]
         if cases:
             lines += ["", f"| solver | {' | '.join(cases)} |", f"|---|{'---|' * len(cases)}"]
@@ -224,7 +227,10 @@ def make_readme() -> str:
     return join(
         f"{format_machine(engines['machine'])}; {note}.",
         format_engines(engines),
-        format_peers(load("peers")),
+        format_peers(load("peers"), PEER_TABLES[:1], "benchmarks/peers/README.md"),
+        "Four more cases: [docs/speed.md](docs/speed.md#other-solvers).",
+        format_tracks(load("track"), ("differential",)),
+        "On both bases, and beside Pink and mink: [docs/following.md](docs/following.md#measured).",
         format_batch(load("batch_scale")),
         format_start(load("start_up")),
     )
@@ -237,12 +243,65 @@ def make_speed() -> str:
         f"{format_machine(ablation['machine'])}.",
         "## What each idea buys",
         format_ablation(ablation),
+        "## Other solvers",
+        format_peers(load("peers"), PEER_TABLES, "../benchmarks/peers/README.md"),
         "## Differential evolution",
         format_memetic(load("memetic")),
         format_search(load("paper_search")),
         "## Data-driven kernels",
         format_kernels(load("kernel_times")),
     )
+
+
+def make_following() -> str:
+    """Everything between the markers of docs/following.md."""
+    record = load("track")
+    ours = [run for one in record["tracks"] for run in one["runs"] if run["method"] == "continuation"]
+    wheels = [run for run in ours if run["drive"] == "differential"]
+    return join(
+        f"{format_machine(record['machine'])}.",
+        format_tracks(record, ("differential", "omnidirectional")),
+        "Half-way between samples `continuation` is off the path by at most "
+        f"{min(run['largest_deviation_mm'] for run in ours):.3f} to "
+        f"{max(run['largest_deviation_mm'] for run in ours):.3f} mm; the chord of a base with wheels across its middle "
+        f"heading is at most {max(run['largest_sideways_m_s'] for run in wheels):.0e} m/s.",
+        "What the dead ends of `optimized` on wheels run into: "
+        + "; ".join(format_stops(one) for one in record["tracks"] if one["drive"] == "differential")
+        + ".",
+    )
+
+
+def format_tracks(record: dict[str, Any], drives: Sequence[str]) -> str:
+    """Methods that follow the paper's paths, a row a path, base and method."""
+    records = [one for one in record["tracks"] if one["drive"] in drives]
+    seeds = len({run["seed"] for run in records[0]["runs"]})
+    heads = ["path", *(["base"] if len(drives) > 1 else []), "method", *(c.head for c in FIGURES), "dead ends"]
+    lines = [
+        "The paper's tool paths, 500 samples of 20 ms, by its two methods and by `continuation`: counts and extremes "
+        f"over {seeds} seeds, from where `continuation` begins, graded by plain numpy; times of single samples, of the "
+        "paper's methods with both cores at work; dead ends are random starts from which the end is not reached. "
+        "*Clearance* is certified between samples, too; *σ* is the smallest singular value of the arm's Jacobian in "
+        "what the path asks for. `ikde bench track` makes the same as a page with figures:",
+        "",
+        f"| {' | '.join(heads)} |",
+        f"|{'---|' * len(heads)}",
+    ]
+    for one in records:
+        ends = one["dead_ends"]
+        for method in dict.fromkeys(run["method"] for run in one["runs"]):
+            runs = [run for run in one["runs"] if run["method"] == method]
+            last = f"{ends[method]} of {ends['starts']}" if method in ends else "–"
+            base = [one["drive"]] if len(drives) > 1 else []
+            name = one["name"].rpartition(", ")[2]
+            lines.append(f"| {' | '.join([name, *base, method, *list_cells(runs), last])} |")
+    return "\n".join(lines)
+
+
+def format_stops(one: dict[str, Any]) -> str:
+    """The three reasons that a method's dead ends have most often."""
+    stops = one["dead_ends"]["stops"]["optimized"]
+    most = ", ".join(f"{reason.replace('_', ' ')} ({count})" for reason, count in list(stops.items())[:3])
+    return f"{one['name'].rpartition(', ')[2]} {most or 'none'}"
 
 
 def join(*parts: str) -> str:
@@ -256,5 +315,7 @@ def insert(page: str, block: str) -> str:
 
 
 if __name__ == "__main__":
-    for path, block in ((ROOT / "README.md", make_readme()), (ROOT / "docs" / "speed.md", make_speed())):
-        path.write_text(insert(path.read_text(), block))
+    pages = {"README.md": make_readme, "docs/speed.md": make_speed, "docs/following.md": make_following}
+    for name, make in pages.items():
+        path = ROOT / name
+        path.write_text(insert(path.read_text(), make()))

@@ -128,6 +128,8 @@ def measure(motion: TrackSummary) -> dict[str, Any]:
         "colliding_samples": broken["collision"],
         "smallest_clearance_mm": _finite(1e3 * graded.clearance_m),
         "certified_clearance_mm": _finite(1e3 * motion.certificate.clearance_m),
+        "largest_deviation_mm": 1e3 * float(motion.certificate.deviation_m.max(initial=0.0)),
+        "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)),
         "largest_jump_m": motion.largest_step("prismatic"),
         "largest_jump_rad": motion.largest_step("revolute"),
         "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
