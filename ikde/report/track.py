@@ -90,6 +90,7 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     yield "points reached", str(trajectory.reached_points), f"{trajectory.path.samples}"
     errors = " / ".join(_mm(error) for error in motion.largest_axis_errors_m)
     yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
+    yield "largest error in total", f"{_mm(graded.total_error_m)} mm", ""
     if trajectory.path.orientation != "free":
         turn = graded.largest_orientation_error_rad
         yield "largest orientation error", f"{_tiny(turn)} rad", f"{limits.orientation_error_rad:g} rad"
