@@ -20,7 +20,8 @@ from ikde.track.spec import Drive, TrackMethod
 from ikde.track.summary import TrackSummary, summarise_track
 from ikde.track.trajectory import TrackStop, Trajectory
 
-Item, Result = TypeVar("Item"), TypeVar("Result")
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
 NINE_VARIABLES: Mapping[str, Drive] = {"typical": "omnidirectional"}
