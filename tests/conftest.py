@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ikde
+from tests import ahead
 
 ROBOTS = ikde.robot_names()
 
@@ -37,6 +38,17 @@ def random_q(robot, rng, count=None):
     """Uniform joint values inside the limits, [N] or [count, N]."""
     size = len(robot.joints) if count is None else (count, len(robot.joints))
     return rng.uniform(robot.lower, robot.upper, size)
+
+
+def pytest_collection_finish(session):
+    """Begin what takes minutes."""
+    if not session.config.option.collectonly:
+        ahead.begin([item.nodeid for item in session.items])
+
+
+def pytest_sessionfinish():
+    """Also after Ctrl-C or a failure."""
+    ahead.stop()
 
 
 def pytest_terminal_summary(terminalreporter):
