@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+import ikde
 from tests.batch.small import read_files
 
 SPEC = """
@@ -30,10 +31,9 @@ def spec(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(spec, tmp_path_factory):
-    """The parts of a run that nobody killed."""
+    """The parts of a run that nobody killed, in this process."""
     folder = tmp_path_factory.mktemp("whole")
-    process = start(spec, folder)
-    assert process.wait(timeout=120) == 1
+    ikde.run_batch(ikde.load_batch(spec), folder)
     return read_files(folder)
 
 

@@ -9,24 +9,11 @@ import pytest
 import ikde
 from ikde.bench import paper as module
 from ikde.bench.budget import FULL
-from ikde.bench.paper import SECTIONS, as_json, check_paper, compute_paper, count_solves, list_differences
+from ikde.bench.paper import SECTIONS, as_json, check_paper, count_solves, list_differences
 from ikde.io.report_folder import RESULTS, read_results
-from tests.tiny_paper import TINY, load_sources
+from tests.tiny_paper import TINY, compute_tiny, load_sources
 
 SHIPPED = Path(__file__).parents[2] / "docs" / "paper"
-
-
-class Record:
-    """Progress, kept."""
-
-    def __init__(self):
-        self.sections, self.solves = [], 0
-
-    def begin(self, section):
-        self.sections.append(section)
-
-    def advance(self, solves):
-        self.solves += solves
 
 
 @pytest.fixture(scope="module")
@@ -36,12 +23,12 @@ def sources():
 
 @pytest.fixture(scope="module")
 def record():
-    return Record()
+    return compute_tiny()[1]
 
 
 @pytest.fixture(scope="module")
-def results(sources, record):
-    return compute_paper(sources, TINY, progress=record)
+def results():
+    return compute_tiny()[0]
 
 
 def test_every_section_has_its_three_parts(results):

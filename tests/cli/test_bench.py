@@ -32,6 +32,8 @@ def test_a_report_is_a_page_its_markdown_and_its_data_and_the_data_checks(cli, r
     checked = cli("bench", "paper", "--out", folder, "--check")
     assert (checked.code, checked.out) == (0, f"{folder / 'results.json'}: every exact figure comes out the same\n")
 
+    results["made"]["only"] = ["kinematics"]
+    results["sections"] = {"kinematics": results["sections"]["kinematics"]}
     results["sections"]["kinematics"]["exact"]["points"][0]["printed_mm"][0] += 1.0
     (folder / "results.json").write_text(json.dumps(results))
     tampered = cli("bench", "paper", "--out", folder, "--check", "--json")

@@ -31,7 +31,7 @@ class Case:
         self.follower = follower_of(robot, short_task(task), drive=drive, **limits)
         self.robot, self.detector = pack_robot(robot), pack_detector(robot, self.follower.detector)
         self.search = pack_step_search(self.follower, OptimizedSettings())._replace(**(changes or {}))
-        self.q, self.size = start_of(robot.name, task), self.follower.size
+        self.q, self.size = start_of(robot.name, task).copy(), self.follower.size  # read-only would compile anew
         self.work = make_step_workspace(self.robot, self.detector, len(self.q), self.size, self.search.population)
         seed_stream(np.uint64(1), np.int64(1), np.int64(0), self.work.state)
         set_step_box(

@@ -3,15 +3,14 @@
 import pytest
 from matplotlib.figure import Figure
 
-from ikde.bench.paper import compute_paper
 from ikde.report.paper import pictures
-from tests.tiny_paper import TINY, load_sources
+from tests.tiny_paper import compute_tiny, load_sources
 
 
 @pytest.fixture(scope="session")
 def results():
     """What `compute_paper` gives."""
-    return compute_paper(load_sources(), TINY)
+    return compute_tiny()[0]
 
 
 @pytest.fixture(scope="session")
