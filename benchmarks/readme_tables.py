@@ -1,4 +1,4 @@
-"""Write the tables of README.md and docs/speed.md from the recorded results, so that nobody types a figure.
+"""Write the tables of README.md, docs/speed.md and docs/following.md from recorded results: nobody types a figure.
 
 python benchmarks/readme_tables.py
 """
@@ -217,6 +217,68 @@ def format_ms(value: float) -> str:
     return f"{rounded:,.0f}" if rounded >= 10.0 else f"{rounded:g}" if rounded >= 1e-3 else f"{rounded:.4f}"
 
 
+def format_tracks(record: dict[str, Any]) -> str:
+    """Paths followed by ikde, Pink and mink, a table a task; then how many random starts lead to the end."""
+    lines = [
+        "*Reached*: within 0.001 mm along each axis and 1e-4 rad; errors along x / y / z at the samples. Times are of "
+        f"one sample, its median over {record['options']['rounds']} rounds: median / p99 / max over the samples."
+    ]
+    for row in record["tasks"].values():
+        lines += [
+            "",
+            f"| {row['name']}, {row['points']} points | reached | within 1 mm | largest error, mm | RMS error, mm | "
+            "rad | limits broken | colliding | clearance at samples, between, mm | largest step, mm, rad | ms |",
+            f"|---|{'---|' * 10}",
+            *(format_followed(name, way) for name, way in row["ways"].items()),
+        ]
+    return "\n".join(lines)
+
+
+def format_followed(name: str, way: dict[str, Any]) -> str:
+    """One way along one path."""
+    errors = [" / ".join(map(format_small, way[f"{kind}_axis_errors_mm"])) for kind in ("largest", "rms")]
+    certified = way["certified_clearance_mm"]
+    cells = (
+        f"{way['reached_points']}",
+        f"{way['points_within_1_mm']}",
+        *errors,
+        format_small(way["largest_rotation_error_rad"]),
+        f"{way['limit_violations']}",
+        f"{way['colliding_samples']}",
+        f"{way['smallest_clearance_mm']:.1f}, {'-' if certified is None else f'{certified:.1f}'}",
+        f"{1e3 * way['largest_jump_m']:.1f}, {way['largest_jump_rad']:.3f}",
+        " / ".join(format_ms(way["ms"][key]) for key in ("median", "p99", "max")),
+    )
+    return f"| {name} | {' | '.join(cells)} |"
+
+
+def format_starts(record: dict[str, Any]) -> str:
+    """From how many random starts each way gets to the end; and why not from the others."""
+    tasks = record["starts"]
+    lines = [
+        "From random free configurations at the first pose: how many are followed to the end within 1 mm and 0.01 rad, "
+        "without a collision or a broken limit.",
+        "",
+        f"| | {' | '.join(record['tasks'][task]['name'] for task in tasks)} |",
+        f"|---|{'---|' * len(tasks)}",
+    ]
+    for name in next(iter(tasks.values()))["ways"]:
+        cells = (format_ends(row["starts"], row["ways"][name]) for row in tasks.values())
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def format_ends(starts: int, ends: dict[str, Any]) -> str:
+    """One cell."""
+    why = ", ".join(f"{count} {fault}" for fault, count in ends.items() if fault not in ("followed", "seconds"))
+    return f"{ends.get('followed', 0)} of {starts}{f': {why}' if why else ''}"
+
+
+def format_small(value: float) -> str:
+    """Two digits; one and an exponent below a thousandth."""
+    return f"{value:.2g}" if value >= 1e-3 or value == 0.0 else f"{value:.0e}".replace("e-0", "e-")
+
+
 def make_readme() -> str:
     """Everything between the README's markers."""
     engines = load("engines")
@@ -245,6 +307,12 @@ def make_speed() -> str:
     )
 
 
+def make_following() -> str:
+    """Everything between the markers of docs/following.md."""
+    tracks = load("peer_tracks")
+    return join(f"{format_machine(tracks['machine'])}.", format_tracks(tracks), format_starts(tracks))
+
+
 def join(*parts: str) -> str:
     """Paragraphs."""
     return "\n\n".join(parts) + "\n"
@@ -256,5 +324,11 @@ def insert(page: str, block: str) -> str:
 
 
 if __name__ == "__main__":
-    for path, block in ((ROOT / "README.md", make_readme()), (ROOT / "docs" / "speed.md", make_speed())):
+    docs = ROOT / "docs"
+    blocks = {
+        ROOT / "README.md": make_readme(),
+        docs / "speed.md": make_speed(),
+        docs / "following.md": make_following(),
+    }
+    for path, block in blocks.items():
         path.write_text(insert(path.read_text(), block))

@@ -30,8 +30,9 @@ from adapters.mink_ import MinkProgram
 from adapters.pink_ import PinkProgram
 
 import ikde
-from ikde.bench.tracks import LEAST_MOTION, draw_random_starts, measure
+from ikde.bench.tracks import draw_random_starts, measure
 from ikde.io.track_file import load_track
+from ikde.track.courses import USES
 from ikde.track.drive import DriveName
 from ikde.track.follow import Follower, make_follower
 from ikde.track.plan import TrackPlan
@@ -43,9 +44,9 @@ from ikde.track.verify_track import verify_track
 ROOT = Path(__file__).parent.parent.parent
 RESULTS = ROOT / "benchmarks" / "results" / "peer_tracks.json"
 TASKS = ("task1", "task2", "task3", "task4")
-LIBRARIES = {"Pink": (PinkProgram, "urdf"), "mink": (MinkProgram, "mjcf")}
 PACKAGES = ("ikde", "pin-pink", "pin", "mink", "mujoco", "daqp", "qpsolvers")
 MOST_STEPS = 10
+DEFAULT_GAIN = 0.85  # of mink's CollisionAvoidanceLimit
 NEAR_M, NEAR_RAD = 1e-3, 1e-2  # what counts as followed from a random start
 TIMES = {"median": 50, "p99": 99, "max": 100}
 STARTED = time.perf_counter()
@@ -65,12 +66,18 @@ def make_ways(plan: TrackPlan, files: dict[str, Path]) -> list[Way]:
     """Those that are timed."""
     drives: tuple[tuple[str, DriveName], ...] = (("ikde", "omnidirectional"), ("ikde, differential", "differential"))
     ways = [Way(name=name, run=partial(run_ikde, plan, drive), drive=drive) for name, drive in drives]
-    for steps, told in ((1, "one step"), (MOST_STEPS, f"up to {MOST_STEPS} steps")):
-        manner = make_manner(plan, is_split=steps > 1)
-        for library, (kind, file) in LIBRARIES.items():
-            program = kind(plan.robot, files[file], manner)
-            run = partial(follow, program, plan.path, dt_s=manner.dt_s, most_steps=steps)
-            ways.append(Way(name=f"{library}, {told}", run=run))
+    usual, split = make_manner(plan, is_split=False), make_manner(plan, is_split=True)
+    many = f"up to {MOST_STEPS} steps"
+    for name, kind, manner, steps in (
+        ("Pink, one step", PinkProgram, usual, 1),
+        (f"Pink, {many}", PinkProgram, split, MOST_STEPS),
+        ("mink, one step", MinkProgram, usual, 1),
+        (f"mink, {many}", MinkProgram, split, MOST_STEPS),
+        ("mink, one step, default gain", MinkProgram, replace(usual, approach=DEFAULT_GAIN / usual.dt_s), 1),
+    ):
+        program = kind(plan.robot, files["urdf" if kind is PinkProgram else "mjcf"], manner)
+        run = partial(follow, program, plan.path, dt_s=manner.dt_s, most_steps=steps)
+        ways.append(Way(name=name, run=run))
     return ways
 
 
@@ -97,8 +104,8 @@ def run_ikde(plan: TrackPlan, drive: DriveName, start: np.ndarray) -> Followed:
 
 
 def run_greedy(follower: Follower, start: np.ndarray) -> Followed:
-    """Its steps alone: least motion, from sample to sample, no way back."""
-    course = follower.follow(follower.begin(start, LEAST_MOTION))
+    """Its steps alone, as it tries them first: from sample to sample, no way back."""
+    course = follower.follow(follower.begin(start, np.array(USES[0])))
     return Followed(q=course.q[: course.last + 1], seconds=np.empty(0))
 
 

@@ -19,7 +19,7 @@ class Manner:
     orientation_cost: float | Sequence[float] = 0.0
     """A number, or one for each axis of the tool."""
     posture_cost: float = 0.0
-    """Of the arm's joints, against where they were put to begin with; 0: no such task."""
+    """Of what turns, against where it was put to begin with; 0: no such task."""
     lm_damping: float = 0.1
     damping: float = 1e-6
     approach: float
@@ -33,14 +33,34 @@ class Manner:
     solver: str = "daqp"
     solver_options: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def frame_costs(self) -> dict[str, Any]:
+        """What both libraries' `FrameTask` is made with."""
+        names = ("position_cost", "orientation_cost", "lm_damping")
+        return {name: getattr(self, name) for name in names}
+
 
 class Program:
     """One library's model of a robot and its program."""
 
     task: Any
     """The library's `FrameTask`."""
+    posture: Any = None
+    """The library's `PostureTask`, if there is one."""
     span: Any = None
     """What a split sample may still use: its `centre` is where the sample began."""
+
+    @property
+    def tasks(self) -> list[Any]:
+        """All that cost."""
+        return [self.task] if self.posture is None else [self.task, self.posture]
+
+    def begin(self, q: np.ndarray) -> Any:
+        """The configuration at joint values [N], from now on the posture that is cheapest."""
+        configuration = self.configure(q)
+        if self.posture is not None:
+            self.posture.set_target_from_configuration(configuration)
+        return configuration
 
     def pose(self, p: np.ndarray, R: np.ndarray) -> Any:
         """The library's SE3."""
@@ -52,10 +72,6 @@ class Program:
 
     def rotation(self, configuration: Any) -> np.ndarray:
         """R_world_tool [3, 3]."""
-        raise NotImplementedError
-
-    def rest_at(self, configuration: Any) -> None:
-        """Make a configuration the posture that is cheapest."""
         raise NotImplementedError
 
     def step(self, configuration: Any) -> np.ndarray | None:

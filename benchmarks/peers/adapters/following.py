@@ -28,24 +28,27 @@ class Followed:
 
 def follow(program: Program, path: ToolPath, start: np.ndarray, dt_s: float, most_steps: int) -> Followed:
     """Go along the path from a configuration [N] at its first pose."""
-    configuration = program.configure(start)
-    program.rest_at(configuration)
+    configuration = program.begin(start)
+    R_start = program.rotation(configuration).copy()
     q, seconds, counts = np.tile(start, (path.samples + 1, 1)), np.empty(path.samples), np.zeros(2, dtype=int)
     for k in range(1, path.samples + 1):
         began = time.perf_counter()
         if program.span is not None:
             program.span.centre = configuration.q.copy()
-        counts += step(program, configuration, path, k, dt_s, most_steps)
+        counts += step(program, configuration, path, k, R_start, dt_s, most_steps)
         seconds[k - 1] = time.perf_counter() - began
         q[k] = configuration.q
     return Followed(q=q, seconds=seconds, steps=int(counts[0]), unanswered=int(counts[1]))
 
 
-def step(program: Program, configuration: Any, path: ToolPath, k: int, dt_s: float, most: int) -> tuple[int, bool]:
+def step(
+    program: Program, configuration: Any, path: ToolPath, k: int, R_start: np.ndarray, dt_s: float, most: int
+) -> tuple[int, bool]:
     """Towards sample k: how many programs were solved, and whether the last had no answer."""
     task = program.task
     for taken in range(most):
-        R = aim(path, k, program.rotation(configuration))
+        # A free tool is told what it was to begin with, at no cost: told what it is, mink 1.3 errs in its Jacobian.
+        R = R_start if path.orientation == "free" else aim(path, k, program.rotation(configuration))
         task.set_target(program.pose(path.p_world_tool[k], R))
         if most > 1:
             error = task.compute_error(configuration)
@@ -59,9 +62,7 @@ def step(program: Program, configuration: Any, path: ToolPath, k: int, dt_s: flo
 
 
 def aim(path: ToolPath, k: int, R: np.ndarray) -> np.ndarray:
-    """The orientation nearest to the tool's own, R [3, 3], that sample k allows: what is free asks for no turn."""
-    if path.orientation == "free":
-        return R
+    """The orientation nearest to the tool's own, R [3, 3], that sample k allows."""
     if path.orientation == "pose":
         return path.R_world_tool[k]
     z, goal = R[:, 2], path.R_world_tool[k, :, 2]

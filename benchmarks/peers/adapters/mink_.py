@@ -29,12 +29,9 @@ class MinkProgram(Program):
         self.manner = manner
         model = mujoco.MjModel.from_xml_path(str(mjcf))
         self.configuration = mink.Configuration(model)
-        costs = {"position_cost": manner.position_cost, "orientation_cost": manner.orientation_cost}
-        self.task = mink.FrameTask(robot.tool, "body", **costs, lm_damping=manner.lm_damping)
-        self.tasks = [self.task]
+        self.task = mink.FrameTask(robot.tool, "body", **manner.frame_costs)
         if manner.posture_cost:
             self.posture = mink.PostureTask(model, cost=np.where(robot.slides, 0.0, manner.posture_cost))
-            self.tasks.append(self.posture)
         self.limits: list[mink.Limit] = [mink.ConfigurationLimit(model, gain=manner.range_gain)]
         if manner.speed is not None and manner.is_split:
             self.span = MinkSpan(manner.speed * manner.dt_s)
@@ -58,11 +55,6 @@ class MinkProgram(Program):
     def rotation(self, configuration: Any) -> np.ndarray:
         """From the body's pose."""
         return configuration.get_transform_frame_to_world(self.task.frame_name, "body").rotation().as_matrix()
-
-    def rest_at(self, configuration: Any) -> None:
-        """Its posture task's target."""
-        if self.manner.posture_cost:
-            self.posture.set_target_from_configuration(configuration)
 
     def step(self, configuration: Any) -> np.ndarray | None:
         """Within its limits."""

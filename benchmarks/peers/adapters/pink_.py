@@ -34,12 +34,9 @@ class PinkProgram(Program):
         self.data = self.model.createData()
         geometry = self._read_spheres(robot, urdf)
         self.collision = {"collision_model": geometry, "collision_data": geometry.createData()}
-        costs = {"position_cost": manner.position_cost, "orientation_cost": manner.orientation_cost}
-        self.task = FrameTask(robot.tool, **costs, lm_damping=manner.lm_damping)
-        self.tasks = [self.task]
+        self.task = FrameTask(robot.tool, **manner.frame_costs)
         if manner.posture_cost:
             self.posture = PostureTask(cost=np.where(robot.slides, 0.0, manner.posture_cost))
-            self.tasks.append(self.posture)
         limits: list[Limit] = [ConfigurationLimit(self.model, manner.range_gain)]
         if manner.speed is not None and manner.is_split:
             self.span = PinkSpan(manner.speed * manner.dt_s)
@@ -73,11 +70,6 @@ class PinkProgram(Program):
     def rotation(self, configuration: Any) -> np.ndarray:
         """From the frame's placement."""
         return configuration.get_transform_frame_to_world(self.task.frame).rotation
-
-    def rest_at(self, configuration: Any) -> None:
-        """Its posture task's target."""
-        if self.manner.posture_cost:
-            self.posture.set_target_from_configuration(configuration)
 
     def step(self, configuration: Any) -> np.ndarray | None:
         """Within limits and barrier."""
