@@ -246,7 +246,7 @@ def format_followed(name: str, way: dict[str, Any]) -> str:
         f"{way['limit_violations']}",
         f"{way['colliding_samples']}",
         f"{way['smallest_clearance_mm']:.1f}, {'-' if certified is None else f'{certified:.1f}'}",
-        f"{1e3 * way['largest_jump_m']:.1f}, {way['largest_jump_rad']:.3f}",
+        f"{1e3 * way['largest_jump_m']:.1f}, {way['largest_jump_rad']:.2g}",
         " / ".join(format_ms(way["ms"][key]) for key in ("median", "p99", "max")),
     )
     return f"| {name} | {' | '.join(cells)} |"
