@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ikde.report.track_comparison import FIGURES, list_cells
+from track_tables import format_between, format_methods, format_peers_along, format_starts, format_stops
 
 ROOT = Path(__file__).parent.parent
 RESULTS = ROOT / "benchmarks" / "results"
@@ -229,7 +229,7 @@ def make_readme() -> str:
         format_engines(engines),
         format_peers(load("peers"), PEER_TABLES[:1], "benchmarks/peers/README.md"),
         "Four more cases: [docs/speed.md](docs/speed.md#other-solvers).",
-        format_tracks(load("track"), ("differential",)),
+        format_methods(load("track"), ("differential",)),
         "On both bases, and beside Pink and mink: [docs/following.md](docs/following.md#measured).",
         format_batch(load("batch_scale")),
         format_start(load("start_up")),
@@ -254,54 +254,20 @@ def make_speed() -> str:
 
 
 def make_following() -> str:
-    """Everything between the markers of docs/following.md."""
+    """What was measured of our methods."""
     record = load("track")
-    ours = [run for one in record["tracks"] for run in one["runs"] if run["method"] == "continuation"]
-    wheels = [run for run in ours if run["drive"] == "differential"]
     return join(
         f"{format_machine(record['machine'])}.",
-        format_tracks(record, ("differential", "omnidirectional")),
-        "Half-way between samples `continuation` is off the path by at most "
-        f"{min(run['largest_deviation_mm'] for run in ours):.3f} to "
-        f"{max(run['largest_deviation_mm'] for run in ours):.3f} mm; the chord of a base with wheels across its middle "
-        f"heading is at most {max(run['largest_sideways_m_s'] for run in wheels):.0e} m/s.",
-        "What the dead ends of `optimized` on wheels run into: "
-        + "; ".join(format_stops(one) for one in record["tracks"] if one["drive"] == "differential")
-        + ".",
+        format_methods(record, ("differential", "omnidirectional")),
+        format_between(record),
+        format_stops(record),
     )
 
 
-def format_tracks(record: dict[str, Any], drives: Sequence[str]) -> str:
-    """Methods that follow the paper's paths, a row a path, base and method."""
-    records = [one for one in record["tracks"] if one["drive"] in drives]
-    seeds = len({run["seed"] for run in records[0]["runs"]})
-    heads = ["path", *(["base"] if len(drives) > 1 else []), "method", *(c.head for c in FIGURES), "dead ends"]
-    lines = [
-        "The paper's tool paths, 500 samples of 20 ms, by its two methods and by `continuation`: counts and extremes "
-        f"over {seeds} seeds, from where `continuation` begins, graded by plain numpy; times of single samples, of the "
-        "paper's methods with both cores at work; dead ends are random starts from which the end is not reached. "
-        "*Clearance* is certified between samples, too; *σ* is the smallest singular value of the arm's Jacobian in "
-        "what the path asks for. `ikde bench track` makes the same as a page with figures:",
-        "",
-        f"| {' | '.join(heads)} |",
-        f"|{'---|' * len(heads)}",
-    ]
-    for one in records:
-        ends = one["dead_ends"]
-        for method in dict.fromkeys(run["method"] for run in one["runs"]):
-            runs = [run for run in one["runs"] if run["method"] == method]
-            last = f"{ends[method]} of {ends['starts']}" if method in ends else "–"
-            base = [one["drive"]] if len(drives) > 1 else []
-            name = one["name"].rpartition(", ")[2]
-            lines.append(f"| {' | '.join([name, *base, method, *list_cells(runs), last])} |")
-    return "\n".join(lines)
-
-
-def format_stops(one: dict[str, Any]) -> str:
-    """The three reasons that a method's dead ends have most often."""
-    stops = one["dead_ends"]["stops"]["optimized"]
-    most = ", ".join(f"{reason.replace('_', ' ')} ({count})" for reason, count in list(stops.items())[:3])
-    return f"{one['name'].rpartition(', ')[2]} {most or 'none'}"
+def make_following_peers() -> str:
+    """The same beside others."""
+    record = load("peer_tracks")
+    return join(f"{format_machine(record['machine'])}.", format_peers_along(record), format_starts(record))
 
 
 def join(*parts: str) -> str:
@@ -309,13 +275,18 @@ def join(*parts: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def insert(page: str, block: str) -> str:
-    """A page with its block made anew."""
-    return BLOCK.sub(lambda match: f"{match[1]}{block}{match[2]}", page)
+def insert(page: str, *blocks: str) -> str:
+    """A page with its blocks, in their order, made anew."""
+    made = iter(blocks)
+    return BLOCK.sub(lambda match: f"{match[1]}{next(made)}{match[2]}", page)
 
 
 if __name__ == "__main__":
-    pages = {"README.md": make_readme, "docs/speed.md": make_speed, "docs/following.md": make_following}
-    for name, make in pages.items():
+    pages = {
+        "README.md": (make_readme(),),
+        "docs/speed.md": (make_speed(),),
+        "docs/following.md": (make_following(), make_following_peers()),
+    }
+    for name, made in pages.items():
         path = ROOT / name
-        path.write_text(insert(path.read_text(), make()))
+        path.write_text(insert(path.read_text(), *made))

@@ -1,5 +1,6 @@
 """mink: differential inverse kinematics on MuJoCo as a quadratic program, with its collision limit."""
 
+from pathlib import Path
 from typing import Any
 
 import mink
@@ -7,35 +8,43 @@ import mujoco
 import numpy as np
 from protocol import Setup
 
-from adapters.differential import CLEARANCE_M, DAMPING, DT, SOLVER, Differential, task_options
+import ikde
+from adapters.differential import CLEARANCE_M, Differential, Manner, Program, Span, orientation_cost
 
 SEEN_M = 0.1
 
 
-class Limited(Differential):
-    """Its collision limit keeps the robot apart."""
+class MinkSpan(Span, mink.Limit):
+    """As one of mink's limits."""
 
-    def prepare(self, setup: Setup) -> None:
-        """From MJCF; a pair of geom groups for each pair of components."""
-        super().prepare(setup)
-        robot = setup.robot
-        model = mujoco.MjModel.from_xml_path(str(setup.mjcf))
+    def compute_qp_inequalities(self, configuration: Any, dt: float) -> mink.Constraint:
+        """The room that is left."""
+        return mink.Constraint(self.G, self.room(configuration.q))
+
+
+class MinkProgram(Program):
+    """From MJCF; a pair of geom groups for each pair of components."""
+
+    def __init__(self, robot: ikde.Robot, mjcf: Path, manner: Manner) -> None:
+        self.manner = manner
+        model = mujoco.MjModel.from_xml_path(str(mjcf))
         self.configuration = mink.Configuration(model)
-        self.task = mink.FrameTask(frame_name=robot.tool, frame_type="body", **task_options(setup))
-        names = [model.geom(k).name for k in range(model.ngeom)]
-        groups = {
-            component: [name for name in names if name.rpartition("_")[0] == component]
-            for component in robot.components(robot.detector(None).spheres)
-        }
-        pairs = [(groups[a], groups[b]) for a, b in robot.pairs(robot.detector(None))]
-        distances = {"minimum_distance_from_collisions": CLEARANCE_M, "collision_detection_distance": SEEN_M}
-        self.limits = [
-            mink.ConfigurationLimit(model, gain=0.95),
-            mink.CollisionAvoidanceLimit(model, pairs, **distances),
-        ]
+        self.task = mink.FrameTask(robot.tool, "body", **manner.frame_costs)
+        if manner.posture_cost:
+            self.posture = mink.PostureTask(model, cost=np.where(robot.slides, 0.0, manner.posture_cost))
+        self.limits: list[mink.Limit] = [mink.ConfigurationLimit(model, gain=manner.range_gain)]
+        if manner.speed is not None and manner.is_split:
+            self.span = MinkSpan(manner.speed * manner.dt_s)
+            self.limits.append(self.span)
+        elif manner.speed is not None:
+            self.limits.append(mink.VelocityLimit(model, dict(zip(robot.joint_names, manner.speed, strict=True))))
+        # The limit holds a step, not a speed, below gain * distance / dt: a gain of approach * dt means a share.
+        told = {"minimum_distance_from_collisions": CLEARANCE_M, "collision_detection_distance": SEEN_M}
+        pairs = pair_geoms(robot, model)
+        self.limits.append(mink.CollisionAvoidanceLimit(model, pairs, gain=manner.approach * manner.dt_s, **told))
 
-    def convert(self, p: np.ndarray, R: np.ndarray) -> Any:
-        """SE3."""
+    def pose(self, p: np.ndarray, R: np.ndarray) -> Any:
+        """Its own."""
         return mink.SE3.from_rotation_and_translation(mink.SO3.from_matrix(R), p)
 
     def configure(self, q: np.ndarray) -> Any:
@@ -43,9 +52,35 @@ class Limited(Differential):
         self.configuration.update(q)
         return self.configuration
 
+    def rotation(self, configuration: Any) -> np.ndarray:
+        """From the body's pose."""
+        return configuration.get_transform_frame_to_world(self.task.frame_name, "body").rotation().as_matrix()
+
     def step(self, configuration: Any) -> np.ndarray | None:
         """Within its limits."""
+        manner = self.manner
+        told = {"damping": manner.damping, "limits": self.limits, **manner.solver_options}
         try:
-            return mink.solve_ik(configuration, [self.task], DT, SOLVER, damping=DAMPING, limits=self.limits)
+            return mink.solve_ik(configuration, self.tasks, manner.dt_s, manner.solver, **told)
         except mink.MinkError:
             return None
+
+
+def pair_geoms(robot: ikde.Robot, model: mujoco.MjModel) -> list[tuple[list[str], list[str]]]:
+    """The detector's pairs as groups of geoms."""
+    names = [model.geom(k).name for k in range(model.ngeom)]
+    groups = {
+        component: [name for name in names if name.rpartition("_")[0] == component]
+        for component in robot.components(robot.detector(None).spheres)
+    }
+    return [(groups[a], groups[b]) for a, b in robot.pairs(robot.detector(None))]
+
+
+class Limited(Differential):
+    """Its collision limit keeps the robot apart."""
+
+    def prepare(self, setup: Setup) -> None:
+        """Full steps."""
+        super().prepare(setup)
+        self.manner = Manner(orientation_cost=orientation_cost(setup), approach=0.85, range_gain=0.95)
+        self.program = MinkProgram(setup.robot, setup.mjcf, self.manner)
