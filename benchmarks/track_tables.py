@@ -41,8 +41,8 @@ def format_between(record: Record) -> str:
     off = [run["largest_deviation_mm"] for run in ours]
     sideways = max(run["largest_sideways_m_s"] for run in ours if run["drive"] == "differential")
     return (
-        f"Half-way between samples `continuation` is off the path by at most {min(off):.3f} to {max(off):.3f} mm; across "
-        f"its middle heading the chord of a base with wheels runs at no more than {sideways:.0e} m/s."
+        f"Half-way between samples `continuation` is off the path by at most {min(off):.3f} to {max(off):.3f} mm; "
+        f"across its middle heading the chord of a base with wheels runs at no more than {sideways:.0e} m/s."
     )
 
 
@@ -61,8 +61,8 @@ def format_peers_along(record: Record) -> str:
     """The same paths followed by ikde, Pink and mink, a row a path and way."""
     heads = ("path", "way", "reached", "within 1 mm", "largest error, RMS [mm]", "[rad]", "limits broken", "colliding")
     lines = [
-        "*Reached*: within 0.001 mm along each axis and 1e-4 rad; errors are of the worst axis. Times are of one sample, "
-        f"its median over {record['options']['rounds']} rounds: median / p99 / max over the samples.",
+        "*Reached*: within 0.001 mm along each axis and 1e-4 rad; errors are of the worst axis. Times are of one "
+        f"sample, its median over {record['options']['rounds']} rounds: median / p99 / max over the samples.",
         "",
         *make_head([*heads, "clearance at samples, between [mm]", "largest step [mm], [deg]", "a sample [ms]"]),
     ]
