@@ -4,8 +4,8 @@
     python benchmarks/track.py --quick   # one seed, four starts; writes nothing
 
 `ikde.bench.tracks` runs and counts, as for `ikde bench track`: all methods begin where `continuation` begins, what
-`typical` does is graded as if the base could slide, times are wall times of each sample, and the paper's methods run on
-all cores at once. Writes benchmarks/results/track.json after each task.
+`typical` does is graded as if the base could slide, times are wall times of each sample, of the first seed, which runs
+alone; the others run on all cores at once. Writes benchmarks/results/track.json after each task.
 """
 
 import argparse

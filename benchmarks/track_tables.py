@@ -17,8 +17,8 @@ def format_methods(record: Record, drives: Sequence[str]) -> str:
     heads = ["path", *base, "method", *(column.head for column in FIGURES), "dead ends"]
     lines = [
         "The paper's tool paths, 500 samples of 20 ms, by its two methods and by `continuation`: counts and extremes "
-        f"over {seeds} seeds, from where `continuation` begins, graded by plain numpy; times of single samples, of the "
-        "paper's methods with all cores at work; dead ends are random starts from which the end is not reached. "
+        f"over {seeds} seeds, from where `continuation` begins, graded by plain numpy; times of single samples, of "
+        "the first seed, which ran alone; dead ends are random starts from which the end is not reached. "
         "*Clearance* is certified between samples, too; *σ* is the smallest singular value of the arm's Jacobian in "
         "what the path asks for. `ikde bench track` makes the same as a page with figures:",
         "",

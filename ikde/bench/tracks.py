@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
+from itertools import chain
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -75,14 +76,17 @@ def count_runs(tracks: int, methods: Sequence[TrackMethod], budget: TrackBudget)
 def compare_methods(
     plan: TrackPlan, methods: Sequence[TrackMethod], budget: TrackBudget, progress: Progress
 ) -> Compared:
-    """Follow one track by each method with every seed, and from every start; all begin where `continuation` does."""
+    """Follow one track by each method with every seed, and from every start; all begin where `continuation` does.
+
+    The first seed has the machine for itself: its times are what a sample takes.
+    """
     motions, runs, seeds = {}, [], range(plan.seed, plan.seed + budget.seeds)
     start = find_start(plan) if set(methods) - {"continuation"} else None
     for method in methods:
         progress.begin(f"{plan.name}: {method}")
         given = None if method == "continuation" else start
         run = partial(_follow_seed, plan, method, given)
-        for seed, motion in zip(seeds, _side_by_side(run, seeds, threads=1 if given is None else None), strict=True):
+        for seed, motion in zip(seeds, chain([run(seeds[0])], _side_by_side(run, seeds[1:])), strict=True):
             motions.setdefault(method, motion)
             runs.append({"method": method, "drive": motion.trajectory.drive, "seed": seed, **measure(motion)})
             progress.advance(1)
@@ -104,9 +108,9 @@ def _follow_seed(plan: TrackPlan, method: TrackMethod, start: Floats | None, see
     return summarise_track(plan.robot, plan.detector, trajectory)
 
 
-def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item], threads: int | None = None) -> Iterator[Result]:
+def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
     """Results in order, an item a core: the kernels let go of Python's lock."""
-    with ThreadPoolExecutor(threads or usable_cores()) as pool:
+    with ThreadPoolExecutor(usable_cores()) as pool:
         try:
             yield from pool.map(run, items)
         except BaseException:

@@ -20,6 +20,7 @@ from ikde.kernels.pose_error import POSITION
 from ikde.kernels.wishes import AGILE, finish_wish, start_wish, wish_agile, wish_apart, wish_middle
 
 STIFFNESS = 1e6  # of the tool's error, against the wish, if both are measured in largest steps
+USUAL_ROUNDS, STIFFER, STIFFEST = 3, 4.0, 1e12  # then it grows: near singularities the wish damps too much
 SLACK = -1e-9  # m: fences are kept to it
 STUCK_ROUNDS = 4  # after so many a step without a way behind all fences is given up
 
@@ -131,7 +132,7 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
         return NO_STEP, 0, 0.0
     for k in range(out_step.size):
         out_step[k] = min(max(last[k], work.system.lower[k]), work.system.upper[k])
-    is_near, least = False, math.inf
+    is_near, least, pull = False, math.inf, STIFFNESS
     for round_ in range(track.most_rounds):
         take_drive_step(drive, q, out_step, out_q)
         pose(robot, out_q, work)
@@ -146,7 +147,9 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
         if round_ == track.most_rounds - 1:
             break
         rows = fill_step_jacobian(robot, drive, track, target, index, q, out_step, work)
-        stiffness = STIFFNESS / measure_travel(work.jacobian, rows)
+        if round_ >= USUAL_ROUNDS:
+            pull = min(STIFFER * pull, STIFFEST)
+        stiffness = pull / measure_travel(work.jacobian, rows)
         found = solve_step(
             work.jacobian, work.error, rows, stiffness, work.wish, work.fences, count, work.system, out_step
         )

@@ -43,12 +43,6 @@ class Certificate:
         """True if nothing can touch between samples."""
         return bool(self.clearance_m > 0.0)
 
-    @property
-    def first_doubt(self) -> int | None:
-        """The first segment, from sample k to k + 1, that is not certified; None if all are."""
-        weak = np.flatnonzero(~(self.segment_m > 0.0))
-        return int(weak[0]) if len(weak) else None
-
 
 def certify(robot: Robot, path: ToolPath, q: Floats, *, drive: str, detector: Detector | None) -> Certificate:
     """Bound the clearance of the motion through `q` [M + 1, N], and measure the tool at its mid-points."""
@@ -71,7 +65,8 @@ def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> tuple[
         return lower, 0
     radii = travel_radii(robot, detector)
     gaps = compute_gaps(robot, detector.spheres, pairs, q)
-    goal = gaps.min() - max(SHARP_M, SHARP * abs(gaps.min()))
+    least = gaps.min()
+    goal = max(least - max(SHARP_M, SHARP * abs(least)), 0.5 * least if least > 0.0 else -np.inf)
     which, start, end = np.arange(len(lower)), q[:-1], q[1:]
     before, after, evaluations = gaps[:-1], gaps[1:], len(q)
     for halving in range(MOST_HALVINGS + 1):

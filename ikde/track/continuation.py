@@ -16,7 +16,7 @@ from ikde.track.refusal import (
     tell_too_far,
     tell_uncertified,
 )
-from ikde.track.starts import Frozen, draw_starts, settle_start
+from ikde.track.starts import MORE_DRAWS, Frozen, draw_starts, settle_start
 from ikde.track.trajectory import TrackStop
 
 WIDER = 8.0  # by how much the margin grows if a motion is not certified between its samples
@@ -61,6 +61,9 @@ class Continuation:
         else:
             starts = settle_start(self.follower, start, self.frozen)[None]
         found = self._certified(starts, end)
+        if start is None and not self._is_over(found, end):
+            more, _ = draw_starts(self.follower, self.frozen, self.seed, MORE_DRAWS)
+            found = max(found, self._certified(more, end), key=lambda found: found.course.last)
         if found.stop is not None or found.course.last == self.follower.path.samples:
             return found
         if found.course.last == end and beyond is not None:
@@ -82,6 +85,10 @@ class Continuation:
         assert best is not None
         return best
 
+    def _is_over(self, found: Found, end: int) -> bool:
+        """Whether other starts can't lead any farther."""
+        return found.course.last == end or not self._is_possible(found.course.last + 1)
+
     def _is_possible(self, sample: int) -> bool:
         return self._ask(sample).reached
 
@@ -90,7 +97,8 @@ class Continuation:
         if sample not in self.asked:
             follower = self.follower
             told = {"detector": follower.detector or "none", "freeze": self.frozen}
-            self.asked[sample] = solve(follower.robot, follower.path.targets()[sample], **told)
+            settings = follower.limits.tolerances
+            self.asked[sample] = solve(follower.robot, follower.path.targets()[sample], settings, **told)
         return self.asked[sample]
 
     def _find_out_of_reach(self) -> tuple[int, float] | None:

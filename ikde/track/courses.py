@@ -19,7 +19,8 @@ BIN_M, ENOUGH_M = 0.005, 0.05  # clearance counts in such steps, and up to here
 FIRST_BACK = 8  # samples to go back at first; twice as many each time
 TRIES = 16  # at each
 DRIFT_SHARE = 0.4  # of the largest steps: spread of the drift
-MOST_RETURNS = 300
+MOST_COURSES = 8  # from different starts, that are gone back on
+MOST_RETURNS = 300  # of one course; of several, at least a third of them each
 
 
 def choose_course(
@@ -38,7 +39,14 @@ def choose_course(
             return min(complete, key=_badness)
         if not is_possible(farthest(tried).last + 1):
             return farthest(tried)
-    return _return(follower, farthest(tried), end, np.random.default_rng(seed))
+    rng, best = np.random.default_rng(seed), farthest(tried)
+    few = _farthest_few(tried)
+    most = max(MOST_RETURNS // len(few), MOST_RETURNS // 3)
+    for course in few:
+        best = farthest((best, _return(follower, course, end, most, rng)))
+        if best.last == end:
+            break
+    return best
 
 
 def farthest(courses: Iterable[Course]) -> Course:
@@ -46,22 +54,28 @@ def farthest(courses: Iterable[Course]) -> Course:
     return max(courses, key=lambda course: course.last)
 
 
+def _farthest_few(courses: Iterable[Course]) -> list[Course]:
+    """The courses that came farthest, one a start."""
+    ordered = sorted(courses, key=lambda course: -course.last)
+    return list({course.q[0].tobytes(): course for course in reversed(ordered)}.values())[::-1][:MOST_COURSES]
+
+
 def _badness(course: Course) -> tuple[float, float]:
     """Little clearance first, then much motion."""
     return -np.floor(min(course.clearance_m, ENOUGH_M) / BIN_M), course.motion
 
 
-def _return(follower: Follower, course: Course, end: int, rng: np.random.Generator) -> Course:
-    """Go back and try again until the end is reached, or nothing comes farther, or the returns are spent."""
+def _return(follower: Follower, course: Course, end: int, most: int, rng: np.random.Generator) -> Course:
+    """Go back and try again until the end is reached, or nothing comes farther, or `most` returns are spent."""
     returns, further = 0, course
-    while further is not None and further.last < end and returns < MOST_RETURNS:
+    while further is not None and further.last < end and returns < most:
         course, further = further, None
         for other in _other_ways(follower, course, end, rng):
             returns += 1
             if other.last > course.last:
                 further = other
                 break
-            if returns == MOST_RETURNS:
+            if returns == most:
                 break
     return course if further is None else further
 

@@ -13,13 +13,13 @@ from ikde.kernels.arrays import COORDINATE, DriveArrays, Floats, Ints
 from ikde.model.pack import frame_names, pack_robot
 from ikde.model.robot import Robot
 from ikde.model.tree import build_tree
-from ikde.solver.engines.pool import find_base
+from ikde.solver.engines.pool import find_planar_base
 from ikde.track.limits import MotionLimits
 from ikde.track.spec import DRIVES
 
 WHEEL_RADIUS_M = 0.100  # [Qiao2022]
 HALF_TRACK_M = 0.259  # calibrated: not printed
-FREE_M, FREE_RAD = 0.25, 0.5 * np.pi  # the largest step of one sample where no speed limit is asked for
+MOST_M, MOST_RAD = 0.5, 0.5 * np.pi  # of one sample, whatever the speed limits: a step is found near its start
 
 
 def step_base(start: Floats, v: Floats, omega: Floats, dt_s: float) -> Floats:
@@ -61,7 +61,7 @@ def find_wheels(robot: Robot, drive: str) -> Ints:
         raise InputError(f"expected one of {', '.join(DRIVES)}, got {drive!r}", ("drive",))
     if drive == "omnidirectional":
         return np.full(3, -1)
-    base = find_base(robot, robot.lower, robot.upper)
+    base = find_planar_base(robot).copy()
     if base[0] < 0:
         raise InputError(f"{robot.name} has no base that drives in the plane and turns", ("drive",))
     return base
@@ -72,10 +72,10 @@ def pack_drive(
 ) -> DriveArrays:
     """The drive for the kernels: the largest step of one sample, and by how much a step may differ from the last."""
     base = find_wheels(robot, drive)
-    free = np.where(robot.slides, FREE_M, FREE_RAD) / dt_s
-    speed = free if limits.speed is None else np.where(np.isinf(limits.speed), free, limits.speed)
+    most = largest_steps(robot)
     is_frozen = np.isin(robot.joint_names, list(frozen)) | (robot.upper <= robot.lower)
-    largest = np.where(is_frozen, 0.0, speed * dt_s)
+    asked = np.inf if limits.speed is None else limits.speed * dt_s
+    largest = np.where(is_frozen, 0.0, np.minimum(asked, most))
     change = np.full(len(largest), np.inf) if limits.acceleration is None else limits.acceleration * dt_s**2
     others = np.array([c for c in pack_robot(robot).bodies[1:, COORDINATE].tolist() if c not in base])
     tree = build_tree(robot)
@@ -92,6 +92,11 @@ def pack_drive(
         p_body_centre=_to_packed(robot, centre),
         farthest=np.inf if limits.farthest_m is None else float(limits.farthest_m),
     )
+
+
+def largest_steps(robot: Robot) -> Floats:
+    """[N] m or rad: what a joint moves in one sample at most."""
+    return np.where(robot.slides, MOST_M, MOST_RAD)
 
 
 def _by_step(values: Floats, base: Ints, others: Ints) -> Floats:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, Ints, TargetArrays, TrackArrays
-from ikde.kernels.tracking import REACHED, make_sample, track_span
+from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.robot import Detector, Robot
 from ikde.solver.engines.pool import rotation_length_m
@@ -15,12 +15,12 @@ from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 
-REACH_M = 0.1  # pairs nearer than this are looked at, and pushed apart
+REACH_M = 0.08  # pairs nearer than this are looked at, and pushed apart
 MARGIN_M = 1e-4  # what every pair keeps above the safe distance, so that curved motion between samples keeps some
 GOAL_M, GOAL_RAD = 1e-9, 1e-8  # a sample is refined until it is met
 SHARE = 0.5  # of the tolerances, within which a sample is accepted that can't be refined
 ROUNDING = 1e-12  # m, rad: ranges are kept this far from their ends
-MOST_ROUNDS = 30  # of one sample: 2 are usual
+MOST_ROUNDS = 30  # of one sample: 2 are usual, 10 in a twofold singularity
 FARTHEST = 1e5  # m or rad: no range
 
 
@@ -38,8 +38,6 @@ class Course:
     """[K + 1] what the nearest pair keeps beyond the margin, m; inf beyond the reach."""
     last: int
     """The last sample that was reached."""
-    status: int
-    """How the one after it ended (`kernels/tracking.py`)."""
 
     @property
     def clearance_m(self) -> float:
@@ -92,14 +90,13 @@ class Follower:
         q = np.zeros((samples, len(start)))
         q[0] = start
         least = np.full(samples, np.inf)
-        return Course(q=q, steps=np.zeros((samples, self.size)), weights=rows, least=least, last=0, status=REACHED)
+        return Course(q=q, steps=np.zeros((samples, self.size)), weights=rows, least=least, last=0)
 
     def follow(self, course: Course, end: int | None = None) -> Course:
         """Go on from the last sample to `end`, by default the path's, or as far as it goes. Arrays are written to."""
         last = self.path.samples if end is None else end
         rounds = np.zeros(len(course.q), dtype=np.int64)
-        reached, status = self._run(course, course.last, last, rounds)
-        return replace(course, last=reached, status=status)
+        return replace(course, last=self._run(course, course.last, last, rounds))
 
     def follow_timed(self, course: Course) -> Floats:
         """Follow samples 1 .. last again one by one, as a controller would; returns the seconds of each [last]."""
@@ -111,8 +108,8 @@ class Follower:
             seconds[k] = time.perf_counter() - started
         return seconds
 
-    def _run(self, course: Course, first: int, last: int, rounds: Ints) -> tuple[int, int]:
-        return track_span(
+    def _run(self, course: Course, first: int, last: int, rounds: Ints) -> int:
+        reached, _ = track_span(
             pack_robot(self.robot),
             pack_detector(self.robot, self.detector),
             self.drive,
@@ -127,6 +124,7 @@ class Follower:
             rounds,
             course.least,
         )
+        return reached
 
 
 def make_follower(

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD, Robot
+from ikde.solver.settings import SolveSettings
 
 SLIDE_SPEED_M_S = 0.5  # the print's 10 as 10 mm in a sample of 20 ms [Qiao2022, section 4]
 TURN_SPEED_RAD_S = 0.5 * np.pi
@@ -58,6 +59,13 @@ class MotionLimits:
         """Those of the paper for any robot: 0.5 m/s for what slides, pi/2 rad/s for what turns [Qiao2022]."""
         speed = np.where(robot.slides, SLIDE_SPEED_M_S, TURN_SPEED_RAD_S)
         return cls(**{"speed": speed, **changes})  # type: ignore[arg-type]
+
+    @property
+    def tolerances(self) -> SolveSettings:
+        """What the solver is told about the errors."""
+        return SolveSettings(
+            position_tolerance_m=self.position_error_m, orientation_tolerance_rad=self.orientation_error_rad
+        )
 
     def check(self, robot: Robot) -> Self:
         """Return the limits; raises `InputError` if they don't fit the robot."""

@@ -21,11 +21,13 @@ from ikde.kernels.step_evolution import (
     make_step_workspace,
 )
 from ikde.model.pack import pack_detector, pack_robot
-from ikde.solver.engines.pool import find_base
+from ikde.solver.engines.pool import find_planar_base
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import compute_orientation_errors
+from ikde.track.drive import WHEEL_RADIUS_M, wheel_speeds
 from ikde.track.follow import Follower
-from ikde.track.refusal import first_out_of_reach, tell_out_of_reach
+from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach
+from ikde.track.starts import is_near
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
 WITHIN = 1.0 - 1e-6  # of the tolerances: what rounding can't undo
@@ -97,7 +99,7 @@ def follow_optimized(
         verdict, pair, *counts[k - 1] = evolve(k, search)
         seconds[k - 1] = time.perf_counter() - started
         if verdict != SOLVED:
-            stop = tell_unsolved(follower, settings, k, verdict, pair, q[k], steps[k])
+            stop = tell_unsolved(follower, settings, k, verdict, pair, q[k], steps[k - 1 : k + 1])
             return _cut(k - 1, q, seconds, counts, stop)
     return _cut(samples, q, seconds, counts, None)
 
@@ -115,7 +117,7 @@ def _cut(last: int, q: Floats, seconds: Floats, counts: Floats, stop: TrackStop 
 def pack_step_search(follower: Follower, settings: OptimizedSettings) -> StepSearchArrays:
     """The settings for the kernel."""
     robot, limits = follower.robot, follower.limits
-    is_base = np.isin(np.arange(len(robot.joints)), find_base(robot, robot.lower, robot.upper))
+    is_base = np.isin(np.arange(len(robot.joints)), find_planar_base(robot))
     odd, even = (STRATEGIES.index(name) for name in settings.strategies)
     return StepSearchArrays(
         population=settings.population,
@@ -134,9 +136,9 @@ def pack_step_search(follower: Follower, settings: OptimizedSettings) -> StepSea
 
 
 def tell_unsolved(
-    follower: Follower, settings: OptimizedSettings, sample: int, verdict: int, pair: int, q: Floats, step: Floats
+    follower: Follower, settings: OptimizedSettings, sample: int, verdict: int, pair: int, q: Floats, steps: Floats
 ) -> TrackStop:
-    """Why no population was solved: `q` [N] and `step` [D] are the best of all."""
+    """Why no population was solved: `q` [N] is the best of all, `steps` [2, D] the one before and that to `q`."""
     when = f"sample {sample} ({sample * follower.path.dt_s:.4g} s)"
     told = f"the best of {1 + settings.returns} populations"
     if verdict == NO_BOX:
@@ -147,18 +149,35 @@ def tell_unsolved(
         text = f"{when}: {names[0]} and {names[1]} collide in {told}"
         return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=names)
     if verdict == LIMITED:
-        text = f"{when}: {told} breaks the wheels' limit, the largest distance or the base's range"
-        return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
+        reason, what, limit = find_broken(follower, q, steps[1])
+        return TrackStop(sample=sample, reason=reason, text=f"{when}: {told} breaks {what}", limit=limit)
     beyond = first_out_of_reach(follower, follower.robot.lower, follower.robot.upper)
     if beyond is not None and beyond[0] == sample:
         return tell_out_of_reach(follower, *beyond)
     far = f"{told} is {_measure_miss(follower, sample, q)} away"
-    fast = np.abs(step) * (follower.drive.largest > 0.0)
-    if fast.max() < AT_LIMIT:
-        return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=f"{when}: {far}")
-    name = _entry_name(follower, int(np.argmax(fast)))
-    text = f"{when}: {far}, with {name} at its speed limit"
-    return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
+    fast, hard = np.abs(steps[1]) * (follower.drive.largest > 0.0), np.abs(steps[1] - steps[0]) / follower.drive.change
+    for share, reason, what in (
+        (fast, TrackStopReason.SPEED_LIMIT, "speed"),
+        (hard, TrackStopReason.ACCELERATION_LIMIT, "acceleration"),
+    ):
+        if share.max() >= AT_LIMIT and (sample > 1 or share is fast):
+            name = entry_name(follower, int(np.argmax(share)))
+            return TrackStop(
+                sample=sample, reason=reason, text=f"{when}: {far}, with {name} at its {what} limit", limit=name
+            )
+    return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=f"{when}: {far}")
+
+
+def find_broken(follower: Follower, q: Floats, step: Floats) -> tuple[TrackStopReason, str, str | None]:
+    """Which limit a free step [D] to `q` [N] at its target breaks, in words, and its name."""
+    drive = follower.drive
+    if drive.base[0] >= 0:
+        v, omega = step[:2] * drive.largest[:2]
+        if np.abs(wheel_speeds(v, omega)).max() * WHEEL_RADIUS_M > drive.wheel_travel:
+            return TrackStopReason.WHEEL_LIMIT, "the wheels' limit", "wheels"
+    if not is_near(follower, q[None])[0]:
+        return TrackStopReason.DISTANCE_LIMIT, "the largest distance", follower.limits.center
+    return TrackStopReason.JOINT_LIMIT, "the base's range", None
 
 
 def _measure_miss(follower: Follower, sample: int, q: Floats) -> str:
@@ -168,11 +187,3 @@ def _measure_miss(follower: Follower, sample: int, q: Floats) -> str:
     far = float(np.linalg.norm(tool[0, :3, 3] - target.p_world_tool[0]))
     turn = float(compute_orientation_errors(target, tool[:, :3, :3])[0])
     return f"{1e3 * far:.3g} mm" + (f" and {turn:.3g} rad" if turn > 0.0 else "")
-
-
-def _entry_name(follower: Follower, entry: int) -> str:
-    """What an entry of a step moves."""
-    first = follower.size - len(follower.drive.others)
-    if entry < first:
-        return "the base" if entry == 0 else follower.robot.joint_names[follower.drive.base[2]]
-    return follower.robot.joint_names[follower.drive.others[entry - first]]

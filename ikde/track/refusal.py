@@ -12,11 +12,10 @@ from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import reach_excess_m
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
-from ikde.track.drive import wheel_speeds
+from ikde.track.drive import largest_steps, wheel_speeds
 from ikde.track.follow import FARTHEST, Course, Follower
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
-PATIENT_ROUNDS = 100
 FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 OF_SOLVER = {
     StopReason.OUT_OF_REACH: TrackStopReason.OUT_OF_REACH,
@@ -66,7 +65,7 @@ def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
 def explain_stop(follower: Follower, course: Course, static: SolveResult) -> TrackStop:
     """Why the sample after the course's last is not reached; `static` is what the solver says about it alone."""
     sample = course.last + 1
-    for look in (_without_wheels, _without_distance, _without_acceleration, _without_collision, _without_ranges):
+    for look in LOOKS:
         stop = look(follower, course, sample)
         if stop is not None:
             return stop
@@ -88,19 +87,18 @@ def tell_uncertified(follower: Follower, sample: int) -> TrackStop:
 def _try(follower: Follower, course: Course, sample: int, scale: Floats | float = 1.0) -> Finding | None:
     """The step to a sample, if there is one; `scale` turns shares of the usual largest step into this follower's."""
     q, step = np.zeros_like(course.q[0]), np.zeros(follower.size)
-    changed = follower.with_track(most_rounds=PATIENT_ROUNDS)
     status, _, _ = track_sample(
         pack_robot(follower.robot),
         pack_detector(follower.robot, follower.detector),
-        changed.drive,
-        changed.track,
-        changed.target,
+        follower.drive,
+        follower.track,
+        follower.target,
         sample,
         course.weights[sample],
         course.q[course.last],
         course.steps[course.last] * scale,
         sample == 1,
-        changed.room,
+        follower.room,
         q,
         step,
     )
@@ -115,7 +113,8 @@ def _without_collision(follower: Follower, course: Course, sample: int) -> Track
     gaps = compute_gaps(follower.robot, follower.detector.spheres, pairs, found[0])
     worst = int(np.argmin(gaps))
     pair, gap = pairs[worst], 1e3 * float(gaps[worst])
-    how = f"are {gap:.3g} mm apart" if gap > 0.0 else f"overlap by {-gap:.3g} mm"
+    least = 1e3 * follower.track.margin
+    how = f"are {gap:.3g} mm apart, not {least:.3g} mm," if gap > 0.0 else f"overlap by {-gap:.3g} mm"
     text = f"{_when(follower, sample)}: {pair[0]} and {pair[1]} {how} in the only step that was found"
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
@@ -127,6 +126,8 @@ def _without_ranges(follower: Follower, course: Course, sample: int) -> TrackSto
         return None
     beyond = np.maximum(ranges[0] - found[0], found[0] - ranges[1])
     joint = int(np.argmax(beyond))
+    if beyond[joint] <= 0.0:
+        return None
     name = follower.robot.joint_names[joint]
     limits = f"[{ranges[0, joint]:.4g}, {ranges[1, joint]:.4g}]"
     text = f"{_when(follower, sample)}: {name} would have to be at {found[0][joint]:.4g}, its range is {limits}"
@@ -141,9 +142,11 @@ def _without_acceleration(follower: Follower, course: Course, sample: int) -> Tr
     change = np.abs(found[1] - course.steps[course.last])
     worst = int(np.argmax(change / drive.change))
     per_second = drive.largest[worst] / follower.path.dt_s**2
-    name = _entry_name(follower, worst)
+    name = entry_name(follower, worst)
     needed, limit = change[worst] * per_second, drive.change[worst] * per_second
-    text = f"{_when(follower, sample)}: {name} would need an acceleration of {needed:.4g}, its limit is {limit:.4g}"
+    unit = f"{_unit(follower, worst)}/s\u00b2"
+    needed, limit = (f"{value:.4g} {unit}" for value in (needed, limit))
+    text = f"{_when(follower, sample)}: {name} would need an acceleration of {needed}, its limit is {limit}"
     return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text, limit=name)
 
 
@@ -175,12 +178,45 @@ def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop
         if found is None:
             continue
         worst = int(np.argmax(np.abs(found[1])))
-        limit, name = usual[worst] / follower.path.dt_s, _entry_name(follower, worst)
-        unit = "m/s" if follower.robot.joints[_entry_joint(follower, worst)].kind == "prismatic" else "rad/s"
-        needed = f"{factor * abs(found[1][worst]) * limit:.4g} {unit}"
-        text = f"{_when(follower, sample)}: {name} would have to move at {needed}, its limit is {limit:.4g} {unit}"
-        return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
+        if factor * abs(found[1][worst]) > 1.0:
+            name, needed = entry_name(follower, worst), factor * abs(found[1][worst]) * usual[worst]
+            text = f"{_when(follower, sample)}: {name} would have to move {_tell_speed(follower, worst, needed)}"
+            return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
     return None
+
+
+def _tell_speed(follower: Follower, entry: int, needed: float) -> str:
+    """How fast a step of `needed` m or rad would be, and what it may be; or that it is too far for one step."""
+    most, unit = follower.drive.largest[entry], _unit(follower, entry)
+    if most < largest_steps(follower.robot)[_entry_joint(follower, entry)]:
+        dt_s = follower.path.dt_s
+        return f"at {needed / dt_s:.4g} {unit}/s, its limit is {most / dt_s:.4g} {unit}/s"
+    return f"by {needed:.4g} {unit} in one sample, at most {most:.4g} {unit} are tried: shorter samples would help"
+
+
+def _without_frozen(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+    """A step is possible if what may not move at all may."""
+    usual = follower.drive.largest
+    entries = range(follower.size)
+    frozen = usual <= 0.0
+    freed = [largest_steps(follower.robot)[_entry_joint(follower, entry)] for entry in entries]
+    found = _try(follower.with_drive(largest=np.where(frozen, freed, usual)), course, sample) if frozen.any() else None
+    if found is None:
+        return None
+    name = entry_name(follower, int(np.argmax(np.abs(found[1]) * frozen)))
+    text = f"{_when(follower, sample)}: {name} would have to move, and may not"
+    return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
+
+
+LOOKS = (
+    _without_wheels,
+    _without_distance,
+    _without_acceleration,
+    _without_collision,
+    _without_ranges,
+    _without_frozen,
+)
+"""What is taken away, one after the other."""
 
 
 def _entry_joint(follower: Follower, entry: int) -> int:
@@ -190,9 +226,14 @@ def _entry_joint(follower: Follower, entry: int) -> int:
     return int(drive.others[entry - wheels] if entry >= wheels else drive.base[0 if entry == 0 else 2])
 
 
-def _entry_name(follower: Follower, entry: int) -> str:
+def entry_name(follower: Follower, entry: int) -> str:
+    """What an entry of a step moves."""
     is_driven = follower.drive.base[0] >= 0 and entry == 0
     return "the base" if is_driven else follower.robot.joint_names[_entry_joint(follower, entry)]
+
+
+def _unit(follower: Follower, entry: int) -> str:
+    return "m" if follower.robot.joints[_entry_joint(follower, entry)].kind == "prismatic" else "rad"
 
 
 def _when(follower: Follower, sample: int) -> str:

@@ -15,7 +15,7 @@ from ikde.solver.verify import Bools, verify
 from ikde.track.follow import Follower
 
 EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
-DRAWS = 16  # starts that the solver finds by itself, and as many near random configurations
+DRAWS, MORE_DRAWS = 16, 64  # starts that the solver finds by itself, and as many near random configurations
 NEAR_RESTARTS = 8
 ROUNDING = 1e-12  # m or rad
 LARGEST_SHIFT = 0.05  # m or rad: how far a given start may stand from what meets the first pose
@@ -23,7 +23,7 @@ LARGEST_SHIFT = 0.05  # m or rad: how far a given start may stand from what meet
 Frozen = Mapping[str, float]
 
 
-def draw_starts(follower: Follower, frozen: Frozen, seed: int) -> tuple[Floats, SolveResult]:
+def draw_starts(follower: Follower, frozen: Frozen, seed: int, draws: int = DRAWS) -> tuple[Floats, SolveResult]:
     """Starts [S, N], all different and within (18), and what the solver says about the first pose."""
     robot, target = follower.robot, follower.path.targets()[0]
     told = {"detector": follower.detector or "none", "freeze": frozen}
@@ -31,11 +31,11 @@ def draw_starts(follower: Follower, frozen: Frozen, seed: int) -> tuple[Floats, 
     if not first.reached:
         return np.empty((0, len(robot.joints))), first
     told |= {"threads": 1, "explain_failures": False}
-    rows = solve_many(robot, [target] * DRAWS, EXACT, seed=seed, **told)
+    rows = solve_many(robot, [target] * draws, EXACT, seed=seed, **told)
     found = [rows.q[rows.reached]]
     rng = np.random.default_rng(seed)
     quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")
-    for stream in range(DRAWS):
+    for stream in range(draws):
         near = np.where(robot.slides, robot.home, rng.uniform(robot.lower, robot.upper))
         row = solve_many(robot, [target], quick, seed=stream, near=near, **told)
         found.append(row.q[row.reached])
@@ -67,11 +67,8 @@ def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
     moved = [name for name, value in frozen.items() if abs(q[robot.joint_names.index(name)] - value) > ROUNDING]
     if moved:
         raise InputError(f"{', '.join(moved)} is not where it is frozen", ("start",))
-    told = SolveSettings(
-        position_tolerance_m=limits.position_error_m, orientation_tolerance_rad=limits.orientation_error_rad
-    )
     detector = follower.detector or "none"
-    grade = verify(robot, target, q, settings=told, detector=detector)
+    grade = verify(robot, target, q, settings=limits.tolerances, detector=detector)
     if grade.self_collision:
         a, b = grade.colliding_pairs[0]
         raise InputError(f"{a} and {b} collide", ("start",))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
-from ikde.solver.engines.pool import find_base
+from ikde.solver.engines.pool import find_planar_base
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
@@ -106,7 +106,7 @@ def grade_motion(
         error_m=graded.error_m,
         orientation_error_rad=graded.orientation_error_rad,
         clearance_m=graded.gaps_m.min(axis=1, initial=np.inf) if detector else None,
-        certified_clearance_m=proof.clearance_m if proof and detector and len(q) else None,
+        certified_clearance_m=min(proof.clearance_m, graded.clearance_m) if proof and detector and len(q) else None,
         deviation_m=proof.deviation_m if proof else None,
         deviation_rad=proof.deviation_rad if proof else None,
         breaches=graded.breaches,
@@ -115,12 +115,12 @@ def grade_motion(
 
 def base_joints(robot: Robot) -> tuple[str, ...]:
     """Names of x, y and heading of a base that drives in the plane; none for a robot without."""
-    return tuple(robot.joint_names[k] for k in find_base(robot, robot.lower, robot.upper) if k >= 0)
+    return tuple(robot.joint_names[k] for k in find_planar_base(robot) if k >= 0)
 
 
 def base_speeds(robot: Robot, speeds: Floats) -> tuple[Floats, Floats]:
     """Speeds of a base along x and y [M, 2] in m/s and of its heading [M] in rad/s, out of all joints' [M, N]."""
-    base = find_base(robot, robot.lower, robot.upper)
+    base = find_planar_base(robot)
     if base[0] < 0:
         return np.zeros((len(speeds), 2)), np.zeros(len(speeds))
     return speeds[:, base[:2]], speeds[:, base[2]]

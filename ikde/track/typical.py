@@ -15,7 +15,7 @@ from ikde.kernels.evolution import IGNORE, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_detector, pack_robot
-from ikde.solver.engines.pool import find_base
+from ikde.solver.engines.pool import find_planar_base
 from ikde.track.follow import Follower
 
 
@@ -70,7 +70,7 @@ def bound_sample(follower: Follower, settings: TypicalSettings, q: Floats) -> tu
     """Ranges [N] of the sample after `q` [N]: those of the joints; of a base, about where it is."""
     robot = follower.robot
     lower, upper = robot.lower.copy(), robot.upper.copy()
-    xy = find_base(robot, robot.lower, robot.upper)[:2]
+    xy = find_planar_base(robot)[:2]
     if xy[0] >= 0:
         lower[xy] = np.maximum(lower[xy], q[xy] - settings.base_range_m)
         upper[xy] = np.minimum(upper[xy], q[xy] + settings.base_range_m)

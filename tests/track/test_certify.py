@@ -90,7 +90,7 @@ def test_without_a_detector_nothing_can_touch(qiao, rng):
 def test_no_segment_no_doubt(qiao, samples):
     path = ToolPath.through([[0, 0, 1], [0, 0.1, 1]], dt_s=0.02)
     proof = certify(qiao, path, np.zeros((samples, 9)), drive="differential", detector=qiao.detector(None))
-    assert (proof.clearance_m, proof.first_doubt, proof.is_free, len(proof.deviation_m)) == (np.inf, None, True, 0)
+    assert (proof.clearance_m, proof.is_free, len(proof.deviation_m)) == (np.inf, True, 0)
 
 
 def test_halfway_a_base_is_on_its_arc(qiao):
@@ -114,3 +114,13 @@ def test_deviation_is_from_where_the_path_is_halfway(qiao):
     chords = ToolPath(dt_s=0.02, p_world_tool=p)
     expected = np.linalg.norm(middle[:, :3, 3] - 0.5 * (p[:-1] + p[1:]), axis=1)
     np.testing.assert_allclose(certify(qiao, chords, q, **told).deviation_m, expected)
+
+
+@pytest.mark.parametrize("room", [1e-4, 1e-6])
+def test_free_samples_are_not_doubted_for_lack_of_halvings(qiao, monkeypatch, room):
+    detector, shares = qiao.detector(None), np.linspace(0.0, 1.0, 9)[:, None]
+    q = qiao.home + 0.2 * shares * np.ones(9)
+    least = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), q).min()
+    # as if the nearest pair kept no more than `room` at the samples
+    monkeypatch.setattr("ikde.track.certify.compute_gaps", lambda *told: compute_gaps(*told) - (least - room))
+    assert bound_segments(qiao, detector, q)[0].min() > 0.0

@@ -1,5 +1,7 @@
 """Bases: arcs and twists are each other's inverse, wheels, and what is packed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from ikde.track.drive import (
     wheel_speeds,
 )
 from ikde.track.limits import MotionLimits
+from ikde.track.track import base_joints
 
 
 def test_a_twist_is_what_an_arc_was_driven_with(rng):
@@ -89,3 +92,15 @@ def test_what_is_refused(qiao):
         find_wheels(ikde.load_robot("panda"), "differential")
     with pytest.raises(InputError, match="expected one of differential, omnidirectional"):
         find_wheels(qiao, "tracked")
+
+
+def test_a_base_stays_one_with_narrow_ranges(qiao):
+    joints = tuple(replace(joint, lower=-0.5, upper=0.5) if joint.name == "q_z" else joint for joint in qiao.joints)
+    narrow = replace(qiao, joints=joints)
+    assert find_wheels(narrow, "differential").tolist() == [0, 1, 2]
+    assert base_joints(narrow) == ("d_x", "d_y", "q_z")
+
+
+def test_long_samples_have_short_steps(qiao):
+    drive = pack_drive(qiao, "omnidirectional", MotionLimits.of(qiao), dt_s=10.0)
+    np.testing.assert_array_equal(drive.largest, [0.5, 0.5, *[0.5 * np.pi] * 7])

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from ikde.solver.plain import compute_frames
 from ikde.track.follow import MARGIN_M, REACH_M, make_follower
 from ikde.track.limits import MotionLimits
+from ikde.track.path import ToolPath
 from tests.track.tracks import follow_task, make_line, robot
 
 USE = np.array([0.3, 0.3, 0.3])
@@ -64,3 +66,17 @@ def test_what_the_kernels_are_told():
     assert np.abs(loose.ranges).min() > 1e4
     blind = make_follower(robot(), path, limits=limits, drive="differential", detector=None)
     assert (blind.track.reach, blind.size) == (-np.inf, 8)
+
+
+def test_a_twofold_singularity_is_passed():
+    """Elbow straight, wrist nearly, base frozen: with the usual stiffness it would take 200 rounds."""
+    speed = MotionLimits.of(robot()).speed.copy()
+    speed[:3] = 0.0
+    q = np.zeros((2, 9))
+    q[0, 3:] = [0.445, -0.2991, 0.0, -0.8372, 0.0318, -0.2938]
+    q[1, 3:] = [0.4634, -0.3129, 0.0146, -0.8374, 0.0192, -0.2959]
+    T = compute_frames(robot(), q)["tool"]
+    path = ToolPath.through(T[:, :3, 3], dt_s=0.02, R_world_tool=T[:, :3, :3])
+    limits = MotionLimits.of(robot(), speed=speed)
+    follower = make_follower(robot(), path, drive="differential", limits=limits, detector=None)
+    assert follower.follow(follower.begin(q[0], np.zeros(3))).last == 1

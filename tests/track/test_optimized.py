@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ikde.track.optimized import OptimizedSettings, follow_optimized
+from ikde.track.drive import pack_drive
+from ikde.track.limits import MotionLimits
+from ikde.track.optimized import OptimizedSettings, find_broken, follow_optimized
 from ikde.track.path import ToolPath
 from ikde.track.track import track
 from tests.track.paper_tasks import follower_of, short_task, start_of
@@ -78,3 +80,13 @@ def test_a_collision_names_its_pair(qiao):
     assert evolved.stop.reason == "self_collision"
     assert evolved.stop.pair in qiao.pairs(tight)
     assert evolved.stop.text.startswith("sample 1 (0.02 s): ")
+
+
+def test_a_wheel_limit_is_named(qiao):
+    start = start_of("qiao2021", 1)
+    drive = pack_drive(qiao, "differential", MotionLimits.of(qiao, wheel_speed_rad_s=0.5), 0.02)
+    follower = replace(follower_of(qiao, moved([0.0, 0.004, 0.0])), drive=drive)
+    fast = np.zeros(follower.size)
+    fast[0] = 1.0
+    assert find_broken(follower, start, fast)[::2] == ("wheel_limit", "wheels")
+    assert find_broken(follower, start, 0.0 * fast)[0] == "joint_limit"

@@ -8,6 +8,7 @@ from ikde.track.follow import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.refusal import explain_stop, first_out_of_reach, tell_static
+from ikde.track.track import track
 from ikde.track.trajectory import TrackStopReason
 from tests.track.tracks import make_line, robot
 
@@ -96,3 +97,27 @@ def test_texts_are_one_line(drive):
     stop = explain([[0, 0.3, 0]], drive=drive)
     assert "\n" not in stop.text
     assert stop.sample == 1
+
+
+def test_an_acceleration_has_units():
+    stop = explain([[0, 0, 0]] * 3 + [[0, 0.01, 0]], acceleration=np.full(9, 0.1))
+    assert stop.text.endswith(("its limit is 0.1 m/s²", "its limit is 0.1 rad/s²"))
+
+
+def test_what_may_not_move_is_named():
+    stop = explain([[0, 0.001, 0]] * 3, speed=np.zeros(9))
+    assert (stop.sample, stop.reason) == (1, TrackStopReason.SPEED_LIMIT)
+    assert stop.text == f"sample 1 (0.02 s): {stop.limit} would have to move, and may not"
+
+
+def test_a_step_that_is_too_long_is_not_blamed_on_a_limit_that_nobody_asked_for():
+    stop = explain([[3.0, 0, 0]] * 2, speed=None)
+    assert stop.reason is TrackStopReason.SPEED_LIMIT
+    assert "shorter samples would help" in stop.text
+
+
+def test_leaving_the_workspace_slowly_is_out_of_reach():
+    height = 1.6841  # of what can be reached at x = 0.9: 1.6841947
+    p = np.array([[0.9, 0.0, height + 2e-5 * k] for k in range(8)])
+    motion = track(robot(), ToolPath.through(p, dt_s=0.02))
+    assert (motion.stop.sample, motion.stop.reason) == (5, TrackStopReason.OUT_OF_REACH)

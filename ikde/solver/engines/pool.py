@@ -34,6 +34,7 @@ GRIDS = {
     "pose": ((Z, 8), (X, 8), (Y, 8), (AXIS_X, 3), (AXIS_Y, 3), (TILT_Z, 3)),
 }
 ROOMY_M = 2.0  # a base must have so much room in x and in y for it to be set freely
+FULL_TURN_RAD = 2.0 * np.pi - 0.01
 SHORTEST_M = 1e-3
 NO_BASE = np.array([-1, -1, -1])
 NO_BASE.setflags(write=False)
@@ -164,9 +165,18 @@ def rotation_length_m(robot: Robot) -> float:
 
 
 def find_base(robot: Robot, lower: Floats, upper: Floats) -> Ints:
-    """Coordinates [3] of x, y and turn of a base that drives in the plane, has room and carries all that can collide.
+    """Coordinates [3] of x, y and turn of a planar base that has room; -1 thrice for any other robot."""
+    x, y, turn = base = find_planar_base(robot)
+    if x < 0 or min(upper[x] - lower[x], upper[y] - lower[y]) < ROOMY_M or upper[turn] - lower[turn] < FULL_TURN_RAD:
+        return NO_BASE
+    return base
 
-    -1 thrice for any other robot.
+
+@lru_cache(maxsize=64)
+def find_planar_base(robot: Robot) -> Ints:
+    """Coordinates [3] of x, y and turn of a base that drives in the plane and carries all that can collide.
+
+    -1 thrice for any other robot; read-only.
     """
     arrays = pack_robot(robot)
     bodies, T = arrays.bodies, arrays.T_parent_body
@@ -179,9 +189,10 @@ def find_base(robot: Robot, lower: Floats, upper: Floats) -> Ints:
         steps = steps @ np.vstack([T[k], [0.0, 0.0, 0.0, 1.0]])
         axes.append(steps[:3, 2])
     is_plane = np.allclose(axes, np.eye(3), atol=1e-12) and np.allclose(steps[:2, 3], 0.0, atol=1e-12)
-    has_room = (
-        min(upper[x] - lower[x], upper[y] - lower[y]) >= ROOMY_M and upper[turn] - lower[turn] > 2.0 * np.pi - 0.01
-    )
     components = [pack_detector(robot, detector).components[:, 0] for detector in robot.detectors.values()]
     carries_all = all((carried >= 3).all() for carried in components) and (bodies[4:, PARENT] >= 3).all()
-    return np.array([x, y, turn]) if is_plane and has_room and carries_all else NO_BASE
+    if not (is_plane and carries_all):
+        return NO_BASE
+    base = np.array([x, y, turn])
+    base.setflags(write=False)
+    return base
