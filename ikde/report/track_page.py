@@ -54,7 +54,7 @@ ERRORS = Drawing(
 )
 JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
 SPEEDS = Drawing(plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample.")
-BASE = Drawing(plot_base, "the base over time", "The base: its place, its speeds, and what they ask of its wheels.")
+BASE = Drawing(plot_base, "the base over time", "The base: its place and all its speeds.")
 CLEARANCE = Drawing(
     plot_clearance,
     "clearance over time",
