@@ -5,7 +5,6 @@ import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -42,8 +41,9 @@ def bench_track(
     Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
     """
     from ikde.bench.tracks import FULL, QUICK, compare_methods, count_runs
-    from ikde.io.report_folder import RESULTS, format_results, prepare_folder, write_report
+    from ikde.io.report_folder import RESULTS, format_results, write_report
     from ikde.io.track_file import load_track
+    from ikde.io.track_folder import open_folder
     from ikde.kernels.jit import compile_clock
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
@@ -51,8 +51,7 @@ def bench_track(
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
     plans = [_with_drive(load_track(path), drive) for path in tracks]
-    prepare_folder(out)
-    with _show_progress(count_runs(len(plans), chosen, budget)) as progress:
+    with open_folder(out), _show_progress(count_runs(len(plans), chosen, budget)) as progress:
         with compile_clock(lambda: announce_compile("about a minute")):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
@@ -83,7 +82,7 @@ def _with_drive(plan: "TrackPlan", drive: str | None) -> "TrackPlan":
         return plan
     if drive not in DRIVES:
         raise typer.BadParameter(f"expected one of {', '.join(DRIVES)}, got {drive!r}", param_hint="--drive")
-    return replace(plan, drive=drive)
+    return plan.with_changes(drive=drive)
 
 
 def _repeat(tracks: Sequence[Path], methods: str | None, drive: str | None, quick: bool) -> str:

@@ -4,7 +4,7 @@ import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -55,10 +55,11 @@ def track(
     gc.enable()
     plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
+    plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     with open_folder(out) if out else nullcontext():
         with _show_steps() as tell:
             tell(f"following {plan.name}")
-            motion = _follow(plan, tell, method=method, drive=drive, seed=seed, start=begin)
+            motion = _follow(plan, tell)
             page = _draw(plan, motion, tell) if out and plot else None
         data = track_json(plan, motion)
         files = write_track(out, motion.trajectory, data, page) if out else ()
@@ -69,11 +70,11 @@ def track(
     raise typer.Exit(ExitCode.OK if data["reached"] and data["accepted"] else ExitCode.NOT_REACHED)
 
 
-def _follow(plan: "TrackPlan", tell: Callable[[str], None], **changes: Any) -> "TrackSummary":
+def _follow(plan: "TrackPlan", tell: Callable[[str], None]) -> "TrackSummary":
     from ikde.track.run import run_track
     from ikde.track.summary import summarise_track
 
-    trajectory = run_track(plan, announce_compile=announce_compile, **changes)
+    trajectory = run_track(plan, announce_compile=announce_compile)
     tell(f"measuring {trajectory.reached_points} points")
     return summarise_track(plan.robot, plan.detector, trajectory)
 

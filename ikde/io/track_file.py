@@ -1,6 +1,7 @@
 """The track file: how it becomes a `TrackPlan`."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,4 +21,5 @@ def load_track(source: str | Path | Mapping[str, Any]) -> TrackPlan:
         FileError: for a file that cannot be read or is wrong, with its line and key.
         InputError: for a mapping that is wrong, with its key, and for what is neither path nor mapping.
     """
-    return load_plan(source, "track", TrackSpec, make_plan)
+    plan, blame = load_plan(source, "track", TrackSpec, make_plan)
+    return replace(plan, blame=blame)

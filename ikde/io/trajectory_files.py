@@ -88,9 +88,8 @@ def trajectory_table(trajectory: Trajectory) -> pa.Table:
     speeds = _until_next(trajectory.joint_speeds)
     columns |= {f"speed_{name}": speeds[:, index] for index, name in enumerate(names)}
     columns |= _twist(trajectory)
-    for index, axis in enumerate("xyz"):
-        columns[f"path_{axis}_m"] = path.p_world_tool[: len(trajectory.q), index]
-        columns[f"error_{axis}_m"] = trajectory.error_m[:, index]
+    columns |= {f"path_{axis}_m": path.p_world_tool[: len(trajectory.q), k] for k, axis in enumerate("xyz")}
+    columns |= {f"error_{axis}_m": trajectory.error_m[:, k] for k, axis in enumerate("xyz")}
     if path.orientation != "free":
         columns["orientation_error_rad"] = trajectory.orientation_error_rad
     if trajectory.clearance_m is not None:

@@ -15,6 +15,7 @@ from ikde.errors import FileError, InputError
 Where = tuple[str | int, ...]
 
 MAX_DEPTH = 40
+MOST_REPEATED = 10**6  # values that aliases repeat
 _NUMBER = re.compile(
     r"^[-+]?(\.[0-9]+|[0-9][0-9_]*(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
 )
@@ -44,6 +45,7 @@ class Document:
         self.lines: dict[Where, int] = {}
         try:
             root = yaml.compose(text, Loader=_Loader)
+            repeated = 0 if root is None else _count_repeated(root)
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             raise FileError(path, f"not YAML: {error.problem}", line=mark.line + 1 if mark else None) from None
@@ -51,6 +53,8 @@ class Document:
             raise FileError(path, f"not YAML: {' '.join(str(error).split())}") from None
         except RecursionError:
             raise FileError(path, "nested too deeply") from None
+        if repeated > MOST_REPEATED:
+            raise FileError(path, f"aliases repeat {repeated:,} values; expected at most {MOST_REPEATED:,}")
         self.data = None if root is None else self._read(root, ())
 
     def line(self, where: Where) -> int | None:
@@ -106,6 +110,21 @@ class Document:
         except ValueError:
             raise self.error(f"{text!r} does not fit its tag {node.tag}", where) from None
         raise self.error(f"the tag {node.tag} is not read here", where)
+
+
+def _count_repeated(root: yaml.Node) -> int:
+    """Values that are there once more, or more often, through aliases; what contains itself counts once."""
+    sizes: dict[int, int] = {}
+
+    def count(node: yaml.Node) -> int:
+        if id(node) not in sizes:
+            sizes[id(node)] = 0
+            children = [value for _, value in node.value] if isinstance(node, yaml.MappingNode) else node.value
+            is_leaf = isinstance(node, yaml.ScalarNode)
+            sizes[id(node)] = 1 if is_leaf else 1 + sum([count(child) for child in children])
+        return sizes[id(node)]
+
+    return count(root) - len(sizes)
 
 
 def read_yaml(path: Path) -> Document:

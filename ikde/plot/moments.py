@@ -14,6 +14,7 @@ from ikde.solver.plain import compute_components, compute_frames
 from ikde.track.summary import TrackSummary
 
 MOMENTS = 8
+NAMED = 2  # colliding parts in a title
 COLUMNS = 4
 ELEVATION_DEG, AZIMUTH_DEG = 22.0, -55.0
 PATH, BONES, GROUND = "0.55", "#202020", "0.75"
@@ -51,12 +52,18 @@ def plot_moments(motion: TrackSummary, samples: Sequence[int] | None = None) -> 
         _draw_path(axes, motion, sample, view)
         _draw_robot(axes, motion, sample, view)
         time = motion.trajectory.times_s[sample]
-        names = ", ".join(sorted(motion.colliding[sample]))
-        title = f"t = {time:.2f} s" + (f": {names} collide" if names else "")
-        axes.set_title(title, fontsize=8, color=COLLIDING if not names else "#b00000")
+        told = _tell_collision(motion.colliding[sample])
+        axes.set_title(f"t = {time:.2f} s{told}", fontsize=8, color="#b00000" if told else COLLIDING)
         axes.set(xlim=box[:, 0], ylim=box[:, 1], aspect="equal")
         axes.set_axis_off()
     return figure
+
+
+def _tell_collision(names: set[str]) -> str:
+    """What collides, in few words: there is little room above a view."""
+    if not names:
+        return ""
+    return f": {', '.join(sorted(names)) if len(names) <= NAMED else f'{len(names)} parts'} collide"
 
 
 def _look() -> Floats:

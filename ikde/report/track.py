@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ikde.kernels.arrays import Floats
 from ikde.report.numbers import significant
 from ikde.report.render import make_table, plain, render
 from ikde.track.plan import TrackPlan
@@ -29,13 +30,17 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "robot": motion.robot.name,
         "drive": trajectory.drive,
         "method": trajectory.method,
+        "seed": plan.seed,
+        "asked_start": None if plan.start is None else name_joints(motion, plan.start),
+        "limits": _limits_json(motion),
         "detector": motion.detector.name if motion.detector else None,
         "dt_s": trajectory.path.dt_s,
         "points": trajectory.path.samples,
         "reached_points": trajectory.reached_points,
+        "met_points": motion.met_points,
         "reached": trajectory.reached,
         "stop": None if stop is None else {**asdict(stop), "reason": str(stop.reason)},
-        "start": dict(zip(trajectory.joint_names, trajectory.q[0].tolist(), strict=True)) if motion.started else None,
+        "start": name_joints(motion, trajectory.q[0]) if motion.started else None,
         "largest_error_m": dict(zip("xyz", motion.largest_axis_errors_m.tolist(), strict=True)),
         "largest_total_error_m": graded.total_error_m,
         "largest_orientation_error_rad": graded.largest_orientation_error_rad,
@@ -73,9 +78,10 @@ def format_track(plan: TrackPlan, motion: TrackSummary, files: tuple[Path, ...] 
 
 def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
     trajectory, graded = motion.trajectory, motion.verification
-    of = f"{trajectory.reached_points} of {trajectory.path.samples} points of {plain(plan.name)}"
+    of = f"of {trajectory.path.samples} points of {plain(plan.name)}"
     if trajectory.stop is not None:
-        return f"[bold red]stopped after {of}[/]\n{plain(trajectory.stop.text)}"
+        return f"[bold red]stopped after {trajectory.reached_points} {of}[/]\n{plain(trajectory.stop.text)}"
+    of = f"{motion.met_points} {of}"
     if not graded.accepted:
         broken = {name.replace("_", " "): getattr(graded.breaches, name) for name in type(graded.breaches).__slots__}
         told = ", ".join(f"{name} {count} times" for name, count in broken.items() if count)
@@ -87,7 +93,7 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     """What was measured, row by row; nothing about what does not apply."""
     trajectory, limits = motion.trajectory, motion.limits
     graded = motion.verification
-    yield "points reached", str(trajectory.reached_points), f"{trajectory.path.samples}"
+    yield "points reached", str(motion.met_points), f"{trajectory.path.samples}"
     errors = " / ".join(_mm(error) for error in motion.largest_axis_errors_m)
     yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
     yield "largest error in total", f"{_mm(graded.total_error_m)} mm", ""
@@ -145,10 +151,10 @@ def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     graded, count = motion.verification, motion.verification.breaches.collision
     hits = f", {count} collide" if count else ""
     safe = f"above {MM * detector.safe_distance_m:g} mm"
-    yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{MM * graded.clearance_m:.2f} mm", safe
+    yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(graded.clearance_m)} mm", safe
     certified = motion.certificate.clearance_m
     if np.isfinite(certified):
-        yield "clearance between samples, certified", f"{MM * certified:.2f} mm", "above 0 mm"
+        yield "clearance between samples, certified", f"{gap_mm(certified)} mm", "above 0 mm"
 
 
 def _list_files(files: tuple[Path, ...]) -> list[str]:
@@ -162,6 +168,33 @@ def largest_wheel_speed(motion: TrackSummary) -> float | None:
     """Rad/s of the faster wheel; None without wheels or a motion."""
     wheels = motion.trajectory.wheel_speeds
     return float(np.abs(wheels).max()) if wheels is not None and len(wheels) else None
+
+
+def name_joints(motion: TrackSummary, q: Floats) -> dict[str, float]:
+    """A configuration [N] by joint, m and rad."""
+    return dict(zip(motion.robot.joint_names, q.tolist(), strict=True))
+
+
+def gap_mm(gap_m: float, digits: int = 2) -> str:
+    """A gap in mm, as many digits as tell it from 0."""
+    gap = MM * gap_m
+    return significant(gap) if 0.0 < abs(gap) < 10.0**-digits else f"{gap:.{digits}f}"
+
+
+def _limits_json(motion: TrackSummary) -> dict[str, Any]:
+    """What the motion had to keep; None where anything goes."""
+    limits = motion.limits
+    rows = {"speed": limits.speed, "acceleration": limits.acceleration}
+    named = {key: {} if row is None else name_joints(motion, row) for key, row in rows.items()}
+    return {
+        "ranges": limits.ranges,
+        **{key: {joint: _finite(value) for joint, value in row.items()} or None for key, row in named.items()},
+        "wheel_speed_rad_s": limits.wheel_speed_rad_s,
+        "farthest_m": limits.farthest_m,
+        "center": limits.center,
+        "position_error_m": limits.position_error_m,
+        "orientation_error_rad": limits.orientation_error_rad,
+    }
 
 
 def _worst_json(worst: Worst | None) -> dict[str, Any] | None:

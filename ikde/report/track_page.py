@@ -1,6 +1,7 @@
 """A motion as a page: what was measured, figures, and the robot moving."""
 
 import json
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -29,7 +30,7 @@ from ikde.report.page import (
     Section,
     Table,
 )
-from ikde.report.track import list_figures
+from ikde.report.track import gap_mm, list_figures, name_joints
 from ikde.track.plan import TrackPlan
 from ikde.track.summary import TrackSummary
 
@@ -54,7 +55,7 @@ ERRORS = Drawing(
 )
 JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
 SPEEDS = Drawing(plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample.")
-BASE = Drawing(plot_base, "the base over time", "The base: its place, its speeds, and what they ask of its wheels.")
+BASE = Drawing(plot_base, "the base over time", "The base: its place and all its speeds.")
 CLEARANCE = Drawing(
     plot_clearance,
     "clearance over time",
@@ -110,11 +111,9 @@ def _warn(motion: TrackSummary) -> list[Block]:
     stop = motion.trajectory.stop
     if stop is None:
         return []
-    reached = motion.trajectory.reached_points
     told = "Everything below is about what was followed." if motion.started else "Nothing was followed."
-    return [
-        Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {reached} points reached. {told}")
-    ]
+    told = f"{motion.met_points} points reached. {told}"
+    return [Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {told}")]
 
 
 def _headline(motion: TrackSummary) -> list[Block]:
@@ -122,12 +121,12 @@ def _headline(motion: TrackSummary) -> list[Block]:
         return []
     trajectory, graded = motion.trajectory, motion.verification
     items = [
-        Number(f"{trajectory.reached_points} of {trajectory.path.samples}", "points reached"),
+        Number(f"{motion.met_points} of {trajectory.path.samples}", "points reached"),
         Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
     ]
     if motion.detector is not None and np.isfinite(graded.clearance_m):
-        certain = f"{1e3 * motion.certificate.clearance_m:.1f} mm certified between"
-        items.append(Number(f"{1e3 * graded.clearance_m:.1f} mm", "least clearance at samples", certain))
+        certain = f"{gap_mm(motion.certificate.clearance_m, 1)} mm certified between"
+        items.append(Number(f"{gap_mm(graded.clearance_m, 1)} mm", "least clearance at samples", certain))
     items.append(Number(f"{graded.breaches.total}", "limits broken", "of all kinds, at all samples"))
     if len(trajectory.seconds):
         most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
@@ -164,5 +163,18 @@ def _make_recipe(plan: TrackPlan, motion: TrackSummary) -> Section:
     ]
     blocks: list[Block] = [Facts(tuple(facts))]
     if plan.file:
-        blocks.append(Code(f"ikde track {plan.file} --out FOLDER", "The same again"))
+        blocks.append(Code(_repeat(plan, motion), "The same again"))
     return Section("How it was made", tuple(blocks))
+
+
+def _repeat(plan: TrackPlan, motion: TrackSummary) -> str:
+    """The command that makes the page again."""
+    start = [] if plan.start is None else name_joints(motion, plan.start).items()
+    values = {
+        "method": plan.method,
+        "drive": plan.drive,
+        "seed": str(plan.seed),
+        "start": ",".join(f"{joint}={value}" for joint, value in start),
+    }
+    options = [part for key in values if key in plan.replaced for part in (f"--{key}", values[key])]
+    return shlex.join(["ikde", "track", str(plan.file), *options, "--out", "FOLDER"])

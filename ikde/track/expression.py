@@ -2,6 +2,7 @@
 
 import ast
 import math
+import re
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -36,6 +37,7 @@ COMPARISONS = {
 FUNCTIONS = {"sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt, "abs": np.abs}
 FUNCTIONS_OF_MANY = {"min": np.minimum, "max": np.maximum}
 NAMES = ("k", "N", "pi", *FUNCTIONS, *FUNCTIONS_OF_MANY)
+UNLISTED = re.compile(r"#.*|[^\x00-\x7f]|\b0[xXoObB]\w*|\d+_\w*")  # Python knows comments, 0x10 and 1_0
 ALLOWED = f"a formula has numbers, {', '.join(NAMES)}, + - * / % **, brackets, and `a if k <= b else c`"
 
 
@@ -72,6 +74,8 @@ def parse_expression(text: str | float) -> Expression:
     text = str(text).strip()
     if len(text) > LONGEST:
         raise InputError(f"expected at most {LONGEST} characters, got {len(text)}")
+    for unlisted in UNLISTED.findall(text)[:1]:
+        raise InputError(f"{_quote(unlisted)} is not allowed here; {ALLOWED}")
     try:
         with warnings.catch_warnings(action="ignore"):  # of Python about Python
             tree = ast.parse(text, mode="eval")

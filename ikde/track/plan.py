@@ -1,8 +1,9 @@
 """What will be tracked: a track file with every name resolved, in m, rad and s."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -12,11 +13,13 @@ from ikde.files.placed import placed
 from ikde.files.robot_entries import read_detector, to_si, with_ranges
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
-from ikde.solver.joints import joints_outside
+from ikde.solver.joints import JointValues, joints_outside, read_configuration
+from ikde.track.drive import find_wheels
 from ikde.track.make_path import make_path
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive, LimitsEntry, TrackMethod, TrackSpec
 
+NO_WHEELS = "an omnidirectional drive has no such wheels"
 KINDS = ("prismatic", "revolute")
 
 
@@ -57,6 +60,32 @@ class TrackPlan:
     seed: int
     file: str | None
     """The file it was read from, for the record only."""
+    blame: Callable[[str, tuple[str | int, ...]], InputError] = InputError
+    """What is wrong at a key of the file, as an error in its place."""
+    replaced: tuple[str, ...] = ()
+    """Keys of which it no longer has what the file says."""
+
+    def with_changes(
+        self,
+        *,
+        method: TrackMethod | None = None,
+        drive: Drive | None = None,
+        seed: int | None = None,
+        start: JointValues | None = None,
+    ) -> Self:
+        """The plan with this instead of what its file says; None for what stays. `start` is in m and rad.
+
+        Raises:
+            InputError: for a start that does not fit the robot, and a drive without wheels whose speed is limited.
+        """
+        q = None if start is None else read_configuration(self.robot, start)
+        given = {"method": method, "drive": drive, "seed": seed, "start": q}
+        changes = {key: value for key, value in given.items() if value is not None}
+        plan = replace(self, **changes, replaced=tuple(dict.fromkeys((*self.replaced, *changes))))
+        has_limit = plan.limits.wheel_speed_rad_s is not None and plan.method != "typical"  # which keeps none
+        if drive == "omnidirectional" and has_limit:
+            raise self.blame(NO_WHEELS, ("limits", "wheel_speed"))
+        return plan
 
 
 def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None = None) -> TrackPlan:
@@ -73,6 +102,7 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
         FileError: for what is wrong inside a table.
     """
     robot = with_ranges(robot, spec.ranges, spec.units)
+    drive = _read_drive(spec, robot)
     name = spec.name or (Path(file).stem if file else "track")
     with placed("detector"):
         detector = read_detector(robot, spec.detector, spec.units)
@@ -80,9 +110,9 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
         name=name,
         robot=robot,
         path=make_path(spec, name, folder),
-        drive=spec.drive,
+        drive=drive,
         method=spec.method,
-        limits=_read_limits(spec, robot),
+        limits=_read_limits(spec, robot, drive),
         detector=detector,
         start=_read_start(spec, robot),
         seed=spec.seed,
@@ -90,11 +120,24 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
     )
 
 
-def _read_limits(spec: TrackSpec, robot: Robot) -> AskedLimits:
+def _read_drive(spec: TrackSpec, robot: Robot) -> Drive:
+    """What the file says; else arcs for a robot that has a base, and no base to speak of for one that has none."""
+    if spec.drive == "omnidirectional":
+        return spec.drive
+    try:
+        find_wheels(robot, "differential")
+    except InputError as error:
+        if spec.drive is None:
+            return "omnidirectional"
+        raise InputError(f"{error.message}; leave it out, or say omnidirectional", ("drive",)) from None
+    return "differential"
+
+
+def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> AskedLimits:
     limits, units = spec.limits, spec.units
     with placed("limits"):
-        if limits.wheel_speed is not None and spec.drive == "omnidirectional":
-            raise InputError("an omnidirectional drive has no such wheels", ("wheel_speed",))
+        if limits.wheel_speed is not None and drive == "omnidirectional":
+            raise InputError(NO_WHEELS, ("wheel_speed",))
         _check_center(limits, robot)
         return AskedLimits(
             ranges=limits.ranges,
@@ -143,6 +186,6 @@ def _read_start(spec: TrackSpec, robot: Robot) -> Floats | None:
         return None
     given = to_si(robot, "start", spec.start, spec.units)
     start = np.array([given.get(joint.name, joint.home) for joint in robot.joints])
-    for name in joints_outside(robot, start)[:1]:
+    for name in joints_outside(robot, start)[: int(spec.limits.ranges)]:
         raise InputError(f"{start[robot.joint_names.index(name)]:g} is outside the range", ("start", name))
     return start

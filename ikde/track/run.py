@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues
@@ -38,18 +39,25 @@ def run_track(
 
     Raises:
         InputError: for an unknown method or drive, and a start that is not at the first pose or collides.
+        FileError: the same, with file, line and key, if that is what the file says.
     """
-    return track(
-        plan.robot,
-        plan.path,
-        drive=plan.drive if drive is None else drive,
-        method=plan.method if method is None else method,
-        limits=make_limits(plan.robot, plan.limits),
-        start=plan.start if start is None else start,
-        seed=plan.seed if seed is None else seed,
-        detector=plan.detector or "none",
-        announce_compile=announce_compile,
-    )
+    plan = plan.with_changes(method=method, drive=drive, seed=seed, start=start)
+    try:
+        return track(
+            plan.robot,
+            plan.path,
+            drive=plan.drive,
+            method=plan.method,
+            limits=make_limits(plan.robot, plan.limits),
+            start=plan.start,
+            seed=plan.seed,
+            detector=plan.detector or "none",
+            announce_compile=announce_compile,
+        )
+    except InputError as error:
+        if not error.where or error.where[0] in plan.replaced:
+            raise
+        raise plan.blame(error.message, error.where) from None
 
 
 def make_limits(robot: Robot, asked: AskedLimits) -> MotionLimits:

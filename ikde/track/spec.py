@@ -190,8 +190,8 @@ class TrackSpec(Entry):
     """Where the tool goes."""
     orientation: Orientation | None = None
     """`free`, or how the tool is turned (default: what the waypoints say, else free)."""
-    drive: Drive = "differential"
-    """How the base moves: on arcs of constant v and omega, or freely in the plane."""
+    drive: Drive | None = None
+    """How the base moves: on arcs of constant v and omega, or freely (default: on arcs; freely if there is no base)."""
     method: TrackMethod = "continuation"
     """ikde's own, or one of the paper's two."""
     limits: LimitsEntry = LimitsEntry()

@@ -45,7 +45,7 @@ class TrackStop:
     pair: tuple[str, str] | None = None
     """The components in the way."""
     limit: str | None = None
-    """The joint, or `v`, `omega`, `wheels`, whose limit is in the way."""
+    """Whose limit is in the way: a joint by name, `the base`, `wheels`, or the frame of a largest distance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -15,6 +15,8 @@ from ikde.model.target import AXIS, POSITION, Target, Targets
 from ikde.track.orientations import Turn
 from ikde.track.turning import PathOrientation, turn_between
 
+ASKED = {"position": "a position", "axis": "an axis", "pose": "a pose"}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Waypoints:
@@ -53,7 +55,8 @@ def read_waypoints(entry: FileEntry | Sequence[InlineTarget], units: UnitsEntry,
             position = read_position("position", waypoint.position, units)
             targets.append(Target(position, **read_orientation(waypoint, units)))
             if targets[-1].kind != targets[0].kind:
-                raise InputError(f"this waypoint asks for a {targets[-1].kind}, the first one for a {targets[0].kind}")
+                last, first = ASKED[targets[-1].kind], ASKED[targets[0].kind]
+                raise InputError(f"this waypoint asks for {last}, the first one for {first}")
     return Waypoints(targets=Targets.of(targets), blame=lambda index, text: InputError(text, ("waypoints", index)))
 
 

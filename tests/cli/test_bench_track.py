@@ -42,3 +42,17 @@ def test_a_wrong_file_is_found_before_anything_runs(refuse, spec):
 
 def test_an_unknown_drive_is_refused(refuse, spec):
     assert "expected one of differential, omnidirectional" in refuse("bench", "track", spec, "--drive", "sideways")
+
+
+def test_nothing_is_left_of_a_path_that_fails(cli, spec, tmp_path):
+    spec.write_text(SPEC + "start: {q1: 0.1}\n")
+    outcome = cli("bench", "track", spec, "--quick", "--out", tmp_path / "page")
+    assert outcome.code == 2
+    assert "short.yaml:7 → start: expected" in outcome.err
+    assert [path.name for path in tmp_path.iterdir()] == ["short.yaml"]
+
+
+def test_a_drive_without_wheels_has_no_limit_of_theirs(refuse, spec):
+    spec.write_text(SPEC + "limits: {wheel_speed: 5}\n")
+    told = refuse("bench", "track", spec, "--drive", "omnidirectional")
+    assert "short.yaml:7 → limits.wheel_speed: an omnidirectional drive has no such wheels" in told

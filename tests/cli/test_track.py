@@ -51,7 +51,9 @@ def test_without_figures_and_from_a_start(cli, spec, tmp_path):
     chosen = cli("track", spec, "--out", tmp_path / "a", "--no-plot", "--json").data
     assert "report.html" not in names(tmp_path / "a")
     start = ",".join(f"{name}={value}" for name, value in chosen["start"].items())
-    again = cli("track", spec, "--start", start, "--seed", "5", "--json").data
+    again = cli("track", spec, "--start", start, "--seed", "5", "--out", tmp_path / "b", "--json").data
+    assert (again["seed"], again["asked_start"], chosen["asked_start"]) == (5, chosen["start"], None)
+    assert f"--seed 5 --start {start} --out FOLDER" in (tmp_path / "b" / "report.html").read_text(encoding="utf-8")
     assert again["start"] == pytest.approx(chosen["start"])
 
 
@@ -86,6 +88,14 @@ def test_a_first_pose_out_of_reach_leaves_a_page_without_a_motion(cli, spec, tmp
 def test_a_wrong_file_is_one_line_and_nothing_is_written(refuse, spec, text, line):
     spec.write_text(text)
     refuse("track", spec, "--out", "run")
+
+
+def test_what_the_file_says_is_placed_there_and_what_options_say_is_not(refuse, spec):
+    spec.write_text(SPEC + "start: {q1: 0.1}\n")
+    assert "short.yaml:7 → start: expected" in refuse("track", spec)
+    assert "short.yaml" not in refuse("track", spec, "--start", "q1=0.1")
+    spec.write_text(SPEC + "limits: {wheel_speed: 5}\n")
+    assert "short.yaml:7 → limits.wheel_speed: an" in refuse("track", spec, "--drive", "omnidirectional")
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+from pathlib import Path
 
 import numpy as np
 import pyarrow.csv as pa_csv
@@ -13,6 +15,7 @@ from ikde.errors import FileError, InputError
 from ikde.io.trajectory_files import base_motion, joint_trajectory, trajectory_table, write_trajectory
 from tests.track.motions import NAMES, make_motion
 
+DOCUMENTATION = (Path(__file__).parents[2] / "docs" / "track.md").read_text(encoding="utf-8")
 FILES = ["base.json", "base.yaml", "joint_trajectory.json", "joint_trajectory.yaml"]
 TABLES = ["trajectory.csv", "trajectory.parquet"]
 
@@ -45,6 +48,18 @@ def test_a_row_is_a_sample_and_its_speeds_last_until_the_next():
     np.testing.assert_allclose(table["v_m_s"], [1.5, 1.5, 1.5, 1.5, 0.0])
     assert table["wheel_left_rad_s"][3:] == [0.5, 0.0]
     assert (table["path_x_m"][2], table["error_z_m"][2], table["clearance_m"][2]) == (0.02, 1e-9, 0.05)
+
+
+def test_columns_are_in_the_order_that_the_documentation_has():
+    names = trajectory_table(make_motion(orientation="axis")).column_names
+    told = re.search(r"a row a sample: (.*?)\njoint_trajectory", DOCUMENTATION, flags=re.DOTALL)
+    joints = {
+        "q_<joint> ...": [f"q_{name}" for name in NAMES],
+        "speed_<joint> ...": [f"speed_{name}" for name in NAMES],
+    }
+    axes = {f"{kind}_x_m ... {kind}_z_m": [f"{kind}_{axis}_m" for axis in "xyz"] for kind in ("path", "error")}
+    columns = [(joints | axes).get(name, [name]) for name in re.split(r",\s+", told[1])]
+    assert names == [name for part in columns for name in part]
 
 
 def test_columns_without_numbers_are_left_out():

@@ -1,5 +1,7 @@
 """YAML: numbers as people write them, the line of every value, and never a traceback."""
 
+import time
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -74,6 +76,27 @@ def test_bad_yaml_is_one_line_with_its_place(text, line, words, tmp_path):
 def test_deep_nesting_is_refused(tmp_path):
     with pytest.raises(FileError, match="nested too deeply"):
         load("[" * 300 + "]" * 300, tmp_path)
+
+
+def make_bomb(levels):
+    """Lists of ten aliases of lists of ten aliases ..., so many levels above ten words."""
+    lines = ["a0: &a0 [" + ", ".join("x" * 10) + "]"]
+    lines += [f"a{k}: &a{k} [" + ", ".join([f"*a{k - 1}"] * 10) + "]" for k in range(1, levels + 1)]
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("levels", [5, 12, 30])
+def test_aliases_of_aliases_are_refused_at_once(levels, tmp_path):
+    began = time.perf_counter()
+    with pytest.raises(FileError, match=r"a.yaml: aliases repeat [\d,]+ values; expected at most 1,000,000"):
+        load(make_bomb(levels), tmp_path)
+    assert time.perf_counter() - began < 0.5
+
+
+def test_aliases_in_reason_are_read(tmp_path):
+    data = load("a: &a [1, 2]\nb: [*a, *a]\nc: {d: *a}\n", tmp_path).data
+    assert data == {"a": [1, 2], "b": [[1, 2], [1, 2]], "c": {"d": [1, 2]}}
+    assert len(load(make_bomb(2), tmp_path).data["a2"]) == 10
 
 
 def test_missing_file_folder_and_binary_are_refused(tmp_path):

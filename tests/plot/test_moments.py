@@ -1,5 +1,7 @@
 """Views of the robot: as many as asked for, collisions first."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
@@ -51,6 +53,13 @@ def test_every_sphere_is_a_circle_and_collisions_are_black(qiao, motion, folded)
     rows = qiao.approximations[folded.detector.spheres]
     assert len(black) == sum(row.count for row in rows if row.component in names)
     assert "collide" in view.get_title()
+
+
+def test_a_title_names_two_parts_at_most(folded):
+    for names, told in ((set(), ""), ({"M", "J2"}, ": J2, M collide"), ({"M", "J2", "L1"}, ": 3 parts collide")):
+        motion = replace(folded)
+        motion.__dict__["colliding"] = [names] * len(folded.trajectory.q)
+        assert plot_moments(motion, [5]).axes[0].get_title() == f"t = 0.10 s{told}"
 
 
 def test_without_a_detector_the_bones_are_drawn(qiao):

@@ -1,12 +1,13 @@
 """A motion as text and as plain data."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import ikde
-from ikde.report.track import format_track, largest_wheel_speed, list_figures, track_json
+from ikde.report.track import format_track, gap_mm, largest_wheel_speed, list_figures, track_json
 from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.track.measured import make_measured
 
@@ -67,3 +68,34 @@ def test_the_faster_wheel_counts(qiao):
     assert largest_wheel_speed(motion) == pytest.approx((0.2 + 0.259 * 0.3) / 0.1)
     assert largest_wheel_speed(make_measured(qiao, drive="omnidirectional")) is None
     assert np.isfinite(motion.wheel_limit_rad_s)
+
+
+def test_what_was_asked_for_is_on_record(qiao, plan):
+    data = track_json(plan.with_changes(seed=3, start=qiao.home), make_measured(qiao))
+    home = dict(zip(qiao.joint_names, qiao.home.tolist(), strict=True))
+    assert (data["seed"], data["asked_start"]) == (3, home)
+    assert (data["limits"]["speed"]["d_x"], data["limits"]["acceleration"]) == (0.5, None)
+    free = make_measured(qiao, speed=np.full(9, np.inf), wheel_speed_rad_s=8.0)
+    limits = track_json(plan, free)["limits"]
+    assert (limits["speed"]["q1"], limits["wheel_speed_rad_s"], limits["ranges"]) == (None, 8.0, True)
+    assert track_json(plan, free)["asked_start"] is None
+
+
+def make_missing(motion):
+    """The same, but two samples miss their tolerance."""
+    error = motion.verification.error_m.copy()
+    error[[4, 7], 0] = 1e-3
+    return replace(motion, verification=replace(motion.verification, error_m=error))
+
+
+def test_a_point_that_is_missed_is_not_reached(qiao, plan):
+    motion = make_missing(make_measured(qiao))
+    assert next(list_figures(motion)) == ("points reached", "18", "20")
+    assert format_track(plan, motion).startswith("followed: 18 of 20 points")
+    data = track_json(plan, motion)
+    assert (data["reached_points"], data["met_points"]) == (20, 18)
+
+
+@pytest.mark.parametrize(("gap_m", "told"), [(0.0123, "12.30"), (3.1e-6, "0.00310"), (-2e-9, "-2.00e-06"), (0, "0.00")])
+def test_a_small_gap_is_not_told_as_none(gap_m, told):
+    assert gap_mm(gap_m) == told

@@ -1,11 +1,14 @@
 """The page of a track: self-contained, with its figures and the robot moving."""
 
 import re
+import shlex
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import ikde
+from ikde.cli.options import AngleUnit, LengthUnit, read_q
 from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
 from ikde.report.track_page import make_track_page
@@ -75,3 +78,18 @@ def test_a_start_alone_is_shown(qiao, plan):
     page = make_track_page(plan, make_measured(qiao, steps=0, further=5))
     assert "Motion" in [section.title for section in page.sections]
     assert render_html(page)
+
+
+def test_the_same_again_is_the_same_run(qiao, plan, tmp_path):
+    file = str(tmp_path / "my path.yaml")
+    motion, plan = make_measured(qiao), replace(plan, file=file)
+
+    def again(**changes):
+        return make_track_page(plan.with_changes(**changes), motion).sections[-1].blocks[-1].text
+
+    assert again() == f"ikde track '{file}' --out FOLDER"
+    told = "--method typical --drive omnidirectional --seed 3"
+    assert again(method="typical", drive="omnidirectional", seed=3) == f"ikde track '{file}' {told} --out FOLDER"
+    option, start = shlex.split(again(start=qiao.home))[3:5]
+    assert option == "--start"
+    np.testing.assert_array_equal(read_q(qiao, start, LengthUnit.m, AngleUnit.rad, None), qiao.home)

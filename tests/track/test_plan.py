@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import ikde
 from ikde.errors import InputError
 from ikde.track.plan import make_plan
 from ikde.track.spec import TrackSpec
@@ -87,3 +88,32 @@ def test_what_does_not_fit_is_placed(qiao, keys, words):
     with pytest.raises(InputError) as caught:
         plan(qiao, **keys)
     assert str(caught.value).startswith(words)
+
+
+def test_a_robot_without_a_base_needs_no_drive():
+    ur5 = ikde.load_robot("ur5")
+    assert plan(ur5).drive == plan(ur5, drive="omnidirectional").drive == "omnidirectional"
+    with pytest.raises(InputError, match=r"^drive: ur5 has no base .*; leave it out, or say omnidirectional$"):
+        plan(ur5, drive="differential")
+
+
+def test_a_start_may_be_outside_the_ranges_if_joints_may(qiao):
+    made = plan(qiao, start={"q1": 175}, limits={"ranges": False})
+    assert made.start[3] == pytest.approx(np.radians(175))
+
+
+def test_changes_are_on_record(qiao):
+    made = plan(qiao, drive="omnidirectional", seed=7)
+    assert made.with_changes().replaced == ()
+    changed = made.with_changes(seed=0, start=qiao.home).with_changes(method="typical")
+    assert changed.replaced == ("seed", "start", "method")
+    assert (changed.seed, changed.method, changed.drive) == (0, "typical", "omnidirectional")
+    np.testing.assert_array_equal(changed.start, qiao.home)
+
+
+def test_a_drive_without_wheels_has_no_limit_of_theirs(qiao):
+    made = plan(qiao, limits={"wheel_speed": 360})
+    with pytest.raises(InputError, match=r"^limits.wheel_speed: an omnidirectional drive has no such wheels$"):
+        made.with_changes(drive="omnidirectional")
+    assert made.with_changes(drive="differential").drive == "differential"
+    assert made.with_changes(method="typical", drive="omnidirectional").drive == "omnidirectional"

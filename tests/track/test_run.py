@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+import yaml
 
-from ikde.errors import InputError
+from ikde.errors import FileError, InputError
 from ikde.io.track_file import load_track
 from ikde.track.run import make_limits, run_track
 from tests.track.tracks import load_task, robot
@@ -51,3 +52,29 @@ def test_what_the_caller_wants_comes_before_the_file():
 def test_a_wrong_method_is_refused():
     with pytest.raises(InputError, match="method"):
         run_track(load_track(PLAN), method="magic")
+
+
+def test_a_start_of_the_file_that_does_not_fit_is_placed_there(tmp_path):
+    file = tmp_path / "far.yaml"
+    file.write_text(yaml.safe_dump({**PLAN, "start": {"q1": 0.1}}, sort_keys=False))
+    plan = load_track(file)
+    with pytest.raises(FileError, match=r"far.yaml:\d+ → start: expected a configuration at the path's first pose"):
+        run_track(plan)
+    with pytest.raises(InputError, match=r"^start: expected a configuration at") as caught:
+        run_track(plan, start=plan.start)
+    assert not isinstance(caught.value, FileError)
+
+
+def test_a_start_outside_the_ranges_is_followed_if_joints_may_leave_them():
+    motion = run_track(load_track(PLAN))
+    q = dict(zip(motion.joint_names, motion.q[0].tolist(), strict=True))
+    ranges = {"q2": [q["q2"] + 0.1, 2.8]}
+    again = run_track(load_track({**PLAN, "start": q, "ranges": ranges, "limits": {"ranges": False}}))
+    assert again.reached_points > 0
+    np.testing.assert_array_equal(again.q[0], motion.q[0])
+
+
+def test_a_robot_without_a_base_follows_too():
+    path = {"expressions": {"x": "0.4 + 0.01*k/N", "y": "0.2", "z": "0.4"}}
+    motion = run_track(load_track({"robot": "ur5", "dt_s": 0.02, "samples": 5, "path": path}))
+    assert (motion.drive, motion.reached) == ("omnidirectional", True)

@@ -8,7 +8,7 @@ import yaml
 from pydantic import ValidationError
 
 from ikde.files.entries import Entry
-from ikde.track.spec import DRIVES, TRACK_METHODS, PathEntry, TrackSpec
+from ikde.track.spec import TRACK_METHODS, PathEntry, TrackSpec
 
 DOCUMENTATION = (Path(__file__).parents[2] / "docs" / "track.md").read_text(encoding="utf-8")
 LEAST = {"robot": "qiao2021", "dt_s": 0.1, "path": {"waypoints": [{"position": [1, 0, 1]}, {"position": [1, 1, 1]}]}}
@@ -22,7 +22,7 @@ def entries(model=Entry):
 
 def test_the_least_track_file_has_defaults():
     spec = TrackSpec.model_validate(LEAST)
-    assert (spec.drive, spec.method, spec.orientation, spec.seed) == (DRIVES[0], TRACK_METHODS[0], None, 0)
+    assert (spec.drive, spec.method, spec.orientation, spec.seed) == (None, TRACK_METHODS[0], None, 0)
     assert (spec.limits.speed, spec.ranges, spec.start, spec.samples) == ({}, {}, None, None)
 
 

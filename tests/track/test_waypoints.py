@@ -50,6 +50,10 @@ def test_rows_are_the_samples_themselves_to_the_bit(make, tmp_path, rng):
             "path.waypoints[1]: this waypoint asks for a position, the first one for a pose",
         ),
         (
+            {"path": {"waypoints": [TURNS[0], {"position": [500, 0, 900], "axis": [0, 0, 1]}]}},
+            "path.waypoints[1]: this waypoint asks for an axis, the first one for a pose",
+        ),
+        (
             {"path": {"waypoints": [TURNS[0], {**TURNS[1], "rpy": [180, 0, 0]}]}},
             "path.waypoints[1]: half a turn from the orientation before it",
         ),
