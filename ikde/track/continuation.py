@@ -55,21 +55,26 @@ class Continuation:
             return tell_out_of_reach(self.follower, *beyond)
         end = self.follower.path.samples if beyond is None else beyond[0] - 1
         if start is None:
-            starts, first = draw_starts(self.follower, self.frozen, self.seed)
-            if not len(starts):
-                return tell_too_far(self.follower) if first.reached else tell_static(self.follower, 0, first)
+            found = self._from_any_start(end)
         else:
-            starts = settle_start(self.follower, start, self.frozen)[None]
-        found = self._certified(starts, end)
-        if start is None and not self._is_over(found, end):
-            more, _ = draw_starts(self.follower, self.frozen, self.seed, MORE_DRAWS)
-            found = max(found, self._certified(more, end), key=lambda found: found.course.last)
-        if found.stop is not None or found.course.last == self.follower.path.samples:
+            found = self._certified(settle_start(self.follower, start, self.frozen)[None], end)
+        if isinstance(found, TrackStop) or found.stop or found.course.last == self.follower.path.samples:
             return found
         if found.course.last == end and beyond is not None:
             return replace(found, stop=tell_out_of_reach(self.follower, *beyond))
         stop = explain_stop(found.follower, found.course, self._ask(found.course.last + 1))
         return replace(found, stop=stop)
+
+    def _from_any_start(self, end: int) -> Found | TrackStop:
+        """The best course from starts of its own; from more of them if none of the first leads to the end."""
+        starts, first = draw_starts(self.follower, self.frozen, self.seed)
+        if not len(starts):
+            return tell_too_far(self.follower) if first.reached else tell_static(self.follower, 0, first)
+        found = self._certified(starts, end)
+        if found.course.last == end or not self._is_possible(found.course.last + 1):
+            return found
+        more, _ = draw_starts(self.follower, self.frozen, self.seed, MORE_DRAWS)
+        return max(found, self._certified(more, end), key=lambda found: found.course.last)
 
     def _certified(self, starts: Floats, end: int) -> Found:
         """The course that comes farthest certified, with margins that grow until nothing is in doubt."""
@@ -84,10 +89,6 @@ class Continuation:
             follower = follower.with_track(margin=WIDER * follower.track.margin)
         assert best is not None
         return best
-
-    def _is_over(self, found: Found, end: int) -> bool:
-        """Whether other starts can't lead any farther."""
-        return found.course.last == end or not self._is_possible(found.course.last + 1)
 
     def _is_possible(self, sample: int) -> bool:
         return self._ask(sample).reached
@@ -119,5 +120,5 @@ def cut_at_doubt(found: Found) -> Found:
     certain = next((k for k, bound in enumerate(lower) if not bound > 0.0), None)
     if certain is None:
         return found
-    course = replace(found.course, last=certain)
-    return replace(found, course=course, stop=tell_uncertified(found.follower, certain + 1))
+    stop = tell_uncertified(found.follower, certain + 1, found.q[certain : certain + 2])
+    return replace(found, course=replace(found.course, last=certain), stop=stop)

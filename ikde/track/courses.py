@@ -2,7 +2,7 @@
 
 Every start is tried along the whole path, which takes some 20 us a sample. Of those that reach its end the one with the
 largest clearance is taken, in steps of 5 mm, and of those the one that moves least. If none reaches the end, the null
-space is used otherwise; then the one that came farthest goes back some samples, drifts another way, and tries again.
+space is used otherwise; then those that came farthest go back some samples, drift another way, and try again.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -20,7 +20,7 @@ FIRST_BACK = 8  # samples to go back at first; twice as many each time
 TRIES = 16  # at each
 DRIFT_SHARE = 0.4  # of the largest steps: spread of the drift
 MOST_COURSES = 8  # from different starts, that are gone back on
-MOST_RETURNS = 300  # of one course; of several, at least a third of them each
+MOST_RETURNS, LEAST_RETURNS = 300, 100  # of one course; several share the most, each has the least
 
 
 def choose_course(
@@ -41,7 +41,7 @@ def choose_course(
             return farthest(tried)
     rng, best = np.random.default_rng(seed), farthest(tried)
     few = _farthest_few(tried)
-    most = max(MOST_RETURNS // len(few), MOST_RETURNS // 3)
+    most = max(MOST_RETURNS // len(few), LEAST_RETURNS)
     for course in few:
         best = farthest((best, _return(follower, course, end, most, rng)))
         if best.last == end:
@@ -55,9 +55,11 @@ def farthest(courses: Iterable[Course]) -> Course:
 
 
 def _farthest_few(courses: Iterable[Course]) -> list[Course]:
-    """The courses that came farthest, one a start."""
-    ordered = sorted(courses, key=lambda course: -course.last)
-    return list({course.q[0].tobytes(): course for course in reversed(ordered)}.values())[::-1][:MOST_COURSES]
+    """The courses that came farthest, one a start, best first."""
+    best: dict[bytes, Course] = {}
+    for course in sorted(courses, key=lambda course: -course.last):
+        best.setdefault(course.q[0].tobytes(), course)
+    return list(best.values())[:MOST_COURSES]
 
 
 def _badness(course: Course) -> tuple[float, float]:

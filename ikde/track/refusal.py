@@ -78,10 +78,13 @@ def explain_stop(follower: Follower, course: Course, static: SolveResult) -> Tra
     return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
 
 
-def tell_uncertified(follower: Follower, sample: int) -> TrackStop:
-    """A stop before a segment that may touch on its way."""
-    text = f"{_when(follower, sample)}: contact on the way there can't be excluded"
-    return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text)
+def tell_uncertified(follower: Follower, sample: int, q: Floats) -> TrackStop:
+    """A stop before a segment, between the rows of `q` [2, N], that may touch on its way; names its nearest pair."""
+    assert follower.detector is not None  # without one nothing is in doubt
+    pairs = follower.robot.pairs(follower.detector)
+    pair = pairs[int(np.argmin(compute_gaps(follower.robot, follower.detector.spheres, pairs, q).min(axis=0)))]
+    text = f"{_when(follower, sample)}: contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
+    return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
 
 def _try(follower: Follower, course: Course, sample: int, scale: Floats | float = 1.0) -> Finding | None:

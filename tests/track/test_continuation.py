@@ -51,6 +51,7 @@ def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
     cut = cut_at_doubt(found)
     assert (cut.course.last, len(cut.q), cut.stop.sample) == (63, 64, 64)
     assert cut.stop.reason == TrackStopReason.SELF_COLLISION
+    assert cut.stop.pair in found.follower.robot.pairs(found.follower.detector)
 
 
 def test_a_wider_margin_is_tried_then(monkeypatch):
