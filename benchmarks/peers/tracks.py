@@ -1,6 +1,6 @@
 """The same tool paths followed by ikde, Pink and mink: error, limit violations, collisions and time side by side.
 
-    .venv-peers/bin/python benchmarks/peers/tracks.py     # six minutes or so: benchmarks/results/peer_tracks.json
+    .venv-peers/bin/python benchmarks/peers/tracks.py     # ten minutes: benchmarks/results/peer_tracks.json
     .venv-peers/bin/python benchmarks/peers/tracks.py --tasks task3 --rounds 1 --starts 2 --out try.json
 
 All begin where ikde's `continuation` chooses to begin with an omnidirectional base; `verify_track` and `certify` grade
