@@ -52,7 +52,7 @@ def bench_track(
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
     plans = [_with_drive(load_track(path), drive) for path in tracks]
     with open_folder(out), _show_progress(count_runs(len(plans), chosen, budget)) as progress:
-        with compile_clock(lambda: announce_compile("about a minute")):
+        with compile_clock(lambda: announce_compile("a minute or two")):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
         page = make_comparison_page(compared, budget, _repeat(tracks, methods, drive, quick))

@@ -74,7 +74,7 @@ def _follow(plan: "TrackPlan", tell: Callable[[str], None]) -> "TrackSummary":
     from ikde.track.run import run_track
     from ikde.track.summary import summarise_track
 
-    trajectory = run_track(plan, announce_compile=announce_compile)
+    trajectory = run_track(plan, announce_compile=lambda: announce_compile("a minute or two"))
     tell(f"measuring {trajectory.reached_points} points")
     return summarise_track(plan.robot, plan.detector, trajectory)
 
