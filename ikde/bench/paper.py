@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
-from typing import Any, Protocol
+from typing import Any
 
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.bench.approximation import APPROXIMATIONS, compute_approximation
@@ -17,6 +17,7 @@ from ikde.bench.budget import FULL, Budget
 from ikde.bench.detection import compute_detection
 from ikde.bench.kinematics import compute_kinematics
 from ikde.bench.misprints import Data, compute_misprints
+from ikde.bench.progress import SILENCE, Progress
 from ikde.bench.rejection import READINGS, compute_rejection, compute_waiting
 from ikde.bench.sensitivity import compute_sensitivity, list_variations
 from ikde.bench.situations import compute_situations
@@ -30,27 +31,6 @@ SECTIONS = (
     *("detection", "solutions", "situations", "misprints"),
 )
 SAME = 1e-9  # relative: numpy's last bits may differ between processors, ours do not
-
-
-class Progress(Protocol):
-    """Who is told how far the report is; about every second."""
-
-    def begin(self, section: str) -> None:
-        """A section begins."""
-
-    def advance(self, solves: int) -> None:
-        """So many more solves are done."""
-
-
-class _Silence:
-    def begin(self, section: str) -> None:
-        """Say nothing."""
-
-    def advance(self, solves: int) -> None:
-        """Say nothing."""
-
-
-SILENCE: Progress = _Silence()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

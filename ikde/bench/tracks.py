@@ -6,18 +6,19 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import chain
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
+from ikde.bench.progress import Progress
 from ikde.kernels.arrays import Floats
 from ikde.solver.search import usable_cores
-from ikde.solver.settings import SolveSettings
 from ikde.solver.solve import solve_many
 from ikde.track.follow import Follower, make_follower
 from ikde.track.plan import TrackPlan
 from ikde.track.run import make_limits, run_track
 from ikde.track.spec import Drive, TrackMethod
+from ikde.track.starts import EXACT
 from ikde.track.summary import TrackSummary, summarise_track
 from ikde.track.trajectory import TrackStop, Trajectory
 
@@ -29,7 +30,7 @@ NINE_VARIABLES: Mapping[str, Drive] = {"typical": "omnidirectional"}
 """`typical` searches x, y and heading as if the base could move anywhere, whatever drives it."""
 STARTED_ANYWHERE = ("optimized", "continuation")
 """Methods for which the start matters: `typical` begins anew at every sample."""
-EXACT = SolveSettings(method="lm", position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9, restarts=1)
+ONCE = EXACT.with_changes(method="lm", restarts=1)
 LEAST_MOTION = np.zeros(3)
 DRAWS_PER_START = 50
 
@@ -45,16 +46,6 @@ class TrackBudget:
 
 FULL = TrackBudget(seeds=10, starts=100)
 QUICK = TrackBudget(seeds=2, starts=5)
-
-
-class Progress(Protocol):
-    """What is told how far a comparison is."""
-
-    def begin(self, section: str) -> None:
-        """Name what is being computed."""
-
-    def advance(self, solves: int) -> None:
-        """Count what is done."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -168,7 +159,7 @@ def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
     for _ in range(DRAWS_PER_START * count):
         near = rng.uniform(robot.lower, robot.upper)
         near[slides] = np.clip(place + rng.uniform(-1.0, 1.0, len(place)), robot.lower[slides], robot.upper[slides])
-        row = solve_many(robot, [target], EXACT, near=near, **told)
+        row = solve_many(robot, [target], ONCE, near=near, **told)
         found += list(row.q[row.reached])
         if len(found) == count:
             break

@@ -1,9 +1,7 @@
 """`ikde bench`; and `ikde bench paper`: the paper's tables and figures, published beside ours, as one page."""
 
 import gc
-import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,11 +11,10 @@ from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption
 from ikde.cli.output import announce_compile, print_json, print_result
-from ikde.cli.progress import Bar, Lines
+from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
-    from ikde.bench.budget import Budget
-    from ikde.bench.paper import Progress, Sources
+    from ikde.bench.paper import Sources
 
 bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
 
@@ -77,11 +74,11 @@ def _read_sections(only: str | None) -> tuple[str, ...]:
 
 def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> None:
     from ikde.bench.budget import FULL, QUICK
-    from ikde.bench.paper import compute_paper
+    from ikde.bench.paper import compute_paper, count_solves
     from ikde.io.report_folder import RESULTS, format_results, write_report
 
     sources, budget = _load_sources(), QUICK if quick else FULL
-    with _show_progress(sources, budget) as progress:
+    with show_benchmark(count_solves(sources, budget)) as progress:
         results = compute_paper(sources, budget, only=sections, progress=progress, announce_compile=_announce)
         progress.begin("page")
         write_report(out, {RESULTS: format_results(results), **_render(results, sources)})
@@ -102,11 +99,12 @@ def _render(results: Mapping[str, Any], sources: "Sources") -> dict[str, str]:
 
 def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
     from ikde.bench.budget import Budget
-    from ikde.bench.paper import check_paper
+    from ikde.bench.paper import check_paper, count_solves
     from ikde.io.report_folder import RESULTS
 
     sources = _load_sources()
-    with _show_progress(sources, Budget(**recorded["made"]["budget"])) as progress:
+    solves = count_solves(sources, Budget(**recorded["made"]["budget"]))
+    with show_benchmark(solves) as progress:
         differences = check_paper(recorded, sources, progress=progress, announce_compile=_announce)
     if as_json:
         print_json({"agrees": not differences, "differences": differences})
@@ -132,18 +130,3 @@ def _load_sources() -> "Sources":
         published=load_published(),
         misprints=load_misprints(),
     )
-
-
-@contextmanager
-def _show_progress(sources: "Sources", budget: "Budget") -> Iterator["Progress"]:
-    """A bar of solves on stderr with the section's name; for a log the names alone."""
-    if not sys.stderr.isatty():
-        yield Lines()
-        return
-    from rich.console import Console
-    from rich.progress import Progress as Bars
-
-    from ikde.bench.paper import count_solves
-
-    with Bars(console=Console(stderr=True)) as bars:
-        yield Bar(bars, count_solves(sources, budget))

@@ -2,9 +2,7 @@
 
 import gc
 import shlex
-import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,10 +10,9 @@ import typer
 
 from ikde.cli.options import JsonOption
 from ikde.cli.output import announce_compile, print_json, print_result
-from ikde.cli.progress import Bar, Lines
+from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
-    from ikde.bench.tracks import Progress
     from ikde.track.plan import TrackPlan
     from ikde.track.spec import TrackMethod
 
@@ -41,9 +38,8 @@ def bench_track(
     Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
     """
     from ikde.bench.tracks import FULL, QUICK, compare_methods, count_runs
-    from ikde.io.report_folder import RESULTS, format_results, write_report
+    from ikde.io.report_folder import RESULTS, format_results, open_folder, write_report
     from ikde.io.track_file import load_track
-    from ikde.io.track_folder import open_folder
     from ikde.kernels.jit import compile_clock
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
@@ -51,7 +47,7 @@ def bench_track(
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
     plans = [_with_drive(load_track(path), drive) for path in tracks]
-    with open_folder(out), _show_progress(count_runs(len(plans), chosen, budget)) as progress:
+    with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
         with compile_clock(lambda: announce_compile("a minute or two")):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
@@ -91,16 +87,3 @@ def _repeat(tracks: Sequence[Path], methods: str | None, drive: str | None, quic
     options = [part for option, value in given.items() if value for part in (option, value)]
     options += ["--quick"] if quick else []
     return shlex.join(["ikde", "bench", "track", *map(str, tracks), *options, "--out", "FOLDER"])
-
-
-@contextmanager
-def _show_progress(runs: int) -> Iterator["Progress"]:
-    """A bar of motions on stderr with what is being done; for a log the names alone."""
-    if not sys.stderr.isatty():
-        yield Lines()
-        return
-    from rich.console import Console
-    from rich.progress import Progress as Bars
-
-    with Bars(console=Console(stderr=True)) as bars:
-        yield Bar(bars, runs)

@@ -10,6 +10,7 @@ from ikde.cli.output import print_note
 
 if TYPE_CHECKING:
     from ikde.batch.run import Progress
+    from ikde.bench.progress import Progress as BenchProgress
 
     Tell = Callable[[Progress], None]
 
@@ -104,3 +105,16 @@ class Lines:
 
     def advance(self, solves: int) -> None:
         """A log needs no more."""
+
+
+@contextmanager
+def show_benchmark(solves: int) -> Iterator["BenchProgress"]:
+    """A bar of so many solves, or motions, with what is being computed; for a log the names alone."""
+    if not sys.stderr.isatty():
+        yield Lines()
+        return
+    from rich.console import Console
+    from rich.progress import Progress as Bars
+
+    with Bars(console=Console(stderr=True)) as bars:
+        yield Bar(bars, solves)

@@ -48,8 +48,9 @@ def track(
 
     Example: ikde track configs/tracks/qiao2022_task1.yaml --out runs/task1
     """
+    from ikde.io.report_folder import open_folder
     from ikde.io.track_file import load_track
-    from ikde.io.track_folder import open_folder, write_track
+    from ikde.io.track_folder import write_track
     from ikde.report.track import format_track, track_json
 
     gc.enable()

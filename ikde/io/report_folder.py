@@ -1,7 +1,8 @@
 """Where a report goes: a page as HTML and as Markdown, and the data that it shows; whole files or none."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,20 @@ def prepare_folder(folder: Path) -> None:
         raise FileError(folder, "this is a file; expected a folder") from None
     except OSError as error:
         raise FileError(folder, f"cannot be written: {error.strerror or error}") from None
+
+
+@contextmanager
+def open_folder(folder: Path) -> Iterator[None]:
+    """Make the folder, and take it away again if nothing comes of it; raises `FileError` if it cannot be written."""
+    is_new = not folder.exists()
+    prepare_folder(folder)
+    try:
+        yield
+    except BaseException:
+        if is_new:
+            with suppress(OSError):
+                folder.rmdir()
+        raise
 
 
 def write_report(folder: Path, files: Mapping[str, str]) -> None:

@@ -1,14 +1,12 @@
 """Where a followed track goes: its motion, its figures as numbers and as a page; all of it or nothing."""
 
 import json
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ikde.errors import FileError
 from ikde.files.atomic import sync_folder, write_together
-from ikde.io.report_folder import prepare_folder
 from ikde.io.trajectory_files import format_trajectory
 from ikde.track.trajectory import Trajectory
 
@@ -17,20 +15,6 @@ MOTION = (
     *("trajectory.csv", "trajectory.parquet", "joint_trajectory.yaml", "joint_trajectory.json"),
     *("base.yaml", "base.json"),
 )
-
-
-@contextmanager
-def open_folder(folder: Path) -> Iterator[None]:
-    """Make the folder, and take it away again if nothing comes of it; raises `FileError` if it cannot be written."""
-    is_new = not folder.exists()
-    prepare_folder(folder)
-    try:
-        yield
-    except BaseException:
-        if is_new:
-            with suppress(OSError):
-                folder.rmdir()
-        raise
 
 
 def write_track(

@@ -26,7 +26,7 @@ from ikde.solver.plain import compute_frames
 from ikde.solver.verify import compute_orientation_errors
 from ikde.track.drive import WHEEL_RADIUS_M, wheel_speeds
 from ikde.track.follow import Follower
-from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach
+from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach, tell_when
 from ikde.track.starts import is_near
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
@@ -139,7 +139,7 @@ def tell_unsolved(
     follower: Follower, settings: OptimizedSettings, sample: int, verdict: int, pair: int, q: Floats, steps: Floats
 ) -> TrackStop:
     """Why no population was solved: `q` [N] is the best of all, `steps` [2, D] the one before and that to `q`."""
-    when = f"sample {sample} ({sample * follower.path.dt_s:.4g} s)"
+    when = tell_when(follower, sample)
     told = f"the best of {1 + settings.returns} populations"
     if verdict == NO_BOX:
         text = f"{when}: no step keeps the joint ranges and the accelerations"
@@ -156,11 +156,11 @@ def tell_unsolved(
         return tell_out_of_reach(follower, *beyond)
     far = f"{told} is {_measure_miss(follower, sample, q)} away"
     fast, hard = np.abs(steps[1]) * (follower.drive.largest > 0.0), np.abs(steps[1] - steps[0]) / follower.drive.change
-    for share, reason, what in (
-        (fast, TrackStopReason.SPEED_LIMIT, "speed"),
-        (hard, TrackStopReason.ACCELERATION_LIMIT, "acceleration"),
-    ):
-        if share.max() >= AT_LIMIT and (sample > 1 or share is fast):
+    shares = [(fast, TrackStopReason.SPEED_LIMIT, "speed")]
+    if sample > 1:  # the first segment may have any speed
+        shares.append((hard, TrackStopReason.ACCELERATION_LIMIT, "acceleration"))
+    for share, reason, what in shares:
+        if share.max() >= AT_LIMIT:
             name = entry_name(follower, int(np.argmax(share)))
             return TrackStop(
                 sample=sample, reason=reason, text=f"{when}: {far}, with {name} at its {what} limit", limit=name

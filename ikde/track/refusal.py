@@ -36,7 +36,7 @@ def first_out_of_reach(follower: Follower, lower: Floats, upper: Floats) -> tupl
 
 def tell_out_of_reach(follower: Follower, sample: int, excess_m: float) -> TrackStop:
     """A stop at what is proved to be out of reach."""
-    text = f"{_when(follower, sample)}: at least {1e3 * excess_m:.3g} mm out of reach, whatever the joints do"
+    text = f"{tell_when(follower, sample)}: at least {1e3 * excess_m:.3g} mm out of reach, whatever the joints do"
     return TrackStop(sample=sample, reason=TrackStopReason.OUT_OF_REACH, text=text)
 
 
@@ -48,7 +48,7 @@ def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackSt
         reason = TrackStopReason.OUT_OF_REACH
         off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
         text = f"no configuration was found that comes nearer than {off}"
-    return TrackStop(sample=sample, reason=reason, text=f"{_when(follower, sample)}: {text}", pair=pair)
+    return TrackStop(sample=sample, reason=reason, text=f"{tell_when(follower, sample)}: {text}", pair=pair)
 
 
 def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
@@ -57,7 +57,7 @@ def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
     return TrackStop(
         sample=sample,
         reason=TrackStopReason.DISTANCE_LIMIT,
-        text=f"{_when(follower, sample)}: {far}",
+        text=f"{tell_when(follower, sample)}: {far}",
         limit=follower.limits.center,
     )
 
@@ -74,7 +74,7 @@ def explain_stop(follower: Follower, course: Course, static: SolveResult) -> Tra
     stop = _without_speed(follower, course, sample)
     if stop is not None:
         return stop
-    text = f"{_when(follower, sample)}: no way on within the limits was found"
+    text = f"{tell_when(follower, sample)}: no way on within the limits was found"
     return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
 
 
@@ -83,7 +83,7 @@ def tell_uncertified(follower: Follower, sample: int, q: Floats) -> TrackStop:
     assert follower.detector is not None  # without one nothing is in doubt
     pairs = follower.robot.pairs(follower.detector)
     pair = pairs[int(np.argmin(compute_gaps(follower.robot, follower.detector.spheres, pairs, q).min(axis=0)))]
-    text = f"{_when(follower, sample)}: contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
+    text = f"{tell_when(follower, sample)}: contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
 
@@ -118,7 +118,7 @@ def _without_collision(follower: Follower, course: Course, sample: int) -> Track
     pair, gap = pairs[worst], 1e3 * float(gaps[worst])
     least = 1e3 * follower.track.margin
     how = f"are {gap:.3g} mm apart, not {least:.3g} mm," if gap > 0.0 else f"overlap by {-gap:.3g} mm"
-    text = f"{_when(follower, sample)}: {pair[0]} and {pair[1]} {how} in the only step that was found"
+    text = f"{tell_when(follower, sample)}: {pair[0]} and {pair[1]} {how} in the only step that was found"
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
 
@@ -133,7 +133,7 @@ def _without_ranges(follower: Follower, course: Course, sample: int) -> TrackSto
         return None
     name = follower.robot.joint_names[joint]
     limits = f"[{ranges[0, joint]:.4g}, {ranges[1, joint]:.4g}]"
-    text = f"{_when(follower, sample)}: {name} would have to be at {found[0][joint]:.4g}, its range is {limits}"
+    text = f"{tell_when(follower, sample)}: {name} would have to be at {found[0][joint]:.4g}, its range is {limits}"
     return TrackStop(sample=sample, reason=TrackStopReason.JOINT_LIMIT, text=text, limit=name)
 
 
@@ -149,7 +149,7 @@ def _without_acceleration(follower: Follower, course: Course, sample: int) -> Tr
     needed, limit = change[worst] * per_second, drive.change[worst] * per_second
     unit = f"{_unit(follower, worst)}/s\u00b2"
     needed, limit = (f"{value:.4g} {unit}" for value in (needed, limit))
-    text = f"{_when(follower, sample)}: {name} would need an acceleration of {needed}, its limit is {limit}"
+    text = f"{tell_when(follower, sample)}: {name} would need an acceleration of {needed}, its limit is {limit}"
     return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text, limit=name)
 
 
@@ -162,7 +162,7 @@ def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackSto
     v, omega = found[1][:2] * follower.drive.largest[:2] / follower.path.dt_s
     needed = float(np.abs(wheel_speeds(v, omega)).max())
     limit = follower.limits.wheel_speed_rad_s
-    text = f"{_when(follower, sample)}: a wheel would have to turn at {needed:.4g} rad/s, its limit is {limit:.4g}"
+    text = f"{tell_when(follower, sample)}: a wheel would have to turn at {needed:.4g} rad/s, its limit is {limit:.4g}"
     return TrackStop(sample=sample, reason=TrackStopReason.WHEEL_LIMIT, text=text, limit="wheels")
 
 
@@ -183,7 +183,7 @@ def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop
         worst = int(np.argmax(np.abs(found[1])))
         if factor * abs(found[1][worst]) > 1.0:
             name, needed = entry_name(follower, worst), factor * abs(found[1][worst]) * usual[worst]
-            text = f"{_when(follower, sample)}: {name} would have to move {_tell_speed(follower, worst, needed)}"
+            text = f"{tell_when(follower, sample)}: {name} would have to move {_tell_speed(follower, worst, needed)}"
             return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
     return None
 
@@ -207,7 +207,7 @@ def _without_frozen(follower: Follower, course: Course, sample: int) -> TrackSto
     if found is None:
         return None
     name = entry_name(follower, int(np.argmax(np.abs(found[1]) * frozen)))
-    text = f"{_when(follower, sample)}: {name} would have to move, and may not"
+    text = f"{tell_when(follower, sample)}: {name} would have to move, and may not"
     return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
 
 
@@ -239,5 +239,6 @@ def _unit(follower: Follower, entry: int) -> str:
     return "m" if follower.robot.joints[_entry_joint(follower, entry)].kind == "prismatic" else "rad"
 
 
-def _when(follower: Follower, sample: int) -> str:
+def tell_when(follower: Follower, sample: int) -> str:
+    """`sample 40 (0.8 s)`."""
     return f"sample {sample} ({sample * follower.path.dt_s:.4g} s)"

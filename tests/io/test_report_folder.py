@@ -7,7 +7,7 @@ import pytest
 
 from ikde.bench.budget import QUICK
 from ikde.errors import FileError
-from ikde.io.report_folder import RESULTS, format_results, prepare_folder, read_results, write_report
+from ikde.io.report_folder import RESULTS, format_results, open_folder, prepare_folder, read_results, write_report
 
 RECORD = {"made": {"budget": asdict(QUICK), "only": []}, "sections": {}}
 
@@ -29,6 +29,22 @@ def test_a_folder_that_cannot_be_made_is_found_out_at_once(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match="cannot be written"):
         prepare_folder(tmp_path / "file" / "report")
+
+
+def test_a_new_folder_goes_again_if_nothing_comes_of_it(tmp_path):
+    with pytest.raises(KeyError), open_folder(tmp_path / "new"):
+        raise KeyError
+    assert sorted(path.name for path in tmp_path.iterdir()) == []
+    (tmp_path / "old").mkdir()
+    with pytest.raises(KeyError), open_folder(tmp_path / "old"):
+        raise KeyError
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["old"]
+
+
+def test_a_file_is_not_opened(tmp_path):
+    (tmp_path / "here").write_text("mine")
+    with pytest.raises(FileError, match="this is a file"), open_folder(tmp_path / "here"):
+        pass
 
 
 def test_only_its_own_files_are_replaced(tmp_path):

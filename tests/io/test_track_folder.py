@@ -5,7 +5,7 @@ import json
 import pytest
 
 from ikde.errors import FileError
-from ikde.io.track_folder import open_folder, write_track
+from ikde.io.track_folder import write_track
 from tests.track.motions import make_motion
 
 MOTION = [
@@ -33,22 +33,6 @@ def test_what_an_earlier_one_left_is_taken_away(tmp_path):
     assert names(tmp_path) == sorted([*still, "notes.txt", "summary.json"])
     write_track(tmp_path, make_motion(reached=-1), {})
     assert names(tmp_path) == ["notes.txt", "summary.json"]
-
-
-def test_a_new_folder_goes_again_if_nothing_comes_of_it(tmp_path):
-    with pytest.raises(KeyError), open_folder(tmp_path / "new"):
-        raise KeyError
-    assert names(tmp_path) == []
-    (tmp_path / "old").mkdir()
-    with pytest.raises(KeyError), open_folder(tmp_path / "old"):
-        raise KeyError
-    assert names(tmp_path) == ["old"]
-
-
-def test_a_file_is_no_folder(tmp_path):
-    (tmp_path / "here").write_text("mine")
-    with pytest.raises(FileError, match="this is a file"), open_folder(tmp_path / "here"):
-        pass
 
 
 def test_a_name_that_is_taken_is_one_line(tmp_path):
