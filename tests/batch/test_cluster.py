@@ -77,7 +77,9 @@ def test_a_worker_that_dies_is_replaced(batch, whole, cluster, tmp_path, capfd):
 
 def test_a_part_that_kills_its_workers_is_given_up(batch, cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "TRIES", 1)
-    with pytest.raises(InputError, match=r"workers keep dying of part \d of arm free.*run the same command again"):
+    # Dask blames all parts that the worker held, those that waited there too: which comes back first is chance.
+    told = r"workers keep dying of part \d of arm (free|careful).*run the same command again"
+    with pytest.raises(InputError, match=told):
         ikde.run_batch(batch, tmp_path, dask=cluster.scheduler_address, progress=kill_a_busy_worker(cluster, 1))
 
 
