@@ -9,11 +9,16 @@ os.environ.setdefault("IKDE_KERNELS", "tables")
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
 
 import ikde
 from tests import ahead
 
 ROBOTS = ikde.robot_names()
+
+# The same examples in every run, however slow the machine: a test that fails is wrong, not unlucky.
+settings.register_profile("ikde", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("ikde")
 
 
 @pytest.fixture(scope="session")

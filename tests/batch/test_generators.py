@@ -12,7 +12,7 @@ from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
 from tests.random_robots import random_robot
 
-few = settings(derandomize=True, deadline=None, max_examples=10)
+few = settings(max_examples=10)
 START, TO = np.array([-1.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.5])
 
 

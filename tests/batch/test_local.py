@@ -108,7 +108,8 @@ def test_when_nobody_takes_parts_any_more_searches_stop(monkeypatch):
     monkeypatch.setattr(module, "_warm_up", lambda *arguments: None)
 
     def interrupted(future):
-        time.sleep(0.5)
+        while len(watch.begun) < 2:
+            time.sleep(0.01)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(module.Future, "result", interrupted)

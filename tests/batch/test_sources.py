@@ -9,7 +9,7 @@ from ikde.batch.sources import ListSource, PointSource
 from ikde.files.table_targets import TableSource
 from ikde.model.target import Target
 
-few = settings(derandomize=True, deadline=None, max_examples=25)
+few = settings(max_examples=25)
 POSITIONS = np.arange(30.0).reshape(10, 3)
 AXES = np.array([[1.0 + k, 2.0, 3.0 - k] for k in range(10)])
 

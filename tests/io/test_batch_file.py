@@ -216,9 +216,7 @@ PATHS = (
 )
 
 
-@settings(
-    derandomize=True, deadline=None, max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(path=st.sampled_from(PATHS), value=anything)
 def test_nothing_that_is_written_ends_in_a_traceback(path, value):
     data = yaml.safe_load(GOOD)

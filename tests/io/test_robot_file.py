@@ -168,7 +168,7 @@ Dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml's is several t
 
 
 @given(path=st.sampled_from(list(paths_of(UR5))), junk=JUNK)
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=150)
 def test_junk_anywhere_is_a_robot_or_one_line(path, junk):
     text = yaml.dump(put(UR5, path, junk), Dumper=Dumper, sort_keys=False)
     try:

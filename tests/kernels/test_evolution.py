@@ -169,7 +169,7 @@ VALUES = st.sampled_from([0.0, 1e-12, 0.5, 1.0, np.inf]) | st.floats(0.0, 10.0)
 DEPTHS = st.sampled_from([0.0, 1e-12, 0.1]) | st.floats(0.0, 1.0)
 
 
-@settings(derandomize=True, deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(cost=VALUES, depth=DEPTHS, other_cost=VALUES, other_depth=DEPTHS)
 def test_is_better_is_debs_rules(cost, depth, other_cost, other_depth):
     better = bool(is_better(cost, depth, np.array([other_cost, other_depth])))
@@ -183,7 +183,7 @@ def test_is_better_is_debs_rules(cost, depth, other_cost, other_depth):
         assert better == (cost <= other_cost)
 
 
-@settings(derandomize=True, deadline=None, max_examples=100)
+@settings(max_examples=100)
 @given(rows=st.lists(st.tuples(VALUES, DEPTHS), min_size=1, max_size=10))
 def test_find_best_is_the_first_of_the_best(rows):
     expected = min(range(len(rows)), key=lambda i: rows[i][::-1])

@@ -10,7 +10,7 @@ from tests import reference
 
 PARENT, LOWER, UPPER = 0.25, -1.0, 2.0
 OUTSIDE = st.floats(-50.0, -1.0, exclude_max=True) | st.floats(2.0, 50.0, exclude_min=True)
-few = settings(derandomize=True, deadline=None, max_examples=60)
+few = settings(max_examples=60)
 
 
 def make_state(word):

@@ -12,7 +12,7 @@ from ikde.model.rotation import rotation_about
 from ikde.model.target import Target
 from tests import reference
 
-few = settings(derandomize=True, deadline=None, max_examples=80)
+few = settings(max_examples=80)
 vectors = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: np.linalg.norm(v) > 0.1)
 seeds = st.integers(0, 2**32 - 1)
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ikde.kernels.rng import next_index, next_uniform, next_word, seed_stream
 from tests import reference
 
-few = settings(derandomize=True, deadline=None, max_examples=100)
+few = settings(max_examples=100)
 words = st.integers(0, 2**64 - 1)
 
 pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # uncompiled words wrap around

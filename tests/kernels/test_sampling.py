@@ -21,7 +21,7 @@ from tests.random_robots import random_robot
 ROOT = Path(__file__).parents[2]
 SCRIPT = "import json; from tests.kernels.test_sampling import sample_all; print(json.dumps(sample_all()))"
 SOMETIMES_FREE = (5, 6, 14, 16, 19, 20, 21, 22)  # random robots; most others always collide
-few = settings(derandomize=True, deadline=None, max_examples=25)
+few = settings(max_examples=25)
 seeds = st.integers(0, 2**64 - 1)
 coordinates = st.floats(-10, 10)
 points = st.tuples(coordinates, coordinates, coordinates)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from ikde.kernels.trig import angle_from_sides, full_angle, sin_cos
 
-few = settings(derandomize=True, deadline=None, max_examples=300)
+few = settings(max_examples=300)
 needs_long_double = pytest.mark.skipif(np.finfo(np.longdouble).nmant < 63, reason="needs extended precision")
 
 

@@ -9,7 +9,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.model.convention import convention_offsets, from_convention, to_convention
 
-few = settings(derandomize=True, deadline=None, max_examples=100)
+few = settings(max_examples=100)
 QIAO = ikde.load_robot("qiao2021")
 Q5 = QIAO.joint_names.index("q5")
 values = st.lists(st.floats(-3.1, 3.1), min_size=9, max_size=9)

@@ -9,7 +9,7 @@ from ikde.model.reach import arm_length_m, reach_excess_m
 from tests import reference
 from tests.random_robots import make_frame, make_robot, random_robot
 
-few = settings(derandomize=True, deadline=None, max_examples=150)
+few = settings(max_examples=150)
 ROUNDING = 1e-12
 
 

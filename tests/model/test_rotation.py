@@ -21,7 +21,7 @@ from ikde.model.rotation import (
     snap,
 )
 
-few = settings(derandomize=True, deadline=None, max_examples=80)
+few = settings(max_examples=80)
 angles = st.floats(-np.pi, np.pi)
 triples = st.tuples(angles, angles, angles)
 vectors = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: np.linalg.norm(v) > 0.1)

@@ -134,7 +134,7 @@ WORDS = [
 ]
 
 
-@settings(derandomize=True, deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(st.lists(st.sampled_from([*WORDS, *FUNCTIONS, *FUNCTIONS_OF_MANY, "os", "'", ":", "lambda "]), max_size=12))
 def test_any_words_are_a_formula_or_one_line(words):
     result = parse("".join(words))

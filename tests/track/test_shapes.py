@@ -18,7 +18,7 @@ from ikde.track.shapes import (
     make_spline,
 )
 
-few = settings(derandomize=True, deadline=None, max_examples=50)
+few = settings(max_examples=50)
 SHARE = np.linspace(0.0, 1.0, 41)
 ORIGIN, X, Y, Z = np.zeros(3), *np.eye(3)
 

@@ -202,7 +202,7 @@ def test_what_is_refused(given, where):
     assert caught.value.where == where
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=8, suppress_health_check=list(HealthCheck))
 @given(
     task=st.sampled_from(TASKS),
     drive=st.sampled_from(DRIVES),

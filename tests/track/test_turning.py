@@ -10,7 +10,7 @@ from ikde.errors import InputError
 from ikde.model.rotation import rotation_from_rpy, rotation_with_z
 from ikde.track.turning import turn_between
 
-few = settings(derandomize=True, deadline=None, max_examples=50)
+few = settings(max_examples=50)
 
 
 @few
