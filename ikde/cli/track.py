@@ -60,7 +60,7 @@ def track(
     with open_folder(out) if out else nullcontext():
         with _show_steps() as tell:
             tell(f"following {plan.name}")
-            motion = _follow(plan, tell)
+            motion = _follow(plan)
             page = _draw(plan, motion, tell) if out and plot else None
         data = track_json(plan, motion)
         files = write_track(out, motion.trajectory, data, page) if out else ()
@@ -68,15 +68,14 @@ def track(
         print_json({**data, "files": [str(file) for file in files]})
     else:
         print_result(format_track(plan, motion, files, color=use_color()))
-    raise typer.Exit(ExitCode.OK if data["reached"] and data["accepted"] else ExitCode.NOT_REACHED)
+    raise typer.Exit(ExitCode.OK if data["reached"] else ExitCode.NOT_REACHED)
 
 
-def _follow(plan: "TrackPlan", tell: Callable[[str], None]) -> "TrackSummary":
+def _follow(plan: "TrackPlan") -> "TrackSummary":
     from ikde.track.run import run_track
     from ikde.track.summary import summarise_track
 
     trajectory = run_track(plan, announce_compile=lambda: announce_compile("a minute or two"))
-    tell(f"measuring {trajectory.reached_points} points")
     return summarise_track(plan.robot, plan.detector, trajectory)
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.plot.pose import base_components, drawn_chain
-from ikde.solver.plain import compute_components, compute_frames
+from ikde.plot.pose import base_components, compute_bones
+from ikde.solver.plain import compute_components
 from ikde.track.summary import TrackSummary
 
 MOST_FRAMES = 251
@@ -24,8 +24,6 @@ def make_animation(motion: TrackSummary, most_frames: int = MOST_FRAMES) -> dict
     trajectory = motion.trajectory
     frames = np.unique(np.linspace(0, len(trajectory.q) - 1, most_frames).round().astype(int))
     q = trajectory.q[frames]
-    Ts_world = compute_frames(motion.robot, q)
-    bones = np.stack([Ts_world[name][:, :3, 3] for name in drawn_chain(motion.robot)], axis=1)
     components = compute_components(motion.robot, motion.detector.spheres, q) if motion.detector else {}
     names, base = list(components), base_components(motion.robot, motion.detector) if motion.detector else set()
     centres = [centres for centres, _ in components.values()]
@@ -37,7 +35,7 @@ def make_animation(motion: TrackSummary, most_frames: int = MOST_FRAMES) -> dict
         "end": round(trajectory.path.duration_s, 4),
         "path": _whole_mm(path[shown]),
         "done": [int(np.searchsorted(shown, sample, side="right")) for sample in frames],
-        "bones": _whole_mm(bones),
+        "bones": _whole_mm(compute_bones(motion.robot, q)),
         "centres": _whole_mm(np.concatenate(centres, axis=1)) if centres else [[] for _ in frames],
         "radii": _whole_mm(np.concatenate(radii)) if radii else [],
         "parts": [part for part, row in enumerate(radii) for _ in row],

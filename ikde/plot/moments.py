@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.plot.pose import ARM, BASE, COLLIDING, TARGET, base_components, drawn_chain
-from ikde.solver.plain import compute_components, compute_frames
+from ikde.plot.pose import ARM, BASE, COLLIDING, TARGET, base_components, compute_bones
+from ikde.solver.plain import compute_components
 from ikde.track.summary import TrackSummary
 
 MOMENTS = 8
@@ -82,7 +82,7 @@ def _window(motion: TrackSummary, samples: Sequence[int], view: Floats) -> Float
         flat = centres @ view[:2].T
         lows.append((flat - radii[:, None]).min(axis=(0, 1)))
         highs.append((flat + radii[:, None]).max(axis=(0, 1)))
-    chain = _bones(motion, motion.trajectory.q[list(samples)]) @ view[:2].T
+    chain = compute_bones(motion.robot, motion.trajectory.q[list(samples)]) @ view[:2].T
     lows.append(chain.min(axis=(0, 1)))
     highs.append(chain.max(axis=(0, 1)))
     return np.array([np.min(lows, axis=0) - MARGIN_M, np.max(highs, axis=0) + MARGIN_M])
@@ -92,17 +92,10 @@ def _spheres(motion: TrackSummary, q: Floats) -> dict[str, tuple[Floats, Floats]
     return compute_components(motion.robot, motion.detector.spheres, q) if motion.detector else {}
 
 
-def _bones(motion: TrackSummary, q: Floats) -> Floats:
-    """Key points from the base to the tool [..., n, 3]."""
-    Ts_world = compute_frames(motion.robot, q)
-    return np.stack([Ts_world[name][..., :3, 3] for name in drawn_chain(motion.robot)], axis=-2)
-
-
 def _draw_ground(axes: Any, motion: TrackSummary, samples: Sequence[int], view: Floats) -> None:
     """A grid on the floor below path and robot."""
-    around = np.concatenate(
-        [motion.trajectory.path.p_world_tool[:, :2], _bones(motion, motion.trajectory.q[list(samples)])[:, 0, :2]]
-    )
+    bases = compute_bones(motion.robot, motion.trajectory.q[list(samples)])[:, 0, :2]
+    around = np.concatenate([motion.trajectory.path.p_world_tool[:, :2], bases])
     low, high = (GRID_M * np.floor(around.min(axis=0) / GRID_M), GRID_M * np.ceil(around.max(axis=0) / GRID_M))
     lines = [[(x, low[1], 0.0), (x, high[1], 0.0)] for x in np.arange(low[0], high[0] + 1e-9, GRID_M)]
     lines += [[(low[0], y, 0.0), (high[0], y, 0.0)] for y in np.arange(low[1], high[1] + 1e-9, GRID_M)]
@@ -130,5 +123,5 @@ def _draw_robot(axes: Any, motion: TrackSummary, sample: int, view: Floats) -> N
     for order, (x, y, _, radius, color) in enumerate(sorted(circles, key=lambda circle: circle[2])):
         look = {"facecolor": color, "edgecolor": "white", "linewidth": 0.35, "alpha": 0.62}
         axes.add_patch(Circle((x, y), radius, zorder=2 + order, **look))
-    bones = _bones(motion, q) @ view[:2].T
+    bones = compute_bones(motion.robot, q) @ view[:2].T
     axes.plot(*bones.T, "o-", color=BONES, linewidth=1.0, markersize=1.6, zorder=800)

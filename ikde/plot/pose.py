@@ -64,16 +64,14 @@ def save_figure(figure: Any, path: Path) -> None:
 
 def _draw_skeleton(axes: Any, robot: Robot, q: Floats) -> None:
     """The line of key points from the base to the tool, and the tool's axes (x red, y green, z blue)."""
-    Ts_world = compute_frames(robot, q)
-    line = np.array([Ts_world[name][:3, 3] for name in drawn_chain(robot)])
-    axes.plot(*line.T, "o-", color="0.2", linewidth=2.0, markersize=3.5, zorder=5)
-    T_world_tool = Ts_world[robot.tool]
+    axes.plot(*compute_bones(robot, q).T, "o-", color="0.2", linewidth=2.0, markersize=3.5, zorder=5)
+    T_world_tool = compute_frames(robot, q)[robot.tool]
     for k, color in enumerate(AXES):
         tip = T_world_tool[:3, 3] + AXIS_LENGTH_M * T_world_tool[:3, k]
         axes.plot(*np.array([T_world_tool[:3, 3], tip]).T, color=color, linewidth=2.5, zorder=6)
 
 
-def drawn_chain(robot: Robot) -> list[str]:
+def _drawn_chain(robot: Robot) -> list[str]:
     """Frames from the base to the tool, without the rails that a mobile base slides on."""
     frames = {frame.name: frame for frame in robot.frames}
     kinds = {joint.name: joint.kind for joint in robot.joints}
@@ -84,6 +82,12 @@ def drawn_chain(robot: Robot) -> list[str]:
     while len(chain) > 1 and kinds.get(frames[chain[0]].joint or "") == "prismatic":
         chain = chain[1:]
     return chain
+
+
+def compute_bones(robot: Robot, q: Floats) -> Floats:
+    """Key points [..., n, 3] of the drawn chain for `q` [..., N], world frame, m."""
+    Ts_world = compute_frames(robot, q)
+    return np.stack([Ts_world[name][..., :3, 3] for name in _drawn_chain(robot)], axis=-2)
 
 
 def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str:
@@ -147,7 +151,7 @@ def _draw_sphere(axes: Any, centre: Floats, radius: float, color: str, label: st
 
 def _set_view(axes: Any, robot: Robot, q: Floats) -> None:
     """Look at the robot from its right, a little from the front and from above."""
-    heading = compute_frames(robot, q)[drawn_chain(robot)[0]][:2, 0]
+    heading = compute_frames(robot, q)[_drawn_chain(robot)[0]][:2, 0]
     axes.view_init(elev=16, azim=float(np.degrees(np.arctan2(heading[1], heading[0]))) - 68)
 
 
@@ -160,9 +164,7 @@ def _nearness(axes: Any, point: Floats) -> float:
 
 def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, target: Target | None) -> None:
     """One scale for all three axes, around everything that is drawn."""
-    Ts_world = compute_frames(robot, q)
-    chain = drawn_chain(robot)
-    lows = [Ts_world[name][:3, 3] for name in chain]
+    lows = list(compute_bones(robot, q))
     highs = list(lows)
     if target is not None:
         lows.append(target.p_world_tool)

@@ -7,12 +7,12 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Detector, Robot
-from ikde.track.certify import Certificate, certify
+from ikde.track.certify import Certificate
 from ikde.track.dexterity import smallest_singular_values
 from ikde.track.drive import find_wheels, implied_wheel_speed
 from ikde.track.limits import MotionLimits
 from ikde.track.trajectory import Trajectory
-from ikde.track.verify_track import TrackVerification, verify_track
+from ikde.track.verify_track import TrackVerification
 
 Worst = tuple[str, float, float]
 """A joint, its value, and its limit."""
@@ -25,10 +25,18 @@ class TrackSummary:
     robot: Robot
     detector: Detector | None
     trajectory: Trajectory
-    verification: TrackVerification
-    certificate: Certificate
     singular_values: Floats
     """[M + 1] smallest of the arm's Jacobian, m and rad, in what the path asks for."""
+
+    @property
+    def verification(self) -> TrackVerification:
+        """What plain numpy says about the samples."""
+        return self.trajectory.verification
+
+    @property
+    def certificate(self) -> Certificate:
+        """What is certain between them."""
+        return self.trajectory.certificate
 
     @property
     def limits(self) -> MotionLimits:
@@ -128,13 +136,7 @@ class TrackSummary:
 
 
 def summarise_track(robot: Robot, detector: Detector | None, trajectory: Trajectory) -> TrackSummary:
-    """Measure a motion: at its samples and between them."""
-    path, q, drive = trajectory.path, trajectory.q, trajectory.drive
-    return TrackSummary(
-        robot=robot,
-        detector=detector,
-        trajectory=trajectory,
-        verification=verify_track(robot, path, q, drive=drive, limits=trajectory.limits, detector=detector),
-        certificate=certify(robot, path, q, drive=drive, detector=detector),
-        singular_values=smallest_singular_values(robot, q, trajectory.base_joints, path.orientation),
-    )
+    """A motion with its singular values, of the robot and the detector that it was made with."""
+    base, orientation = trajectory.base_joints, trajectory.path.orientation
+    values = smallest_singular_values(robot, trajectory.q, base, orientation)
+    return TrackSummary(robot=robot, detector=detector, trajectory=trajectory, singular_values=values)

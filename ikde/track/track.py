@@ -83,12 +83,8 @@ def grade_motion(
     limits: MotionLimits,
     detector: Detector | None,
 ) -> Trajectory:
-    """The motion through `q` [M + 1, N] with the figures that the judge and the certificate give it.
-
-    What `typical` does between samples means nothing, and is not looked at.
-    """
+    """The motion through `q` [M + 1, N] with what the judge and the certificate say about it."""
     graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
-    proof = None if method == "typical" else certify(robot, path, q, drive=drive, detector=detector)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
         path=path,
@@ -103,13 +99,8 @@ def grade_motion(
         wheel_speeds=None if drive == "omnidirectional" else graded.wheel_speeds,
         stop=stop,
         seconds=seconds,
-        error_m=graded.error_m,
-        orientation_error_rad=graded.orientation_error_rad,
-        clearance_m=graded.gaps_m.min(axis=1, initial=np.inf) if detector else None,
-        certified_clearance_m=min(proof.clearance_m, graded.clearance_m) if proof and detector and len(q) else None,
-        deviation_m=proof.deviation_m if proof else None,
-        deviation_rad=proof.deviation_rad if proof else None,
-        breaches=graded.breaches,
+        verification=graded,
+        certificate=certify(robot, path, q, drive=drive, detector=detector),
     )
 
 

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.track.certify import Certificate
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive
-from ikde.track.verify_track import Breaches
+from ikde.track.verify_track import Breaches, TrackVerification
 
 
 class TrackStopReason(StrEnum):
@@ -76,20 +77,48 @@ class Trajectory:
     """Why the motion ends before its path does; None if it does not."""
     seconds: Floats
     """[M] wall time of each sample after the start, without compilation."""
-    error_m: Floats
-    """[M + 1, 3] tool minus path, along x, y, z, by plain numpy."""
-    orientation_error_rad: Floats
-    """[M + 1] of what the path asks for."""
-    clearance_m: Floats | None
-    """[M + 1] smallest over the detector's pairs; None without a detector."""
-    certified_clearance_m: float | None = None
-    """What no pair falls below at any moment, samples or between; None if nothing was certified."""
-    deviation_m: Floats | None = None
-    """[M] distance of the tool from the path half-way between samples; None if it was not measured."""
-    deviation_rad: Floats | None = None
-    """[M] the same of its orientation, of what the path asks for."""
-    breaches: Breaches | None = None
-    """How often `verify_track` finds a limit broken; None if it was not asked."""
+    verification: TrackVerification
+    """What plain numpy says about the samples."""
+    certificate: Certificate
+    """What is certain between them."""
+
+    @property
+    def error_m(self) -> Floats:
+        """[M + 1, 3] tool minus path, along x, y, z."""
+        return self.verification.error_m
+
+    @property
+    def orientation_error_rad(self) -> Floats:
+        """[M + 1] of what the path asks for."""
+        return self.verification.orientation_error_rad
+
+    @property
+    def clearance_m(self) -> Floats | None:
+        """[M + 1] smallest over the detector's pairs; None without any."""
+        gaps = self.verification.gaps_m
+        return gaps.min(axis=1) if gaps.shape[1] else None
+
+    @property
+    def certified_clearance_m(self) -> float | None:
+        """What no pair falls below at any moment, samples or between; None without pairs, or a motion."""
+        if not self.verification.gaps_m.size:
+            return None
+        return min(self.certificate.clearance_m, self.verification.clearance_m)
+
+    @property
+    def deviation_m(self) -> Floats:
+        """[M] distance of the tool from the path half-way between samples."""
+        return self.certificate.deviation_m
+
+    @property
+    def deviation_rad(self) -> Floats:
+        """[M] the same of its orientation, of what the path asks for."""
+        return self.certificate.deviation_rad
+
+    @property
+    def breaches(self) -> Breaches:
+        """How often each limit is broken."""
+        return self.verification.breaches
 
     @property
     def reached_points(self) -> int:
@@ -99,8 +128,7 @@ class Trajectory:
     @property
     def reached(self) -> bool:
         """True if the whole path was followed and no limit is broken."""
-        is_kept = self.breaches is None or self.breaches.total == 0
-        return self.stop is None and self.reached_points == self.path.samples and is_kept
+        return self.stop is None and self.reached_points == self.path.samples and self.verification.accepted
 
     @property
     def times_s(self) -> Floats:

@@ -85,7 +85,8 @@ def make_missing(motion):
     """The same, but two samples miss their tolerance."""
     error = motion.verification.error_m.copy()
     error[[4, 7], 0] = 1e-3
-    return replace(motion, verification=replace(motion.verification, error_m=error))
+    graded = replace(motion.verification, error_m=error)
+    return replace(motion, trajectory=replace(motion.trajectory, verification=graded))
 
 
 def test_a_point_that_is_missed_is_not_reached(qiao, plan):

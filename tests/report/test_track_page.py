@@ -13,6 +13,7 @@ from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
 from ikde.report.track_page import make_track_page
 from ikde.track.summary import summarise_track
+from ikde.track.track import grade_motion
 from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.track.measured import make_measured
 
@@ -59,10 +60,10 @@ def test_a_stop_is_not_overlooked(page):
 
 def make_empty(motion):
     """The same, but not even its start was met."""
-    trajectory = motion.trajectory
-    none = {name: getattr(trajectory, name)[:0] for name in ("q", "v", "omega", "wheel_speeds", "seconds", "error_m")}
-    empty = replace(trajectory, **none, orientation_error_rad=trajectory.orientation_error_rad[:0], clearance_m=None)
-    return summarise_track(motion.robot, motion.detector, empty)
+    was, robot, detector = motion.trajectory, motion.robot, motion.detector
+    told = {"drive": was.drive, "method": was.method, "limits": was.limits, "detector": detector}
+    empty = grade_motion(robot, was.path, was.q[:0], was.stop, was.seconds[:0], **told)
+    return summarise_track(robot, detector, empty)
 
 
 def test_nothing_followed_is_a_short_page(qiao, plan):

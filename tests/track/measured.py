@@ -3,11 +3,11 @@
 import numpy as np
 
 from ikde.solver.plain import compute_frames
-from ikde.track.drive import base_twist, step_base, wheel_speeds
+from ikde.track.drive import step_base
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.summary import summarise_track
-from ikde.track.trajectory import Trajectory
+from ikde.track.track import grade_motion
 
 DT_S = 0.02
 
@@ -25,26 +25,10 @@ def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="ax
         orientation=orientation,
         R_world_tool=None if orientation == "free" else tool[rows, :3, :3],
     )
-    v, omega, _ = base_twist(q[:-1, :3], q[1:, :3], DT_S)
-    omni = drive == "omnidirectional"
     chosen = robot.detector(changes.pop("detector", None))
-    motion = Trajectory(
-        path=path,
-        joint_names=robot.joint_names,
-        base_joints=robot.joint_names[:3],
-        drive=drive,
-        method="continuation",
-        limits=MotionLimits.of(robot, **changes),
-        q=q,
-        v=np.diff(q[:, :2], axis=0) / DT_S if omni else v,
-        omega=omega,
-        wheel_speeds=None if omni else wheel_speeds(v, omega),
-        stop=stop,
-        seconds=np.full(steps, 2e-5),
-        error_m=np.zeros((steps + 1, 3)),
-        orientation_error_rad=np.zeros(steps + 1),
-        clearance_m=np.full(steps + 1, 0.05),
-    )
+    limits = MotionLimits.of(robot, **changes)
+    told = {"drive": drive, "method": "continuation", "limits": limits, "detector": chosen}
+    motion = grade_motion(robot, path, q, stop, np.full(steps, 2e-5), **told)
     return summarise_track(robot, chosen, motion)
 
 

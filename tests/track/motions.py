@@ -2,10 +2,15 @@
 
 import numpy as np
 
+from ikde.track.certify import Certificate
 from ikde.track.path import ToolPath
 from ikde.track.trajectory import Trajectory
+from ikde.track.verify_track import Breaches, TrackVerification
 
 NAMES = ("d_x", "d_y", "q_z", "q1", "q2")
+
+
+KEPT = Breaches(error=0, range=0, speed=0, acceleration=0, wheel=0, distance=0, collision=0, sideways=0)
 
 
 def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0.02, orientation="free", **changes):
@@ -21,7 +26,24 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         orientation=orientation,
         R_world_tool=None if orientation == "free" else np.tile(np.eye(3), (5, 1, 1)),
     )
-    wheels = np.tile([0.5, 2.5], (steps, 1))
+    v, omega, wheels = np.full(steps, 1.5), np.full(steps, 5.0), np.tile([0.5, 2.5], (steps, 1))
+    pairs = changes.pop("pairs", 1)
+    graded = TrackVerification(
+        error_m=np.full((len(q), 3), 1e-9),
+        orientation_error_rad=np.zeros(len(q)),
+        speeds=np.diff(q, axis=0) / dt_s,
+        v=v,
+        omega=omega,
+        wheel_speeds=wheels,
+        sideways_m_s=np.zeros(steps),
+        gaps_m=np.full((len(q), pairs), 0.05),
+        distance_m=np.full(len(q), np.nan),
+        breaches=changes.pop("breaches", KEPT),
+    )
+    deviation, segment = np.full(steps, 1e-5), np.full(steps, 0.04)
+    proof = Certificate(
+        clearance_m=0.04, segment_m=segment, evaluations=9, deviation_m=deviation, deviation_rad=deviation
+    )
     given = {
         "path": path,
         "joint_names": NAMES,
@@ -30,13 +52,12 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         "method": "continuation",
         "limits": None,
         "q": q,
-        "v": np.full(steps, 1.5) if drive == "differential" else np.tile([1.0, 0.5], (steps, 1)),
-        "omega": np.full(steps, 5.0),
+        "v": v if drive == "differential" else np.tile([1.0, 0.5], (steps, 1)),
+        "omega": omega,
         "wheel_speeds": wheels if drive == "differential" else None,
         "stop": stop,
         "seconds": np.full(steps, 1e-4),
-        "error_m": np.full((len(q), 3), 1e-9),
-        "orientation_error_rad": np.zeros(len(q)),
-        "clearance_m": np.full(len(q), 0.05),
+        "verification": graded,
+        "certificate": proof,
     }
     return Trajectory(**{**given, **changes})

@@ -1,9 +1,11 @@
 """A trajectory is plain data: how far it came, when, and how fast."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ikde.track.trajectory import TrackStop, TrackStopReason
-from tests.track.motions import make_motion
+from tests.track.motions import KEPT, make_motion
 
 
 def test_a_whole_motion_is_reached():
@@ -18,6 +20,25 @@ def test_a_stop_says_where_and_why():
     motion = make_motion(reached=2, stop=stop)
     assert (motion.reached, motion.reached_points, len(motion.times_s)) == (False, 2, 3)
     assert (str(motion.stop.reason), motion.stop.limit) == ("self_collision", None)
+
+
+def test_what_was_found_about_it_is_told_in_short():
+    motion, graded = make_motion(), make_motion().verification
+    np.testing.assert_array_equal(motion.error_m, graded.error_m)
+    np.testing.assert_array_equal(motion.orientation_error_rad, graded.orientation_error_rad)
+    assert (motion.clearance_m.tolist(), motion.certified_clearance_m) == ([0.05] * 5, 0.04)
+    assert (len(motion.deviation_m), len(motion.deviation_rad)) == (4, 4)
+
+
+def test_without_pairs_there_is_no_clearance():
+    motion = make_motion(pairs=0)
+    assert (motion.clearance_m, motion.certified_clearance_m) == (None, None)
+    assert make_motion(reached=-1).certified_clearance_m is None
+
+
+def test_a_broken_limit_is_no_success():
+    motion = make_motion(breaches=replace(KEPT, speed=2))
+    assert (motion.stop, motion.reached, motion.breaches.total) == (None, False, 2)
 
 
 def test_nothing_reached_is_no_motion():
