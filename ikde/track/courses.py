@@ -18,9 +18,9 @@ USES = ((0.3, 0.3, 0.3), (1.0, 0.3, 0.3), (0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.3
 BIN_M, ENOUGH_M = 0.005, 0.05  # clearance counts in such steps, and up to here
 FIRST_BACK = 8  # samples to go back at first; twice as many each time
 TRIES = 16  # at each
-DRIFT_SHARE = 0.4  # of the largest steps: spread of the drift
+DRIFT_SHARE = 1.0  # of the largest steps: spread of the drift
 MOST_COURSES = 8  # from different starts, that are gone back on
-MOST_RETURNS, LEAST_RETURNS = 300, 100  # of one course; several share the most, each has the least
+MOST_RETURNS, LEAST_RETURNS = 1000, 100  # of one course; several share the most, each has the least
 
 
 def choose_course(
@@ -68,29 +68,24 @@ def _badness(course: Course) -> tuple[float, float]:
 
 
 def _return(follower: Follower, course: Course, end: int, most: int, rng: np.random.Generator) -> Course:
-    """Go back and try again until the end is reached, or nothing comes farther, or `most` returns are spent."""
-    returns, further = 0, course
-    while further is not None and further.last < end and returns < most:
-        course, further = further, None
-        for other in _other_ways(follower, course, end, rng):
-            returns += 1
-            if other.last > course.last:
-                further = other
-                break
-            if returns == most:
-                break
-    return course if further is None else further
+    """Go back and try again until the end is reached or `most` returns are spent."""
+    ways = _other_ways(follower, course, end, rng)
+    for _ in range(most):
+        other = next(ways)
+        if other.last == end:
+            return other
+        if other.last > course.last:
+            course, ways = other, _other_ways(follower, other, end, rng)
+    return course
 
 
 def _other_ways(follower: Follower, course: Course, end: int, rng: np.random.Generator) -> Iterator[Course]:
-    """The same course from some samples before its end, drifting at random; farther and farther back."""
+    """The same course from some samples before its end, and at last from its start, drifting at random."""
     back = FIRST_BACK
     while True:
         for _ in range(TRIES):
             yield follower.follow(_rewind(course, max(course.last - back, 0), back, rng), end)
-        if back >= course.last:
-            return
-        back *= 2
+        back = min(2 * back, max(course.last, FIRST_BACK))
 
 
 def _rewind(course: Course, sample: int, back: int, rng: np.random.Generator) -> Course:

@@ -1,5 +1,7 @@
 """The choice among courses, and the ways back from where they end."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ikde.kernels.arrays import DRIFT
@@ -72,6 +74,15 @@ def test_going_back_changes_what_comes_after_only():
     assert (other.weights[41:49, DRIFT:] != 0.0).all()
     assert (other.weights[49:, DRIFT:] == 0.0).all()
     assert (course.weights[:, DRIFT:] == 0.0).all()
+
+
+def test_all_returns_are_made_however_short_the_course(monkeypatch):
+    follower, rng = make(shorten(load_task("task1").path, 60)), np.random.default_rng(0)
+    stuck = replace(follower.begin(robot().home, np.array(USES[0])), last=5)
+    begun = []
+    monkeypatch.setattr(type(follower), "follow", lambda self, course, end: begun.append(course.last) or course)
+    assert courses._return(follower, stuck, 60, 70, rng) is stuck
+    assert begun == [0] * 70
 
 
 def test_where_no_configuration_is_nothing_else_is_tried(monkeypatch):
