@@ -47,10 +47,16 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.surface import check_surface as check_surface
     from ikde.solver.verify import Verification as Verification
     from ikde.solver.verify import verify as verify
+    from ikde.track.courses import ContinuationSettings as ContinuationSettings
+    from ikde.track.follow_path import follow_path as follow_path
     from ikde.track.limits import MotionLimits as MotionLimits
+    from ikde.track.optimized import OptimizedSettings as OptimizedSettings
     from ikde.track.path import ToolPath as ToolPath
     from ikde.track.run import run_track as run_track
+    from ikde.track.trajectory import TrackStop as TrackStop
+    from ikde.track.trajectory import TrackStopReason as TrackStopReason
     from ikde.track.trajectory import Trajectory as Trajectory
+    from ikde.track.typical import TypicalSettings as TypicalSettings
 
 __version__ = "0.1.0"
 
@@ -60,9 +66,15 @@ _HOME = {
     "read_batch": "ikde.batch.read",
     "load_track": "ikde.io.track_file",
     "run_track": "ikde.track.run",
+    "follow_path": "ikde.track.follow_path",
     "ToolPath": "ikde.track.path",
     "MotionLimits": "ikde.track.limits",
+    "ContinuationSettings": "ikde.track.courses",
+    "OptimizedSettings": "ikde.track.optimized",
+    "TypicalSettings": "ikde.track.typical",
     "Trajectory": "ikde.track.trajectory",
+    "TrackStop": "ikde.track.trajectory",
+    "TrackStopReason": "ikde.track.trajectory",
     "write_trajectory": "ikde.io.trajectory_files",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",

@@ -32,13 +32,14 @@ from adapters.pink_ import PinkProgram
 import ikde
 from ikde.bench.tracks import draw_random_starts, measure
 from ikde.io.track_file import load_track
+from ikde.track import methods
 from ikde.track.courses import USES
-from ikde.track.follow import Follower, make_follower
+from ikde.track.follow_path import grade_motion
+from ikde.track.follower import Follower, make_follower
 from ikde.track.plan import TrackPlan
-from ikde.track.run import make_limits, run_track
+from ikde.track.run import run_track
 from ikde.track.spec import Drive
 from ikde.track.summary import summarise_track
-from ikde.track.track import grade_motion
 from ikde.track.verify_track import verify_track
 
 ROOT = Path(__file__).parent.parent.parent
@@ -91,7 +92,7 @@ def make_manner(plan: TrackPlan, *, is_split: bool) -> Manner:
         posture_cost=0.01,
         approach=0.4,
         range_gain=0.95,
-        speed=make_limits(plan.robot, plan.limits).speed,
+        speed=plan.limits.speed,
         is_split=is_split,
         solver_options={"primal_tol": 1e-12},  # its default, 1e-6, lets speeds exceed their limit by 1e-4 of it
     )
@@ -130,8 +131,9 @@ def grade(plan: TrackPlan, way: Way, runs: list[Followed]) -> dict[str, Any]:
     """The judge's figures of a motion, and times in the middle of its rounds."""
     assert all(np.array_equal(run.q, runs[0].q) for run in runs), f"{way.name}: another motion in another round"
     first, seconds = runs[0], np.median([run.seconds for run in runs], axis=0)
-    told = {"drive": way.drive, "limits": make_limits(plan.robot, plan.limits), "detector": plan.detector}
-    trajectory = grade_motion(plan.robot, plan.path, first.q, None, seconds, method=way.name, **told)
+    told = {"drive": way.drive, "limits": plan.limits, "detector": plan.detector}
+    motion = methods.Followed(q=first.q, stop=None, seconds=seconds, search_seconds=float(seconds.sum()))
+    trajectory = grade_motion(plan.robot, plan.path, motion, method=way.name, **told)
     error = trajectory.error_m[1:]
     figures = measure(summarise_track(plan.robot, plan.detector, trajectory))
     return {
@@ -147,8 +149,7 @@ def grade(plan: TrackPlan, way: Way, runs: list[Followed]) -> dict[str, Any]:
 
 def count_followed(plan: TrackPlan, ways: list[Way], count: int) -> dict[str, Any]:
     """From how many random starts each way gets to the end, and what was wrong with the rest."""
-    limits = make_limits(plan.robot, plan.limits)
-    told = {"drive": "omnidirectional", "limits": limits, "detector": plan.detector}
+    told = {"drive": "omnidirectional", "limits": plan.limits, "detector": plan.detector}
     follower = make_follower(plan.robot, plan.path, **told)
     starts = draw_random_starts(follower, count, plan.seed)
     greedy = Way(name="ikde, its steps alone", run=partial(run_greedy, follower))
@@ -163,8 +164,7 @@ def count_followed(plan: TrackPlan, ways: list[Way], count: int) -> dict[str, An
 
 def find_fault(plan: TrackPlan, way: Way, followed: Followed) -> str:
     """`followed`, or the first of what is wrong: too short, colliding, beyond a limit, too far from the path."""
-    limits = make_limits(plan.robot, plan.limits)
-    near = replace(limits, position_error_m=NEAR_M, orientation_error_rad=NEAR_RAD)
+    near = replace(plan.limits, position_error_m=NEAR_M, orientation_error_rad=NEAR_RAD)
     told = {"drive": way.drive, "limits": near, "detector": plan.detector}
     broken = verify_track(plan.robot, plan.path, followed.q, **told).breaches
     if len(followed.q) <= plan.path.samples:

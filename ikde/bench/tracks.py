@@ -14,10 +14,10 @@ from ikde.bench.progress import Progress
 from ikde.kernels.arrays import Floats
 from ikde.solver.search import usable_cores
 from ikde.solver.solve import solve_many
-from ikde.track.follow import Follower, make_follower
+from ikde.track.follower import Follower, make_follower
 from ikde.track.plan import TrackPlan
-from ikde.track.run import make_limits, run_track
-from ikde.track.spec import Drive, TrackMethod
+from ikde.track.run import run_track
+from ikde.track.spec import TrackMethod
 from ikde.track.starts import EXACT
 from ikde.track.summary import TrackSummary, summarise_track
 from ikde.track.trajectory import TrackStop, Trajectory
@@ -26,8 +26,6 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
-NINE_VARIABLES: Mapping[str, Drive] = {"typical": "omnidirectional"}
-"""`typical` searches x, y and heading as if the base could move anywhere, whatever drives it."""
 STARTED_ANYWHERE = ("optimized", "continuation")
 """Methods for which the start matters: `typical` begins anew at every sample."""
 ONCE = EXACT.with_changes(method="lm", restarts=1)
@@ -95,7 +93,7 @@ def find_start(plan: TrackPlan) -> Floats | None:
 
 def _follow_seed(plan: TrackPlan, method: TrackMethod, start: Floats | None, seed: int) -> TrackSummary:
     """One motion, measured."""
-    trajectory = run_track(plan, method=method, drive=NINE_VARIABLES.get(method), start=start, seed=seed)
+    trajectory = run_track(plan, method=method, start=start, seed=seed)
     return summarise_track(plan.robot, plan.detector, trajectory)
 
 
@@ -131,14 +129,15 @@ def measure(motion: TrackSummary) -> dict[str, Any]:
         "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
         "median_s": float(np.median(seconds)) if len(seconds) else None,
         "p99_s": float(np.quantile(seconds, 0.99)) if len(seconds) else None,
+        "search_s": trajectory.search_seconds,
         "stop": trajectory.stop.text if trajectory.stop else None,
     }
 
 
 def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int, progress: Progress) -> dict[str, Any]:
     """How often each method, and the greedy follower without a way back, end early from random starts."""
-    limits = make_limits(plan.robot, plan.limits)
-    follower = make_follower(plan.robot, plan.path, drive=plan.drive, limits=limits, detector=plan.detector)
+    told = {"drive": plan.drive, "limits": plan.limits, "detector": plan.detector}
+    follower = make_follower(plan.robot, plan.path, **told)
     starts = draw_random_starts(follower, count, plan.seed)
     reached, stops = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}, {}
     for method in methods:

@@ -1,11 +1,13 @@
 """Files that are either whole or not there: written under a hidden name, synced, renamed."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
+
+from ikde.errors import FileError
 
 
 def write_atomically(path: Path, data: Any) -> None:
@@ -41,6 +43,23 @@ def write_together(files: Mapping[Path, Any]) -> None:
     finally:
         for descriptor in opened.values():
             os.close(descriptor)
+
+
+def replace_all(folder: Path, files: Mapping[str, Any], names: Iterable[str]) -> tuple[Path, ...]:
+    """Write bytes by name into a folder, and remove those of `names` that are not among them; returns the files.
+
+    Raises:
+        FileError: if they cannot be written; then none of them is new, or only those that were named before.
+    """
+    paths = {folder / name: data for name, data in files.items()}
+    try:
+        write_together(paths)
+        for name in set(names) - set(files):
+            (folder / name).unlink(missing_ok=True)
+        sync_folder(folder)
+    except OSError as error:
+        raise FileError(error.filename or folder, f"cannot be written: {error.strerror or error}") from None
+    return tuple(paths)
 
 
 def temporary_path(path: Path) -> Path:

@@ -5,16 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ikde.errors import FileError
-from ikde.files.atomic import sync_folder, write_together
-from ikde.io.trajectory_files import format_trajectory
+from ikde.files.atomic import replace_all
+from ikde.io.trajectory_files import MOTION, format_trajectory
 from ikde.track.trajectory import Trajectory
 
 SUMMARY, PAGE = "summary.json", "report.html"
-MOTION = (
-    *("trajectory.csv", "trajectory.parquet", "joint_trajectory.yaml", "joint_trajectory.json"),
-    *("base.yaml", "base.json"),
-)
 
 
 def write_track(
@@ -38,12 +33,4 @@ def write_track(
     files[SUMMARY] = (json.dumps(summary, indent=2, allow_nan=False, ensure_ascii=False) + "\n").encode()
     if len(trajectory.q):
         files |= format_trajectory(trajectory)
-    paths = {folder / name: data for name, data in files.items()}
-    try:
-        write_together(paths)
-        for name in {PAGE, SUMMARY, *MOTION} - set(files):
-            (folder / name).unlink(missing_ok=True)
-        sync_folder(folder)
-    except OSError as error:
-        raise FileError(error.filename or folder, f"cannot be written: {error.strerror or error}") from None
-    return tuple(paths)
+    return replace_all(folder, files, (PAGE, SUMMARY, *MOTION))

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from io import BytesIO
+from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -12,8 +13,8 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 import yaml
 
-from ikde.errors import FileError, InputError
-from ikde.files.atomic import sync_folder, write_together
+from ikde.errors import InputError
+from ikde.files.atomic import replace_all
 from ikde.io.report_folder import prepare_folder
 from ikde.kernels.arrays import Floats
 from ikde.track.trajectory import Trajectory
@@ -21,12 +22,21 @@ from ikde.track.trajectory import Trajectory
 Format = Literal["csv", "parquet", "yaml", "json"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 NANO = 10**9
+MOTION = (
+    *("trajectory.csv", "trajectory.parquet", "joint_trajectory.yaml", "joint_trajectory.json"),
+    *("base.yaml", "base.json"),
+)
+"""All that a motion can leave in a folder."""
 
 
 def write_trajectory(
-    folder: Path, trajectory: Trajectory, formats: Sequence[Format] = FORMATS, *, velocities: bool = False
+    folder: str | PathLike[str],
+    trajectory: Trajectory,
+    formats: Sequence[Format] = FORMATS,
+    *,
+    velocities: bool = False,
 ) -> tuple[Path, ...]:
-    """Write a motion into a folder, replacing what an earlier one wrote under the same names.
+    """Write a motion into a folder; what an earlier one left there is replaced or removed.
 
     `csv` and `parquet`: `trajectory.<format>`, a row a sample. `yaml` and `json`: `joint_trajectory.<format>`, the arm
     as a ROS message, and `base.<format>`, the base's twist and its wheels' speeds at the same times.
@@ -44,16 +54,9 @@ def write_trajectory(
         InputError: for an unknown format, or a motion without samples.
         FileError: if they cannot be written; then none of them is new, or only those that were named before.
     """
-    files = {
-        folder / name: data for name, data in format_trajectory(trajectory, formats, velocities=velocities).items()
-    }
-    prepare_folder(folder)
-    try:
-        write_together(files)
-        sync_folder(folder)
-    except OSError as error:
-        raise FileError(error.filename or folder, f"cannot be written: {error.strerror or error}") from None
-    return tuple(files)
+    files = format_trajectory(trajectory, formats, velocities=velocities)
+    prepare_folder(Path(folder))
+    return replace_all(Path(folder), files, MOTION)
 
 
 def format_trajectory(

@@ -31,8 +31,6 @@ class Certificate:
     """No gap of the motion is smaller, at any moment; inf without a pair."""
     segment_m: Floats
     """[M] the same, of each segment."""
-    evaluations: int
-    """Configurations that were looked at."""
     deviation_m: Floats
     """[M] distance of the tool from the path half-way between samples."""
     deviation_rad: Floats
@@ -46,29 +44,28 @@ class Certificate:
 
 def certify(robot: Robot, path: ToolPath, q: Floats, *, drive: str, detector: Detector | None) -> Certificate:
     """Bound the clearance of the motion through `q` [M + 1, N], and measure the tool at its mid-points."""
-    segments, evaluations = bound_segments(robot, detector, q)
+    segments = bound_segments(robot, detector, q)
     position, turn = measure_deviation(robot, path, q, drive)
     return Certificate(
         clearance_m=float(segments.min(initial=np.inf)),
         segment_m=segments,
-        evaluations=evaluations,
         deviation_m=position,
         deviation_rad=turn,
     )
 
 
-def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> tuple[Floats, int]:
-    """Lower bound [M] of the clearance in each segment between rows of `q` [M + 1, N]; and the effort."""
+def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> Floats:
+    """Lower bound [M] of the clearance in each segment between rows of `q` [M + 1, N]; inf without a pair."""
     pairs = robot.pairs(detector)
     lower = np.full(max(len(q) - 1, 0), np.inf)
     if detector is None or not pairs or not len(lower):
-        return lower, 0
-    radii = travel_radii(robot, detector)
+        return lower
+    radii = travel_radii(robot, detector, np.abs(q).max(axis=0))
     gaps = compute_gaps(robot, detector.spheres, pairs, q)
     least = gaps.min()
     goal = max(least - max(SHARP_M, SHARP * abs(least)), 0.5 * least if least > 0.0 else -np.inf)
     which, start, end = np.arange(len(lower)), q[:-1], q[1:]
-    before, after, evaluations = gaps[:-1], gaps[1:], len(q)
+    before, after = gaps[:-1], gaps[1:]
     for halving in range(MOST_HALVINGS + 1):
         travel = np.abs(end - start) @ radii.T
         bound = (0.5 * (before + after - travel)).min(axis=1)
@@ -79,15 +76,17 @@ def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> tuple[
         which, start, end, before, after = which[weak], start[weak], end[weak], before[weak], after[weak]
         middle = 0.5 * (start + end)
         between = compute_gaps(robot, detector.spheres, pairs, middle)
-        evaluations += len(middle)
         which = np.concatenate([which, which])
         start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
         before, after = np.concatenate([before, between]), np.concatenate([between, after])
-    return lower, evaluations
+    return lower
 
 
-def travel_radii(robot: Robot, detector: Detector) -> Floats:
-    """By how much a joint can change each pair's gap [P, N]: m a rad of a turn, 1 for a slide, else 0."""
+def travel_radii(robot: Robot, detector: Detector, farthest: Floats) -> Floats:
+    """By how much a joint can change each pair's gap [P, N]: m a rad of a turn, 1 for a slide, else 0.
+
+    `farthest` [N] is how far joints are from 0 at most, m and rad: a turn moves what a slide has carried outwards more.
+    """
     tree = build_tree(robot)
     centres: dict[str, list[tuple[int, Floats]]] = {}
     for sphere in expand_rows(robot, tree, detector.spheres):
@@ -99,7 +98,7 @@ def travel_radii(robot: Robot, detector: Detector) -> Floats:
             for body in chain:
                 if body not in other:
                     joint = tree.bodies[body].joint
-                    row[joint] = max(_farthest(robot, tree, chain, body, p) for _, p in centres[name])
+                    row[joint] = max(_farthest(robot, tree, farthest, chain, body, p) for _, p in centres[name])
     return radii
 
 
@@ -112,25 +111,23 @@ def _chain(tree: Tree, body: int) -> list[int]:
     return chain
 
 
-def _farthest(robot: Robot, tree: Tree, chain: list[int], body: int, point: Floats) -> float:
-    """Largest distance from the axis of `body` that a point of the chain's first body can ever have."""
+def _farthest(robot: Robot, tree: Tree, farthest: Floats, chain: list[int], body: int, point: Floats) -> float:
+    """Largest distance from the axis of `body` that a point of the chain's first body can have."""
     joint = tree.bodies[body].joint
     if joint is None or robot.joints[joint].kind == "prismatic":
         return 1.0
     inner, length = chain[: chain.index(body)], 0.0
     for carried in inner:  # from the point towards the joint: the point may stand anywhere around each
-        length += float(np.linalg.norm(point)) + _slide(robot, tree, carried)
+        length += float(np.linalg.norm(point)) + _slide(robot, tree, farthest, carried)
         point = tree.bodies[carried].T_parent_body[:3, 3]
     axis = tree.bodies[body].axis
     return length + float(np.linalg.norm(point - (point @ axis) * axis))
 
 
-def _slide(robot: Robot, tree: Tree, body: int) -> float:
-    """How far a sliding body can be from where it is at q = 0, m."""
+def _slide(robot: Robot, tree: Tree, farthest: Floats, body: int) -> float:
+    """How far a sliding body is from where it is at q = 0, at most, m."""
     joint = tree.bodies[body].joint
-    if joint is None or robot.joints[joint].kind != "prismatic":
-        return 0.0
-    return max(abs(robot.joints[joint].lower), abs(robot.joints[joint].upper))
+    return float(farthest[joint]) if joint is not None and robot.joints[joint].kind == "prismatic" else 0.0
 
 
 def halfway(robot: Robot, q: Floats, drive: str, dt_s: float) -> Floats:

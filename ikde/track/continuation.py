@@ -1,13 +1,15 @@
 """`continuation`, ours: from sample to sample by steps of the fast solver, from a start chosen along the whole path."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-from ikde.kernels.arrays import Floats
+import numpy as np
+
+from ikde.kernels.arrays import DRIFT, Floats
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
 from ikde.track.certify import bound_segments
-from ikde.track.courses import choose_course
-from ikde.track.follow import FARTHEST, Course, Follower
+from ikde.track.courses import ContinuationSettings, choose_course
+from ikde.track.follower import FARTHEST, Course, Follower
 from ikde.track.refusal import (
     explain_stop,
     first_out_of_reach,
@@ -19,7 +21,7 @@ from ikde.track.refusal import (
 from ikde.track.starts import MORE_DRAWS, Frozen, draw_starts, settle_start
 from ikde.track.trajectory import TrackStop
 
-WIDER = 8.0  # by how much the margin grows if a motion is not certified between its samples
+WIDER = 8.0  # by how much what is kept above the safe distance grows if a motion is not certified between its samples
 MOST_MARGINS = 4
 
 
@@ -45,31 +47,33 @@ class Continuation:
     follower: Follower
     frozen: Frozen
     seed: int
-    asked: dict[int, SolveResult]
+    settings: ContinuationSettings = field(default_factory=ContinuationSettings)
+    asked: dict[int, SolveResult] = field(default_factory=dict, init=False)
     """What the solver says about samples by themselves."""
 
-    def find(self, start: Floats | None) -> Found | TrackStop:
-        """A course that is certified, as far as it goes; a stop if not even the first pose is met."""
+    def find(self, start: Floats | None) -> Found:
+        """A course that is certified, as far as it goes; without a sample if not even the first pose is met."""
         beyond = self._find_out_of_reach()
         if beyond is not None and beyond[0] == 0:
-            return tell_out_of_reach(self.follower, *beyond)
+            return self._nowhere(tell_out_of_reach(self.follower, *beyond))
         end = self.follower.path.samples if beyond is None else beyond[0] - 1
         if start is None:
             found = self._from_any_start(end)
         else:
             found = self._certified(settle_start(self.follower, start, self.frozen)[None], end)
-        if isinstance(found, TrackStop) or found.stop or found.course.last == self.follower.path.samples:
+        if found.stop or found.course.last == self.follower.path.samples:
             return found
         if found.course.last == end and beyond is not None:
             return replace(found, stop=tell_out_of_reach(self.follower, *beyond))
         stop = explain_stop(found.follower, found.course, self._ask(found.course.last + 1))
         return replace(found, stop=stop)
 
-    def _from_any_start(self, end: int) -> Found | TrackStop:
+    def _from_any_start(self, end: int) -> Found:
         """The best course from starts of its own; from more of them if none of the first leads to the end."""
         starts, first = draw_starts(self.follower, self.frozen, self.seed)
         if not len(starts):
-            return tell_too_far(self.follower) if first.reached else tell_static(self.follower, 0, first)
+            follower = self.follower
+            return self._nowhere(tell_too_far(follower) if first.reached else tell_static(follower, 0, first))
         found = self._certified(starts, end)
         if found.course.last == end or not self._is_possible(found.course.last + 1):
             return found
@@ -80,15 +84,21 @@ class Continuation:
         """The course that comes farthest certified, with margins that grow until nothing is in doubt."""
         best, follower = None, self.follower
         for _ in range(MOST_MARGINS):
-            course = choose_course(follower, starts, end, self.seed, self._is_possible)
+            course = choose_course(follower, starts, end, self.seed, self._is_possible, self.settings)
             found = cut_at_doubt(Found(course=course, follower=follower, stop=None))
             if best is None or found.course.last > best.course.last:
                 best = found
             if found.stop is None:
                 break
-            follower = follower.with_track(margin=WIDER * follower.track.margin)
+            safe = follower.detector.safe_distance_m if follower.detector else 0.0
+            follower = follower.with_track(margin=safe + WIDER * (follower.track.margin - safe))
         assert best is not None
         return best
+
+    def _nowhere(self, stop: TrackStop) -> Found:
+        """No course at all, and why."""
+        nothing = self.follower.begin(self.follower.robot.home, np.zeros(DRIFT))
+        return Found(course=replace(nothing, last=-1), follower=self.follower, stop=stop)
 
     def _is_possible(self, sample: int) -> bool:
         return self._ask(sample).reached
@@ -105,7 +115,7 @@ class Continuation:
     def _find_out_of_reach(self) -> tuple[int, float] | None:
         """The first sample that is proved to be out of reach, and by how many m."""
         robot = self.follower.robot
-        lower, upper = robot.lower, robot.upper
+        lower, upper = robot.lower.copy(), robot.upper.copy()
         if not self.follower.limits.ranges:
             lower[:], upper[:] = -FARTHEST, FARTHEST
         for name, value in self.frozen.items():
@@ -116,9 +126,9 @@ class Continuation:
 
 def cut_at_doubt(found: Found) -> Found:
     """The same up to the first segment that may touch on its way."""
-    lower, _ = bound_segments(found.follower.robot, found.follower.detector, found.q)
-    certain = next((k for k, bound in enumerate(lower) if not bound > 0.0), None)
-    if certain is None:
+    bounds = bound_segments(found.follower.robot, found.follower.detector, found.q)
+    doubtful = next((k for k, bound in enumerate(bounds) if not bound > 0.0), None)
+    if doubtful is None:
         return found
-    stop = tell_uncertified(found.follower, certain + 1, found.q[certain : certain + 2])
-    return replace(found, course=replace(found.course, last=certain), stop=stop)
+    stop = tell_uncertified(found.follower, doubtful + 1, found.q[doubtful : doubtful + 2])
+    return replace(found, course=replace(found.course, last=doubtful), stop=stop)

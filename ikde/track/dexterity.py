@@ -15,11 +15,12 @@ def smallest_singular_values(
 ) -> Floats:
     """Of the tool's Jacobian in m and rad by the joints of the arm, for `q` [..., N]; 0 in a singularity.
 
-    Its rows are what a path with this orientation asks for. The joints of a base are left out: with them a mobile
-    robot is hardly ever singular.
+    Its rows are what a path with this orientation asks for; an arm with fewer joints than that is always singular. The
+    joints of a base are left out: with them a mobile robot is hardly ever singular.
     """
-    jacobian = arm_jacobian(robot, q, base_joints)[..., : ASKED_ROWS[orientation], :]
-    if not jacobian.size:
+    rows = ASKED_ROWS[orientation]
+    jacobian = arm_jacobian(robot, q, base_joints)[..., :rows, :]
+    if jacobian.shape[-1] < rows or not jacobian.size:
         return np.zeros(q.shape[:-1])
     return np.linalg.svd(jacobian, compute_uv=False)[..., -1]  # type: ignore[return-value]
 

@@ -15,7 +15,7 @@ from ikde.model.robot import Robot
 from ikde.model.tree import build_tree
 from ikde.solver.engines.pool import find_planar_base
 from ikde.track.limits import MotionLimits
-from ikde.track.spec import DRIVES
+from ikde.track.spec import DRIVES, Drive
 
 WHEEL_RADIUS_M = 0.100  # [Qiao2022]
 HALF_TRACK_M = 0.259  # calibrated: not printed
@@ -50,6 +50,11 @@ def implied_wheel_speed(speed: Floats, base: Ints) -> float:
     """The wheel speed that the speed limits [N] of a base imply, rad/s: (v + B omega) / r."""
     v = float(min(speed[base[0]], speed[base[1]]))
     return (v + HALF_TRACK_M * float(speed[base[2]])) / WHEEL_RADIUS_M
+
+
+def usual_drive(robot: Robot) -> Drive:
+    """`differential` for a robot that has a base to drive, `omnidirectional` for one that has none."""
+    return "differential" if find_planar_base(robot)[0] >= 0 else "omnidirectional"
 
 
 def find_wheels(robot: Robot, drive: str) -> Ints:

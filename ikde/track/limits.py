@@ -25,12 +25,13 @@ class MotionLimits:
 
     ranges: bool = True
     """Every joint stays in its range: q_L <= q <= q_U (13)."""
-    speed: Floats | None = None
+    speed: Floats | None
     """[N] m/s, rad/s: |dq/dt| <= this, at every moment (14, 15). The speed of a base with wheels along its heading is
     held to the lower of those of x and y. 0: frozen; infinite: any."""
     acceleration: Floats | None = None
     """[N] m/s^2, rad/s^2: the speeds of two neighbouring segments differ by no more than this times dt. The first
-    segment may have any speed: the path may begin in motion. The paper has no such limit."""
+    segment may have any speed, and what comes after the last is not looked at: a path may begin and end in motion. The
+    paper has no such limit."""
     wheel_speed_rad_s: float | None = None
     """Of both wheels of a differential base (6). The speed limits of the base imply (v + B omega) / r."""
     farthest_m: float | None = None

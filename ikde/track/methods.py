@@ -1,33 +1,49 @@
 """The three ways to follow a path, from a start that is given or the one that `continuation` finds best."""
 
+import time
 from collections.abc import Callable
-
-import numpy as np
+from dataclasses import dataclass
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.kernels.jit import compile_clock
 from ikde.track.continuation import Continuation
+from ikde.track.courses import ContinuationSettings
 from ikde.track.optimized import OptimizedSettings, follow_optimized
 from ikde.track.spec import TRACK_METHODS, TrackMethod
 from ikde.track.starts import settle_start
 from ikde.track.trajectory import TrackStop
 from ikde.track.typical import TypicalSettings, follow_typical
 
-TrackSettings = OptimizedSettings | TypicalSettings
+TrackSettings = ContinuationSettings | OptimizedSettings | TypicalSettings
+SETTINGS: dict[str, type[TrackSettings]] = {
+    "continuation": ContinuationSettings,
+    "optimized": OptimizedSettings,
+    "typical": TypicalSettings,
+}
 
-Followed = tuple[Floats, TrackStop | None, Floats]
-"""Joint values [M + 1, N], why they end before the path does, and the seconds of each sample [M]."""
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Followed:
+    """A motion as far as it goes, and what it took."""
+
+    q: Floats
+    """[M + 1, N]"""
+    stop: TrackStop | None
+    """Why it ends before its path does."""
+    seconds: Floats
+    """[M] of each sample after the start."""
+    search_seconds: float
+    """Of the whole motion."""
 
 
 def check_method(method: str, settings: TrackSettings | None) -> None:
     """Raises `InputError` for an unknown method, and for settings of another one."""
     if method not in TRACK_METHODS:
         raise InputError(f"expected one of {', '.join(TRACK_METHODS)}, got {method!r}", ("method",))
-    theirs = {"optimized": OptimizedSettings, "typical": TypicalSettings}.get(method)
-    if settings is not None and (theirs is None or not isinstance(settings, theirs)):
-        expected = f"expected {theirs.__name__}" if theirs else "it takes none"
-        raise InputError(f"method {method}: {expected}, got {type(settings).__name__}", ("settings",))
+    theirs = SETTINGS[method]
+    if settings is not None and not isinstance(settings, theirs):
+        raise InputError(f"method {method}: expected {theirs.__name__}, got {type(settings).__name__}", ("settings",))
 
 
 def follow_by(
@@ -39,20 +55,24 @@ def follow_by(
 ) -> Followed:
     """The motion by one of the methods; `start` [N] is near the first pose."""
     follower = search.follower
-    with compile_clock(announce_compile):
+    with compile_clock(announce_compile) as clock:
+        began = time.perf_counter()
+
+        def spent() -> float:
+            return time.perf_counter() - began - clock.seconds
+
         if method == "continuation" or start is None:
             found = search.find(start)
-            if isinstance(found, TrackStop):
-                return np.empty((0, len(follower.robot.joints))), found, np.empty(0)
-            if method == "continuation":
-                return found.q, found.stop, found.follower.follow_timed(found.course)
+            if method == "continuation" or not len(found.q):
+                search_s, seconds = spent(), found.follower.follow_timed(found.course)
+                return Followed(q=found.q, stop=found.stop, seconds=seconds, search_seconds=search_s)
             begin = found.q[0]
         else:
             begin = settle_start(follower, start, search.frozen)
         if method == "typical":
-            assert not isinstance(settings, OptimizedSettings)  # `check_method`
+            assert settings is None or isinstance(settings, TypicalSettings)  # `check_method`
             q, seconds = follow_typical(follower, begin, search.seed, settings)
-            return q, None, seconds
-        assert not isinstance(settings, TypicalSettings)
+            return Followed(q=q, stop=None, seconds=seconds, search_seconds=spent())
+        assert settings is None or isinstance(settings, OptimizedSettings)
         evolved = follow_optimized(follower, begin, search.seed, settings)
-        return evolved.q, evolved.stop, evolved.seconds
+        return Followed(q=evolved.q, stop=evolved.stop, seconds=evolved.seconds, search_seconds=spent())

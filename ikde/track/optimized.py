@@ -25,9 +25,9 @@ from ikde.solver.engines.pool import find_planar_base
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import compute_orientation_errors
 from ikde.track.drive import WHEEL_RADIUS_M, wheel_speeds
-from ikde.track.follow import Follower
+from ikde.track.follower import Follower
 from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach, tell_when
-from ikde.track.starts import is_near
+from ikde.track.starts import keeps_distance
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
 WITHIN = 1.0 - 1e-6  # of the tolerances: what rounding can't undo
@@ -68,10 +68,6 @@ class Evolved:
     """[M + 1, N]"""
     seconds: Floats
     """[M]"""
-    populations: Floats
-    """[M] drawn for each sample; 1 if the first was solved."""
-    evaluations: Floats
-    """[M] steps looked at."""
     stop: TrackStop | None
 
 
@@ -85,7 +81,7 @@ def follow_optimized(
     search = pack_step_search(follower, settings)
     work = make_step_workspace(packed, detector, len(start), follower.size, settings.population)
     q, steps = np.zeros((samples + 1, len(start))), np.zeros((samples + 1, follower.size))
-    seconds, counts = np.zeros(samples), np.zeros((samples, 2))
+    seconds = np.zeros(samples)
     told = (packed, detector, follower.drive, follower.track, follower.target)
 
     def evolve(k: int, search: StepSearchArrays) -> Any:
@@ -96,22 +92,12 @@ def follow_optimized(
     evolve(1, search._replace(attempts=0))  # compiled before the clock runs
     for k in range(1, samples + 1):
         started = time.perf_counter()
-        verdict, pair, *counts[k - 1] = evolve(k, search)
+        verdict, pair, *_ = evolve(k, search)
         seconds[k - 1] = time.perf_counter() - started
         if verdict != SOLVED:
             stop = tell_unsolved(follower, settings, k, verdict, pair, q[k], steps[k - 1 : k + 1])
-            return _cut(k - 1, q, seconds, counts, stop)
-    return _cut(samples, q, seconds, counts, None)
-
-
-def _cut(last: int, q: Floats, seconds: Floats, counts: Floats, stop: TrackStop | None) -> Evolved:
-    return Evolved(
-        q=q[: last + 1],
-        seconds=seconds[:last],
-        populations=counts[:last, 0],
-        evaluations=counts[:last, 1],
-        stop=stop,
-    )
+            return Evolved(q=q[:k], seconds=seconds[: k - 1], stop=stop)
+    return Evolved(q=q, seconds=seconds, stop=None)
 
 
 def pack_step_search(follower: Follower, settings: OptimizedSettings) -> StepSearchArrays:
@@ -175,7 +161,7 @@ def find_broken(follower: Follower, q: Floats, step: Floats) -> tuple[TrackStopR
         v, omega = step[:2] * drive.largest[:2]
         if np.abs(wheel_speeds(v, omega)).max() * WHEEL_RADIUS_M > drive.wheel_travel:
             return TrackStopReason.WHEEL_LIMIT, "the wheels' limit", "wheels"
-    if not is_near(follower, q[None])[0]:
+    if not keeps_distance(follower, q[None])[0]:
         return TrackStopReason.DISTANCE_LIMIT, "the largest distance", follower.limits.center
     return TrackStopReason.JOINT_LIMIT, "the base's range", None
 

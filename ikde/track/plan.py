@@ -1,7 +1,7 @@
 """What will be tracked: a track file with every name resolved, in m, rad and s."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
@@ -12,34 +12,16 @@ from ikde.files.entries import UnitsEntry
 from ikde.files.placed import placed
 from ikde.files.robot_entries import read_detector, to_si, with_ranges
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import WORLD, Detector, Robot
 from ikde.solver.joints import JointValues, joints_outside, read_configuration
-from ikde.track.drive import find_wheels
+from ikde.track.drive import find_wheels, usual_drive
+from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive, LimitsEntry, TrackMethod, TrackSpec
 
 NO_WHEELS = "an omnidirectional drive has no such wheels"
 KINDS = ("prismatic", "revolute")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AskedLimits:
-    """Limits that a track file asks for; joints that it leaves out have none here and keep their defaults."""
-
-    ranges: bool = True
-    """Whether joints must stay in their ranges."""
-    speed: Mapping[str, float] = field(default_factory=dict)
-    """Joint -> m/s or rad/s; infinite where the file says null."""
-    acceleration: Mapping[str, float] = field(default_factory=dict)
-    """Joint -> m/s^2 or rad/s^2."""
-    wheel_speed_rad_s: float | None = None
-    farthest_m: float | None = None
-    """Of the tool from the origin of the frame `center`."""
-    center: str | None = None
-    position_error_m: float | None = None
-    """Along each axis."""
-    orientation_error_rad: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -52,7 +34,7 @@ class TrackPlan:
     path: ToolPath
     drive: Drive
     method: TrackMethod
-    limits: AskedLimits
+    limits: MotionLimits
     detector: Detector | None
     """What counts as self-collision; None for nothing."""
     start: Floats | None
@@ -121,39 +103,38 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
 
 
 def _read_drive(spec: TrackSpec, robot: Robot) -> Drive:
-    """What the file says; else arcs for a robot that has a base, and no base to speak of for one that has none."""
-    if spec.drive == "omnidirectional":
-        return spec.drive
+    """What the file says; else arcs for a robot that has a base."""
+    drive = spec.drive or usual_drive(robot)
     try:
-        find_wheels(robot, "differential")
+        find_wheels(robot, drive)
     except InputError as error:
-        if spec.drive is None:
-            return "omnidirectional"
         raise InputError(f"{error.message}; leave it out, or say omnidirectional", ("drive",)) from None
-    return "differential"
+    return drive
 
 
-def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> AskedLimits:
-    limits, units = spec.limits, spec.units
+def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> MotionLimits:
+    """Those of the file; what it leaves out is as in the paper (`MotionLimits.of`)."""
+    limits, units, usual = spec.limits, spec.units, MotionLimits.of(robot)
     with placed("limits"):
         if limits.wheel_speed is not None and drive == "omnidirectional":
             raise InputError(NO_WHEELS, ("wheel_speed",))
         _check_center(limits, robot)
-        return AskedLimits(
+        accelerations = _by_joint(robot, "acceleration", limits.acceleration, units, np.inf)
+        return MotionLimits(
             ranges=limits.ranges,
-            speed=_by_joint(robot, "speed", limits.speed, units),
-            acceleration=_by_joint(robot, "acceleration", limits.acceleration, units),
+            speed=_by_joint(robot, "speed", limits.speed, units, usual.speed),
+            acceleration=accelerations if limits.acceleration else None,
             wheel_speed_rad_s=_scaled(limits.wheel_speed, units.angle_rad),
             farthest_m=_scaled(limits.farthest, units.length_m),
             center=limits.center,
-            position_error_m=_scaled(limits.position_error, units.length_m),
-            orientation_error_rad=_scaled(limits.orientation_error, units.angle_rad),
+            position_error_m=_scaled(limits.position_error, units.length_m) or usual.position_error_m,
+            orientation_error_rad=_scaled(limits.orientation_error, units.angle_rad) or usual.orientation_error_rad,
         )
 
 
 def _check_center(limits: LimitsEntry, robot: Robot) -> None:
     """A distance and the frame that it is measured from go together."""
-    frames = [frame.name for frame in robot.frames]
+    frames = [WORLD, *(frame.name for frame in robot.frames)]
     if limits.center is not None and limits.center not in frames:
         raise InputError(f"{robot.name} has no frame {limits.center!r}{nearest(limits.center, frames)}", ("center",))
     if (limits.farthest is None) != (limits.center is None):
@@ -165,20 +146,22 @@ def _scaled(value: float | None, unit: float) -> float | None:
     return None if value is None else value * unit
 
 
-def _by_joint(robot: Robot, key: str, given: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:
-    """Limits by joint; a joint's own comes before that of its kind."""
+def _by_joint(
+    robot: Robot, key: str, given: Mapping[str, float | None], units: UnitsEntry, usual: Floats | float | None
+) -> Floats:
+    """Limits by joint [N], `usual` where none is given; a joint's own comes before that of its kind."""
     for name in given:
         if name not in (*robot.joint_names, *KINDS):
             known = nearest(name, (*robot.joint_names, *KINDS))
             raise InputError(f"{robot.name} has no joint {name!r}{known}; or say prismatic or revolute", (key, name))
-    limits = {}
-    for joint in robot.joints:
+    row = np.broadcast_to(np.asarray(usual, dtype=float), len(robot.joints)).copy()
+    for index, joint in enumerate(robot.joints):
         name = joint.name if joint.name in given else joint.kind
         if name in given:
             value = given[name]
             unit = units.length_m if joint.kind == "prismatic" else units.angle_rad
-            limits[joint.name] = np.inf if value is None else value * unit
-    return limits
+            row[index] = np.inf if value is None else value * unit
+    return row
 
 
 def _read_start(spec: TrackSpec, robot: Robot) -> Floats | None:

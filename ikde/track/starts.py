@@ -12,7 +12,7 @@ from ikde.solver.result import SolveResult
 from ikde.solver.settings import SolveSettings
 from ikde.solver.solve import solve, solve_many
 from ikde.solver.verify import Bools, verify
-from ikde.track.follow import Follower
+from ikde.track.follower import Follower
 
 EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
 DRAWS, MORE_DRAWS = 16, 64  # starts that the solver finds by itself, and as many near random configurations
@@ -42,10 +42,10 @@ def draw_starts(follower: Follower, frozen: Frozen, seed: int, draws: int = DRAW
     q = np.concatenate(found)
     _, unlike = np.unique(q.round(3), axis=0, return_index=True)
     q = q[np.sort(unlike)]
-    return q[is_near(follower, q)], first
+    return q[keeps_distance(follower, q)], first
 
 
-def is_near(follower: Follower, q: Floats) -> Bools:
+def keeps_distance(follower: Follower, q: Floats) -> Bools:
     """Whether the tool is near enough to the platform's centre (18) in each of `q` [S, N]."""
     limits = follower.limits
     if limits.farthest_m is None or limits.center is None:
@@ -72,7 +72,7 @@ def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
     if grade.self_collision:
         a, b = grade.colliding_pairs[0]
         raise InputError(f"{a} and {b} collide", ("start",))
-    if not is_near(follower, q[None])[0]:
+    if not keeps_distance(follower, q[None])[0]:
         raise InputError(f"the tool is farther than {limits.farthest_m:g} m from {limits.center}", ("start",))
     if grade.within_tolerance:
         return q

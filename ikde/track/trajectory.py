@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.track.certify import Certificate
+from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive
 from ikde.track.verify_track import Breaches, TrackVerification
@@ -63,7 +63,7 @@ class Trajectory:
     """Those of them that drive the base: x, y and heading; none for a robot that stands still."""
     drive: Drive
     method: str
-    limits: Any
+    limits: MotionLimits
     """The `MotionLimits` that the motion was made under."""
     q: Floats
     """[M + 1, N] in the robot's own convention, m and rad."""
@@ -76,7 +76,10 @@ class Trajectory:
     stop: TrackStop | None
     """Why the motion ends before its path does; None if it does not."""
     seconds: Floats
-    """[M] wall time of each sample after the start, without compilation."""
+    """[M] wall time of each sample after the start, without compiling. Of `continuation`, the steps of the motion that
+    was found, taken once more one by one as a controller would take them: `search_seconds` is what finding it took."""
+    search_seconds: float
+    """Wall time of the whole motion: starts, all courses, ways back; without compiling and grading."""
     verification: TrackVerification
     """What plain numpy says about the samples."""
     certificate: Certificate

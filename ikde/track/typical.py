@@ -16,7 +16,7 @@ from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.solver.engines.pool import find_planar_base
-from ikde.track.follow import Follower
+from ikde.track.follower import Follower
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

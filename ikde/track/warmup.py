@@ -7,9 +7,9 @@ import numpy as np
 from ikde.model.robot import Detector, Robot
 from ikde.solver.plain import compute_frames
 from ikde.solver.warmup import Stage
+from ikde.track.follow_path import follow_path
 from ikde.track.path import ToolPath
 from ikde.track.spec import TRACK_METHODS
-from ikde.track.track import track
 
 SAMPLES = 2
 DT_S = 0.02
@@ -19,5 +19,5 @@ def list_track_stages(robot: Robot, detector: str | Detector | None = None) -> l
     """A stage a method; kernels are the same for either drive and every kind of path."""
     tool = compute_frames(robot, robot.home)[robot.tool]
     path = ToolPath.through(np.tile(tool[:3, 3], (SAMPLES + 1, 1)), dt_s=DT_S)
-    follow = partial(track, robot, path, drive="omnidirectional", detector=detector)
+    follow = partial(follow_path, robot, path, drive="omnidirectional", detector=detector)
     return [Stage(name=f"track, {method}", run=partial(follow, method=method)) for method in TRACK_METHODS]

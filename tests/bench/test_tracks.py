@@ -14,8 +14,7 @@ from ikde.bench.tracks import (
     draw_random_starts,
     measure,
 )
-from ikde.track.follow import make_follower
-from ikde.track.run import make_limits
+from ikde.track.follower import make_follower
 from tests.track.measured import make_measured
 
 BUDGET = TrackBudget(seeds=2, starts=2)
@@ -68,8 +67,8 @@ def test_a_method_is_run_with_every_seed_and_from_every_start(plan):
 
 
 def test_random_starts_meet_the_first_pose_and_differ(plan):
-    limits = make_limits(plan.robot, plan.limits)
-    follower = make_follower(plan.robot, plan.path, drive="differential", limits=limits, detector=plan.detector)
+    told = {"drive": "differential", "limits": plan.limits, "detector": plan.detector}
+    follower = make_follower(plan.robot, plan.path, **told)
     starts = draw_random_starts(follower, 3, seed=1)
     assert len(np.unique(starts.round(6), axis=0)) == 3
     for q in starts:

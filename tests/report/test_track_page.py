@@ -12,8 +12,9 @@ from ikde.cli.options import AngleUnit, LengthUnit, read_q
 from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
 from ikde.report.track_page import make_track_page
+from ikde.track.follow_path import grade_motion
+from ikde.track.methods import Followed
 from ikde.track.summary import summarise_track
-from ikde.track.track import grade_motion
 from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.track.measured import make_measured
 
@@ -62,7 +63,8 @@ def make_empty(motion):
     """The same, but not even its start was met."""
     was, robot, detector = motion.trajectory, motion.robot, motion.detector
     told = {"drive": was.drive, "method": was.method, "limits": was.limits, "detector": detector}
-    empty = grade_motion(robot, was.path, was.q[:0], was.stop, was.seconds[:0], **told)
+    nothing = Followed(q=was.q[:0], stop=was.stop, seconds=was.seconds[:0], search_seconds=0.25)
+    empty = grade_motion(robot, was.path, nothing, **told)
     return summarise_track(robot, detector, empty)
 
 

@@ -4,10 +4,11 @@ import numpy as np
 
 from ikde.solver.plain import compute_frames
 from ikde.track.drive import step_base
+from ikde.track.follow_path import grade_motion
 from ikde.track.limits import MotionLimits
+from ikde.track.methods import Followed
 from ikde.track.path import ToolPath
 from ikde.track.summary import summarise_track
-from ikde.track.track import grade_motion
 
 DT_S = 0.02
 
@@ -28,7 +29,8 @@ def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="ax
     chosen = robot.detector(changes.pop("detector", None))
     limits = MotionLimits.of(robot, **changes)
     told = {"drive": drive, "method": "continuation", "limits": limits, "detector": chosen}
-    motion = grade_motion(robot, path, q, stop, np.full(steps, 2e-5), **told)
+    followed = Followed(q=q, stop=stop, seconds=np.full(steps, 2e-5), search_seconds=0.25)
+    motion = grade_motion(robot, path, followed, **told)
     return summarise_track(robot, chosen, motion)
 
 

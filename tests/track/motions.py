@@ -41,9 +41,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         breaches=changes.pop("breaches", KEPT),
     )
     deviation, segment = np.full(steps, 1e-5), np.full(steps, 0.04)
-    proof = Certificate(
-        clearance_m=0.04, segment_m=segment, evaluations=9, deviation_m=deviation, deviation_rad=deviation
-    )
+    proof = Certificate(clearance_m=0.04, segment_m=segment, deviation_m=deviation, deviation_rad=deviation)
     given = {
         "path": path,
         "joint_names": NAMES,
@@ -57,6 +55,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         "wheel_speeds": wheels if drive == "differential" else None,
         "stop": stop,
         "seconds": np.full(steps, 1e-4),
+        "search_seconds": 0.25,
         "verification": graded,
         "certificate": proof,
     }

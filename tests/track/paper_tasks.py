@@ -6,7 +6,7 @@ from pathlib import Path
 import ikde
 from ikde.io.track_file import load_track
 from ikde.solver.settings import SolveSettings
-from ikde.track.follow import make_follower
+from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import ikde
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import bound_segments, certify, halfway, travel_radii
@@ -35,19 +36,45 @@ def test_it_never_promises_too_much_and_hardly_too_little(qiao, rng, size):
     detector = qiao.detector(None)
     for _ in range(2):
         q = walk(qiao, rng, 12, size)
-        lower, _ = bound_segments(qiao, detector, q)
+        lower = bound_segments(qiao, detector, q)
         seen = sample_densely(qiao, detector, q)
         assert (lower <= seen + 1e-12).all()
         assert lower.min() > seen.min() - max(2e-4, 0.03 * abs(seen.min())) - 1e-3 * size
 
 
+@pytest.mark.parametrize("beyond", [0.0, 10.0])
 @pytest.mark.parametrize("seed", range(25))
-def test_it_holds_for_any_tree(seed):
+def test_it_holds_for_any_tree_and_beyond_its_ranges(seed, beyond):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     detector = robot.detector(None)
     q = walk(robot, rng, 6, 2.0)
-    lower, _ = bound_segments(robot, detector, q)
+    q[:, robot.slides] += beyond * (robot.upper - robot.lower)[robot.slides]
+    lower = bound_segments(robot, detector, q)
     assert (lower <= sample_densely(robot, detector, q) + 1e-12).all()
+
+
+TELESCOPE = """
+name: telescope
+joints:
+  turn: {kind: revolute, lower: -3, upper: 3}
+  slide: {kind: prismatic, lower: 0, upper: 0.001}
+frames:
+  boom: {parent: world, joint: turn, axis: [0, 0, 1]}
+  tip: {parent: boom, joint: slide, axis: [1, 0, 0]}
+  post: {parent: world, xyz: [1, 0, 0]}
+tool: tip
+spheres: {round: [{component: ball, from: tip, radius: 0.05}, {component: post, from: post, radius: 0.05}]}
+pairs: {all: {pairs: {post: [ball]}}}
+detectors: {it: {spheres: round, pairs: all}}
+default_detector: it
+"""
+
+
+def test_what_slides_beyond_its_range_is_carried_farther(tmp_path):
+    (tmp_path / "telescope.yaml").write_text(TELESCOPE)
+    robot = ikde.load_robot(tmp_path / "telescope.yaml")
+    past_the_post = np.array([[-0.3, 1.0], [0.3, 1.0]])
+    assert bound_segments(robot, robot.detector(None), past_the_post)[0] <= -0.1
 
 
 def test_a_contact_between_free_samples_is_seen(qiao):
@@ -58,13 +85,13 @@ def test_a_contact_between_free_samples_is_seen(qiao):
     first = int(np.flatnonzero(free[:-1] & ~free[1:])[0])
     last = first + 1 + int(np.argmax(free[first + 1 :]))
     q = sweep[[first, last]]
-    lower, _ = bound_segments(qiao, detector, q)
+    lower = bound_segments(qiao, detector, q)
     assert free[[first, last]].all()
     assert lower[0] <= sample_densely(qiao, detector, q)[0] < 0.01
 
 
 def test_only_joints_between_two_components_count(qiao):
-    radii = travel_radii(qiao, qiao.detector(None))
+    radii = travel_radii(qiao, qiao.detector(None), qiao.upper)
     pairs = qiao.pairs(qiao.detector(None))
     np.testing.assert_array_equal(radii[:, :3], 0.0)
     row = radii[pairs.index(("J1", "J4"))]
@@ -78,12 +105,12 @@ def test_a_base_does_not_enter(qiao, rng):
     moved = q.copy()
     moved[:, :3] += rng.uniform(-3, 3, (6, 3))
     np.testing.assert_allclose(
-        bound_segments(qiao, qiao.detector(None), q)[0], bound_segments(qiao, qiao.detector(None), moved)[0], atol=1e-12
+        bound_segments(qiao, qiao.detector(None), q), bound_segments(qiao, qiao.detector(None), moved), atol=1e-12
     )
 
 
 def test_without_a_detector_nothing_can_touch(qiao, rng):
-    assert (bound_segments(qiao, None, walk(qiao, rng, 3, 1.0))[0] == np.inf).all()
+    assert (bound_segments(qiao, None, walk(qiao, rng, 3, 1.0)) == np.inf).all()
 
 
 @pytest.mark.parametrize("samples", [0, 1])
@@ -123,4 +150,4 @@ def test_free_samples_are_not_doubted_for_lack_of_halvings(qiao, monkeypatch, ro
     least = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), q).min()
     # as if the nearest pair kept no more than `room` at the samples
     monkeypatch.setattr("ikde.track.certify.compute_gaps", lambda *told: compute_gaps(*told) - (least - room))
-    assert bound_segments(qiao, detector, q)[0].min() > 0.0
+    assert bound_segments(qiao, detector, q).min() > 0.0

@@ -1,19 +1,23 @@
 """The search for one course: margins that grow, and what is cut off."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from ikde.track import continuation
 from ikde.track.continuation import Continuation, Found, cut_at_doubt
-from ikde.track.follow import MARGIN_M, make_follower
+from ikde.track.follower import MARGIN_M, make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.track.tracks import follow_task, make_line, robot
 
 
-def search(path, drive="differential"):
-    told = {"limits": MotionLimits.of(robot()), "detector": robot().detector(None)}
+def search(path, drive="differential", safe_m=0.0):
+    detector = replace(robot().detector(None), safe_distance_m=safe_m)
+    told = {"limits": MotionLimits.of(robot()), "detector": detector}
     follower = make_follower(robot(), path, drive=drive, **told)
-    return Continuation(follower=follower, frozen={}, seed=0, asked={})
+    return Continuation(follower=follower, frozen={}, seed=0)
 
 
 def test_a_sample_is_asked_about_once(monkeypatch):
@@ -27,15 +31,15 @@ def test_a_sample_is_asked_about_once(monkeypatch):
 
 def test_nothing_to_find_is_a_stop():
     found = search(make_line([0.9, 0, 4.0], [0.9, 0, 1.0], 5)).find(None)
-    assert isinstance(found, TrackStop)
-    assert (found.sample, found.reason) == (0, TrackStopReason.OUT_OF_REACH)
+    assert (found.q.shape, found.stop.sample, found.stop.reason) == ((0, 9), 0, TrackStopReason.OUT_OF_REACH)
+    assert found.follower.follow_timed(found.course).shape == (0,)
 
 
 def test_a_first_pose_too_far_from_the_platform_is_a_stop():
     limits = MotionLimits.of(robot(), farthest_m=0.1, center="Oc")
     told = {"drive": "differential", "detector": robot().detector(None)}
     follower = make_follower(robot(), make_line([0.9, 0, 1.0], [0.9, 0, 1.1], 5), limits=limits, **told)
-    found = Continuation(follower=follower, frozen={}, seed=0, asked={}).find(None)
+    found = Continuation(follower=follower, frozen={}, seed=0).find(None).stop
     assert (found.sample, found.reason, found.limit) == (0, TrackStopReason.DISTANCE_LIMIT, "Oc")
 
 
@@ -47,22 +51,24 @@ def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
     assert cut_at_doubt(found) is found
     bounds = np.ones(100)
     bounds[63] = 0.0
-    monkeypatch.setattr(continuation, "bound_segments", lambda *_: (bounds, 0))
+    monkeypatch.setattr(continuation, "bound_segments", lambda *_: bounds)
     cut = cut_at_doubt(found)
     assert (cut.course.last, len(cut.q), cut.stop.sample) == (63, 64, 64)
     assert cut.stop.reason == TrackStopReason.SELF_COLLISION
     assert cut.stop.pair in found.follower.robot.pairs(found.follower.detector)
 
 
-def test_a_wider_margin_is_tried_then(monkeypatch):
+@pytest.mark.parametrize("safe_m", [0.0, 0.01])
+def test_more_is_kept_above_the_safe_distance_then(monkeypatch, safe_m):
     margins = []
 
     def cut(found):
-        margins.append(found.follower.track.margin / MARGIN_M)
+        margins.append((found.follower.track.margin - safe_m) / MARGIN_M)
         stop = TrackStop(sample=4, reason=TrackStopReason.SELF_COLLISION, text="")
         return found if len(margins) == 2 else Found(course=found.course, follower=found.follower, stop=stop)
 
     monkeypatch.setattr(continuation, "cut_at_doubt", cut)
-    found = search(make_line([0.9, 0, 1], [0.9, 0, 1.02], 5)).find(None)
+    looking = search(make_line([0.9, 0, 1], [0.9, 0, 1.02], 5), safe_m=safe_m)
+    found = looking.find(None)
     assert [round(margin) for margin in margins] == [1, 8]
     assert found.course.last == 5

@@ -17,8 +17,8 @@ from ikde.track.drive import (
     step_base,
     wheel_speeds,
 )
+from ikde.track.follow_path import base_joints
 from ikde.track.limits import MotionLimits
-from ikde.track.track import base_joints
 
 
 def test_a_twist_is_what_an_arc_was_driven_with(rng):

@@ -23,7 +23,7 @@ def test_they_fit_other_robots(any_robot):
 def test_a_speed_may_be_zero_or_any_an_acceleration_must_not_be_zero():
     assert MotionLimits(speed=[0.0, np.inf], acceleration=[1.0, np.inf]).speed.tolist() == [0.0, np.inf]
     with pytest.raises(InputError, match="above 0"):
-        MotionLimits(acceleration=[0.0])
+        MotionLimits(speed=None, acceleration=[0.0])
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_a_speed_may_be_zero_or_any_an_acceleration_must_not_be_zero():
 )
 def test_what_is_refused(given, key):
     with pytest.raises(InputError) as caught:
-        MotionLimits(**given)
+        MotionLimits(**{"speed": None, **given})
     assert caught.value.where == ("limits", key)
 
 
@@ -49,7 +49,7 @@ def test_what_does_not_fit_a_robot_is_refused():
     panda = ikde.load_robot("panda")
     for given, key in (({"speed": [1.0]}, "speed"), ({"farthest_m": 1.0, "center": "Oc"}, "center")):
         with pytest.raises(InputError) as caught:
-            MotionLimits(**given).check(panda)
+            MotionLimits(**{"speed": None, **given}).check(panda)
         assert caught.value.where == ("limits", key)
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ikde.track.drive import pack_drive
+from ikde.track.follow_path import follow_path
 from ikde.track.limits import MotionLimits
 from ikde.track.optimized import OptimizedSettings, find_broken, follow_optimized
 from ikde.track.path import ToolPath
-from ikde.track.track import track
 from tests.track.paper_tasks import follower_of, short_task, start_of
 
 FEW = OptimizedSettings(generations=100, returns=1)
@@ -19,7 +19,7 @@ FEW = OptimizedSettings(generations=100, returns=1)
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_the_tasks_begin_well(qiao, number, drive):
     path, start = short_task(number), start_of("qiao2021", number)
-    motion = track(qiao, path, drive=drive, method="optimized", start=start)
+    motion = follow_path(qiao, path, drive=drive, method="optimized", start=start)
     assert motion.stop is None
     assert motion.reached
     assert motion.breaches.total == 0
@@ -32,14 +32,14 @@ def test_the_tasks_begin_well(qiao, number, drive):
 
 def test_same_seed_same_bits(qiao):
     told = {"method": "optimized", "start": start_of("qiao2021", 1)}
-    first, again, other = (track(qiao, short_task(1), seed=seed, **told) for seed in (1, 1, 2))
+    first, again, other = (follow_path(qiao, short_task(1), seed=seed, **told) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first.q, again.q)
     assert (first.q[1:] != other.q[1:]).any()
 
 
 def test_a_frozen_joint_stays(qiao):
     start = start_of("qiao2021", 1)
-    motion = track(qiao, short_task(1), method="optimized", start=start, freeze=["q1"])
+    motion = follow_path(qiao, short_task(1), method="optimized", start=start, freeze=["q1"])
     assert (motion.q[:, 3] == start[3]).all()
     assert motion.reached
 

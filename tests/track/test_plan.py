@@ -7,6 +7,7 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
+from ikde.track.limits import MotionLimits
 from ikde.track.plan import make_plan
 from ikde.track.spec import TrackSpec
 
@@ -31,7 +32,8 @@ def test_what_is_left_out_has_defaults(qiao):
         "continuation",
         0,
     )
-    assert (made.limits.speed, made.limits.acceleration, made.limits.wheel_speed_rad_s) == ({}, {}, None)
+    np.testing.assert_array_equal(made.limits.speed, MotionLimits.of(qiao).speed)
+    assert (made.limits.acceleration, made.limits.wheel_speed_rad_s) == (None, None)
     assert (made.detector, made.start, made.path.name) == (qiao.detectors["improved"], None, "track")
 
 
@@ -43,18 +45,15 @@ def test_it_is_called_by_its_name_or_its_file(qiao):
 def test_limits_are_by_joint_and_a_joints_own_comes_first(qiao):
     speed = {"prismatic": 500, "revolute": 90, "q6": 180, "q5": None}
     limits = plan(qiao, limits={"speed": speed, "acceleration": {"q1": 360}, "wheel_speed": 360}).limits
-    assert limits.speed == pytest.approx(
-        {"d_x": 0.5, "d_y": 0.5, "q_z": np.pi / 2, **dict.fromkeys(["q1", "q2", "q3", "q4"], np.pi / 2)}
-        | {"q5": np.inf, "q6": np.pi}
-    )
-    assert limits.acceleration == pytest.approx({"q1": 2 * np.pi})
+    np.testing.assert_allclose(limits.speed, [0.5, 0.5] + [np.pi / 2] * 5 + [np.inf, np.pi])
+    np.testing.assert_allclose(limits.acceleration, [np.inf] * 3 + [2 * np.pi] + [np.inf] * 5)
     assert limits.wheel_speed_rad_s == pytest.approx(2 * np.pi)
 
 
 def test_the_other_limits_are_in_metres_and_radians(qiao):
     asked = {"ranges": False, "farthest": 1400, "center": "Oc", "position_error": 0.01, "orientation_error": 1}
     limits = plan(qiao, limits={**asked, "speed": {"q1": 0}}).limits
-    assert (limits.ranges, limits.center, limits.speed) == (False, "Oc", {"q1": 0.0})
+    assert (limits.ranges, limits.center, limits.speed[3]) == (False, "Oc", 0.0)
     assert (limits.farthest_m, limits.position_error_m) == pytest.approx((1.4, 1e-5))
     assert limits.orientation_error_rad == pytest.approx(np.pi / 180)
 

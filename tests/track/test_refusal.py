@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.track.follow import make_follower
+from ikde.track.follow_path import follow_path
+from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.refusal import explain_stop, first_out_of_reach, tell_static
-from ikde.track.track import track
 from ikde.track.trajectory import TrackStopReason
 from tests.track.tracks import make_line, robot
 
@@ -119,5 +119,5 @@ def test_a_step_that_is_too_long_is_not_blamed_on_a_limit_that_nobody_asked_for(
 def test_leaving_the_workspace_slowly_is_out_of_reach():
     height = 1.6841  # of what can be reached at x = 0.9: 1.6841947
     p = np.array([[0.9, 0.0, height + 2e-5 * k] for k in range(8)])
-    motion = track(robot(), ToolPath.through(p, dt_s=0.02))
+    motion = follow_path(robot(), ToolPath.through(p, dt_s=0.02))
     assert (motion.stop.sample, motion.stop.reason) == (5, TrackStopReason.OUT_OF_REACH)

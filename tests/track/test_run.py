@@ -6,8 +6,8 @@ import yaml
 
 from ikde.errors import FileError, InputError
 from ikde.io.track_file import load_track
-from ikde.track.run import make_limits, run_track
-from tests.track.tracks import load_task, robot
+from ikde.track.run import run_track
+from tests.track.tracks import load_task
 
 PLAN = {
     "robot": "qiao2021",
@@ -28,7 +28,7 @@ def test_a_plan_is_followed():
 
 
 def test_limits_that_are_left_out_are_those_of_the_paper():
-    limits = make_limits(robot(), load_track(PLAN).limits)
+    limits = load_track(PLAN).limits
     np.testing.assert_allclose(limits.speed, [0.1, 0.5] + [0.5 * np.pi] * 6 + [np.inf])
     assert limits.acceleration[3] == 3.0
     assert np.isinf(np.delete(limits.acceleration, 3)).all()
@@ -37,7 +37,7 @@ def test_limits_that_are_left_out_are_those_of_the_paper():
 
 @pytest.mark.parametrize("task", ["task1", "task3"])
 def test_the_papers_tasks_ask_for_the_papers_limits(task):
-    limits = make_limits(robot(), load_task(task).limits)
+    limits = load_task(task).limits
     np.testing.assert_allclose(limits.speed, [0.5, 0.5] + [0.5 * np.pi] * 7)
     assert limits.acceleration is None
 
@@ -47,6 +47,12 @@ def test_what_the_caller_wants_comes_before_the_file():
     other = run_track(load_track(PLAN), drive="differential", start=motion.q[0], seed=5)
     assert other.drive == "differential"
     np.testing.assert_array_equal(other.q[0], motion.q[0])
+
+
+def test_what_is_no_plan_is_refused():
+    path = load_track(PLAN).path
+    with pytest.raises(InputError, match="expected what `load_track` gives, got ToolPath; `follow_path` takes a path"):
+        run_track(path)
 
 
 def test_a_wrong_method_is_refused():

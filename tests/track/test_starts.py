@@ -7,7 +7,7 @@ from ikde.errors import InputError
 from ikde.model.target import Target
 from ikde.solver.forward import forward
 from ikde.solver.verify import verify
-from ikde.track.follow import make_follower
+from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.starts import draw_starts, settle_start
 from tests.track.tracks import TASKS, load_task, make_line, robot

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from ikde.track.track import track
+from ikde.track.follow_path import follow_path
 from ikde.track.typical import TypicalSettings, bound_sample, follow_typical
 from tests.track.paper_tasks import follower_of, short_task, start_of
 
 
 def test_it_meets_the_samples_and_jumps(qiao):
     start = start_of("qiao2021", 1)
-    motion = track(qiao, short_task(1), drive="omnidirectional", method="typical", start=start)
+    motion = follow_path(qiao, short_task(1), drive="omnidirectional", method="typical", start=start)
     assert motion.stop is None
     assert motion.reached_points == 10
     assert motion.breaches.speed > 10
@@ -18,10 +18,12 @@ def test_it_meets_the_samples_and_jumps(qiao):
     assert motion.breaches.range == 0
 
 
-def test_a_base_with_wheels_would_have_to_slide(qiao):
+def test_it_moves_every_joint_by_itself_whatever_the_base(qiao):
     settings = TypicalSettings(generations=5)
     told = {"method": "typical", "start": start_of("qiao2021", 1), "settings": settings}
-    assert track(qiao, short_task(1), **told).breaches.sideways > 5
+    motion = follow_path(qiao, short_task(1), drive="differential", **told)
+    assert (motion.drive, motion.wheel_speeds, motion.breaches.sideways) == ("omnidirectional", None, 0)
+    np.testing.assert_allclose(motion.v * 0.02, np.diff(motion.q[:, :2], axis=0), atol=1e-12)
 
 
 def test_the_base_stays_near_and_frozen_joints_where_they_are(qiao):

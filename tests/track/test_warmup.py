@@ -6,7 +6,7 @@ import pytest
 import ikde
 from ikde.kernels.jit import compile_clock
 from ikde.solver.warmup import warm_up
-from ikde.track.track import track
+from ikde.track.follow_path import follow_path
 from ikde.track.warmup import list_track_stages
 
 
@@ -17,7 +17,7 @@ def test_a_track_then_compiles_nothing(qiao, drive):
     p, R = np.array([[0.8, 0.2, 0.9], [0.8, 0.202, 0.9]]), np.tile(np.eye(3), (2, 1, 1))
     for turn in (None, R):
         with compile_clock() as clock:
-            motion = track(qiao, ikde.ToolPath.through(p, dt_s=0.02, R_world_tool=turn), drive=drive)
+            motion = follow_path(qiao, ikde.ToolPath.through(p, dt_s=0.02, R_world_tool=turn), drive=drive)
         assert motion.reached
         assert clock.seconds == 0.0
 

@@ -7,8 +7,8 @@ import numpy as np
 
 import ikde
 from ikde.io.track_file import load_track
+from ikde.track.follow_path import follow_path
 from ikde.track.path import ToolPath
-from ikde.track.track import track
 
 TASKS = ("task1", "task2", "task3", "task4", "task4_minus_x")
 DRIVES = ("differential", "omnidirectional")
@@ -30,7 +30,7 @@ def robot():
 @lru_cache
 def follow_task(name, drive):
     """The motion along one of the paper's tasks."""
-    return track(robot(), load_task(name).path, drive=drive)
+    return follow_path(robot(), load_task(name).path, drive=drive)
 
 
 def make_line(start, end, samples, **asked):

@@ -10,11 +10,11 @@ from ikde.errors import InputError
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import certify
-from ikde.track.follow import make_follower
+from ikde.track.follow_path import follow_path
+from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.starts import draw_starts
-from ikde.track.track import track
 from ikde.track.trajectory import TrackStopReason
 from ikde.track.verify_track import verify_track
 from tests.track.tracks import DRIVES, TASKS, follow_task, load_task, make_line, robot
@@ -58,9 +58,9 @@ def test_the_papers_tasks_are_followed_to_their_end(task, drive):
 
 def test_the_same_seed_is_the_same_motion_and_a_start_is_kept():
     motion = follow_task("task1", "differential")
-    again = track(robot(), motion.path, start=motion.q[0])
+    again = follow_path(robot(), motion.path, start=motion.q[0])
     np.testing.assert_array_equal(again.q[0], motion.q[0])
-    np.testing.assert_array_equal(again.q, track(robot(), motion.path, start=motion.q[0]).q)
+    np.testing.assert_array_equal(again.q, follow_path(robot(), motion.path, start=motion.q[0]).q)
     assert again.reached
 
 
@@ -90,7 +90,7 @@ def pass_through(orientation, turns, seed):
 def test_singularities_are_passed(orientation, turns, frozen):
     path, q = pass_through(orientation, turns, seed=len(turns))
     freeze = dict(zip(BASE, q[0, :3], strict=True)) if frozen else None
-    motion = track(robot(), path, start=q[0], freeze=freeze)
+    motion = follow_path(robot(), path, start=q[0], freeze=freeze)
     must_hold(motion)
     assert motion.reached
     if frozen:
@@ -99,7 +99,7 @@ def test_singularities_are_passed(orientation, turns, frozen):
 
 @pytest.mark.parametrize("drive", DRIVES)
 def test_a_path_out_of_the_workspace_ends_at_its_rim(drive):
-    motion = track(robot(), make_line([0.9, 0, 1.64], [0.9, 0, 1.70], 240), drive=drive)
+    motion = follow_path(robot(), make_line([0.9, 0, 1.64], [0.9, 0, 1.70], 240), drive=drive)
     must_hold(motion)
     assert motion.stop.reason == TrackStopReason.OUT_OF_REACH
     at, height = motion.stop.sample, 1.64 + 0.06 / 240 * np.arange(241)
@@ -111,10 +111,10 @@ def test_what_is_proved_to_be_out_of_reach_is_told_at_its_sample():
     frozen = dict.fromkeys(BASE, 0.0)
     p = np.tile([0.9, 0.3, 1.0], (31, 1))
     p[20:, 0] = 3.0
-    motion = track(robot(), ToolPath.through(p, dt_s=0.02), freeze=frozen)
+    motion = follow_path(robot(), ToolPath.through(p, dt_s=0.02), freeze=frozen)
     must_hold(motion)
     assert (motion.stop.sample, motion.stop.reason) == (20, TrackStopReason.OUT_OF_REACH)
-    nowhere = track(robot(), make_line([0.9, 0.3, -5.0], [0.9, 0.3, 1.0], 10))
+    nowhere = follow_path(robot(), make_line([0.9, 0.3, -5.0], [0.9, 0.3, 1.0], 10))
     assert (nowhere.stop.sample, nowhere.reached_points, len(nowhere.q)) == (0, 0, 0)
     assert nowhere.certified_clearance_m is None
 
@@ -124,7 +124,7 @@ def test_a_path_that_is_too_fast_ends_where_it_is(drive):
     p = np.tile([0.9, 0.0, 1.0], (41, 1))
     p[:, 1] += 0.002 * np.arange(41)
     p[20:, 0] += 0.5
-    motion = track(robot(), ToolPath.through(p, dt_s=0.02), drive=drive)
+    motion = follow_path(robot(), ToolPath.through(p, dt_s=0.02), drive=drive)
     must_hold(motion)
     assert (motion.stop.sample, motion.stop.reason) == (20, TrackStopReason.SPEED_LIMIT)
     assert motion.stop.limit in (*robot().joint_names, "the base")
@@ -135,7 +135,7 @@ def test_a_path_into_the_robot_itself_ends_before_contact(drive):
     load, radius = np.array([0.271, 0.0, 0.433]), 0.224 + 0.045  # of the load and of the tool's last sphere
     path = make_line([0.271, 0.75, 0.75], load, 300)
     first = int(np.argmax(np.linalg.norm(path.p_world_tool - load, axis=1) < radius))
-    motion = track(robot(), path, drive=drive, freeze=dict.fromkeys(BASE, 0.0))
+    motion = follow_path(robot(), path, drive=drive, freeze=dict.fromkeys(BASE, 0.0))
     must_hold(motion)
     assert (motion.stop.sample, motion.stop.reason) == (first, TrackStopReason.SELF_COLLISION)
     assert "LT" in motion.stop.pair
@@ -155,13 +155,13 @@ def test_a_path_into_the_robot_itself_ends_before_contact(drive):
 )
 def test_every_limit_is_kept(told, drive):
     limits = MotionLimits.of(robot(), **told)
-    motion = track(robot(), make_line([0.9, 0, 1.0], [1.1, 0.3, 1.0], 150), drive=drive, limits=limits)
+    motion = follow_path(robot(), make_line([0.9, 0, 1.0], [1.1, 0.3, 1.0], 150), drive=drive, limits=limits)
     must_hold(motion)
     assert motion.reached
 
 
 def test_without_a_detector_nothing_is_said_about_clearance():
-    motion = track(robot(), make_line([0.9, 0, 1.0], [0.9, 0.1, 1.0], 20), detector="none")
+    motion = follow_path(robot(), make_line([0.9, 0, 1.0], [0.9, 0.1, 1.0], 20), detector="none")
     assert motion.reached
     assert (motion.clearance_m, motion.certified_clearance_m) == (None, None)
 
@@ -170,11 +170,12 @@ def test_an_arm_on_the_floor_has_no_wheels():
     arm = ikde.load_robot("panda")
     p = forward(arm, arm.home)["tool"][:3, 3]
     path = make_line(p, p + np.array([0.05, 0.1, -0.05]), 60)
-    motion = track(arm, path, drive="omnidirectional", start=arm.home)
+    motion = follow_path(arm, path, start=arm.home)
     assert motion.reached
-    assert (motion.base_joints, motion.wheel_speeds, motion.v.shape) == ((), None, (60, 2))
+    assert (motion.drive, motion.base_joints, motion.wheel_speeds) == ("omnidirectional", (), None)
+    assert motion.v.shape == (60, 2)
     with pytest.raises(InputError, match="no base that drives"):
-        track(arm, path)
+        follow_path(arm, path, drive="differential")
 
 
 def test_twists_and_wheels_are_those_of_the_motion():
@@ -198,7 +199,7 @@ def test_twists_and_wheels_are_those_of_the_motion():
 )
 def test_what_is_refused(given, where):
     with pytest.raises(InputError) as caught:
-        track(robot(), load_task("task1").path, **given)
+        follow_path(robot(), load_task("task1").path, **given)
     assert caught.value.where == where
 
 
@@ -223,6 +224,6 @@ def test_from_any_start_the_motion_keeps_all_limits(task, drive, seed, pick, shi
     starts, _ = draw_starts(make_follower(robot(), path, **told), {}, seed)
     start = starts[pick % len(starts)].copy()
     start[3] += shift * 1e-6  # still within the tolerance of 1e-6 m
-    motion = track(robot(), path, drive=drive, start=start, seed=seed)
+    motion = follow_path(robot(), path, drive=drive, start=start, seed=seed)
     must_hold(motion)
     np.testing.assert_array_equal(motion.q[0], start)

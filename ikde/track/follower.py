@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, Ints, TargetArrays, TrackArrays
+from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, TargetArrays, TrackArrays
 from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.robot import Detector, Robot
@@ -95,20 +95,18 @@ class Follower:
     def follow(self, course: Course, end: int | None = None) -> Course:
         """Go on from the last sample to `end`, by default the path's, or as far as it goes. Arrays are written to."""
         last = self.path.samples if end is None else end
-        rounds = np.zeros(len(course.q), dtype=np.int64)
-        return replace(course, last=self._run(course, course.last, last, rounds))
+        return replace(course, last=self._run(course, course.last, last))
 
     def follow_timed(self, course: Course) -> Floats:
-        """Follow samples 1 .. last again one by one, as a controller would; returns the seconds of each [last]."""
-        seconds, rounds = np.empty(course.last), np.zeros(len(course.q), dtype=np.int64)
-        again = course.copy()
-        for k in range(course.last):
+        """Take the steps to samples 1 .. last again one by one, as a controller would; the seconds of each [last]."""
+        seconds, again = np.empty(max(course.last, 0)), course.copy()
+        for k in range(len(seconds)):
             started = time.perf_counter()
-            self._run(again, k, k + 1, rounds)
+            self._run(again, k, k + 1)
             seconds[k] = time.perf_counter() - started
         return seconds
 
-    def _run(self, course: Course, first: int, last: int, rounds: Ints) -> int:
+    def _run(self, course: Course, first: int, last: int) -> int:
         reached, _ = track_span(
             pack_robot(self.robot),
             pack_detector(self.robot, self.detector),
@@ -121,7 +119,7 @@ class Follower:
             course.q,
             course.steps,
             self.room,
-            rounds,
+            np.empty(len(course.q), dtype=np.int64),  # rounds, which nobody asks for
             course.least,
         )
         return reached

@@ -1,4 +1,4 @@
-"""`track`: follow a path of the tool with the whole robot, or say where and why it ends."""
+"""`follow_path`: follow a path of the tool with the whole robot, or say where and why it ends."""
 
 from collections.abc import Callable
 
@@ -12,20 +12,22 @@ from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
 from ikde.track.certify import certify
 from ikde.track.continuation import Continuation
-from ikde.track.follow import make_follower
+from ikde.track.courses import ContinuationSettings
+from ikde.track.drive import usual_drive
+from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
-from ikde.track.methods import TrackSettings, check_method, follow_by
+from ikde.track.methods import Followed, TrackSettings, check_method, follow_by
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive, TrackMethod
-from ikde.track.trajectory import TrackStop, Trajectory
+from ikde.track.trajectory import Trajectory
 from ikde.track.verify_track import verify_track
 
 
-def track(
+def follow_path(
     robot: Robot,
     path: ToolPath,
     *,
-    drive: Drive = "differential",
+    drive: Drive | None = None,
     method: TrackMethod = "continuation",
     limits: MotionLimits | None = None,
     start: JointValues | None = None,
@@ -40,7 +42,8 @@ def track(
     Args:
         robot: the robot.
         path: poses of the tool, a sample every `path.dt_s`.
-        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself, with no base, too.
+        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself. None: on wheels if
+            the robot has a base. `typical` minds no wheels and always moves every joint by itself.
         method: `continuation`; or one of the paper's: `optimized`, which keeps the limits at samples only, or
             `typical`, which goes on to the end whatever it breaks: see `Trajectory.breaches`.
         limits: None for those of the paper (`MotionLimits.of`).
@@ -48,7 +51,8 @@ def track(
         seed: same seed, same bits.
         detector: a name, a `Detector`, `"none"`, or None for the robot's default.
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
-        settings: of one of the paper's methods; None for the paper's numbers.
+        settings: of that method: `ContinuationSettings`, `OptimizedSettings` or `TypicalSettings`; None for its
+            usual ones.
         announce_compile: called once if kernels must be compiled first.
 
     Returns:
@@ -59,6 +63,9 @@ def track(
         InputError: for what does not fit the robot, and a start that is not at the first pose or collides.
     """
     check_method(method, settings)
+    if method == "typical":
+        drive = "omnidirectional"
+    drive = drive or usual_drive(robot)
     limits = MotionLimits.of(robot) if limits is None else limits.check(robot)
     chosen = robot.detector(detector)
     if start is not None:
@@ -66,24 +73,24 @@ def track(
     problem = make_problem(robot, SolveSettings(), detector=chosen or "none", near=start, freeze=freeze)
     frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
     follower = make_follower(robot, path, drive=drive, limits=limits, detector=chosen, frozen=problem.frozen)
-    search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), asked={})
-    q, stop, seconds = follow_by(method, search, start, settings, announce_compile)
-    return grade_motion(robot, path, q, stop, seconds, drive=drive, method=method, limits=limits, detector=chosen)
+    wanted = settings if isinstance(settings, ContinuationSettings) else ContinuationSettings()
+    search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), settings=wanted)
+    followed = follow_by(method, search, start, settings, announce_compile)
+    return grade_motion(robot, path, followed, drive=drive, method=method, limits=limits, detector=chosen)
 
 
 def grade_motion(
     robot: Robot,
     path: ToolPath,
-    q: Floats,
-    stop: TrackStop | None,
-    seconds: Floats,
+    followed: Followed,
     *,
     drive: Drive,
     method: str,
     limits: MotionLimits,
     detector: Detector | None,
 ) -> Trajectory:
-    """The motion through `q` [M + 1, N] with what the judge and the certificate say about it."""
+    """The motion with what the judge and the certificate say about it."""
+    q = followed.q
     graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
@@ -97,8 +104,9 @@ def grade_motion(
         v=v,
         omega=omega,
         wheel_speeds=None if drive == "omnidirectional" else graded.wheel_speeds,
-        stop=stop,
-        seconds=seconds,
+        stop=followed.stop,
+        seconds=followed.seconds,
+        search_seconds=followed.search_seconds,
         verification=graded,
         certificate=certify(robot, path, q, drive=drive, detector=detector),
     )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.solver.plain import compute_frames
-from ikde.track.follow import MARGIN_M, REACH_M, make_follower
+from ikde.track.follower import MARGIN_M, REACH_M, make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from tests.track.tracks import follow_task, make_line, robot
