@@ -9,7 +9,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from track_tables import format_between, format_methods, format_peers_along, format_starts, format_stops
+from track_tables import (
+    format_between,
+    format_methods,
+    format_peers_along,
+    format_starts,
+    format_stops,
+    format_whole_paths,
+)
 
 ROOT = Path(__file__).parent.parent
 RESULTS = ROOT / "benchmarks" / "results"
@@ -260,6 +267,7 @@ def make_following() -> str:
         f"{format_machine(record['machine'])}.",
         format_methods(record, ("differential", "omnidirectional")),
         format_between(record),
+        format_whole_paths(record),
         format_stops(record),
     )
 

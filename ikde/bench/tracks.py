@@ -139,14 +139,16 @@ def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int,
     told = {"drive": plan.drive, "limits": plan.limits, "detector": plan.detector}
     follower = make_follower(plan.robot, plan.path, **told)
     starts = draw_random_starts(follower, count, plan.seed)
-    reached, stops = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}, {}
+    reached = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}
+    stops, seconds = {}, {}
     for method in methods:
         motions = list(_follow_from(plan, method, starts, progress))
+        seconds[method] = [motion.search_seconds for motion in motions]
         reached[method] = [motion.reached_points for motion in motions]
         stops[method] = Counter(tell_shortly(motion.stop) for motion in motions if motion.stop)
     early = {name: sum(points < plan.path.samples for points in ends) for name, ends in reached.items()}
     why = {name: dict(counts.most_common()) for name, counts in stops.items()}
-    return {"starts": len(starts), **early, "stops": why, "reached_points": reached}
+    return {"starts": len(starts), **early, "stops": why, "reached_points": reached, "search_s": seconds}
 
 
 def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:

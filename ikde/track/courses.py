@@ -5,7 +5,7 @@ largest clearance is taken, in steps of 5 mm, and of those the one that moves le
 space is used otherwise; then those that came farthest go back some samples, drift another way, and try again.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -92,7 +92,7 @@ def _badness(course: Course) -> tuple[float, float]:
 
 
 def _return(
-    follower: Follower, course: Course, end: int, most: int, rng: np.random.Generator, uses: Sequence[Use]
+    follower: Follower, course: Course, end: int, most: int, rng: np.random.Generator, uses: tuple[Use, ...]
 ) -> Course:
     """Go back and try again until the end is reached or `most` returns are spent."""
     ways = _other_ways(follower, course, end, rng, uses)
@@ -106,7 +106,7 @@ def _return(
 
 
 def _other_ways(
-    follower: Follower, course: Course, end: int, rng: np.random.Generator, uses: Sequence[Use]
+    follower: Follower, course: Course, end: int, rng: np.random.Generator, uses: tuple[Use, ...]
 ) -> Iterator[Course]:
     """The same course from some samples before its end, and at last from its start, drifting at random."""
     back = FIRST_BACK
@@ -116,11 +116,11 @@ def _other_ways(
         back = min(2 * back, max(course.last, FIRST_BACK))
 
 
-def _rewind(course: Course, sample: int, back: int, rng: np.random.Generator, uses: Sequence[Use]) -> Course:
+def _rewind(course: Course, sample: int, back: int, rng: np.random.Generator, uses: tuple[Use, ...]) -> Course:
     """A copy that stands at an earlier sample and will use its null space otherwise from there on."""
     other = replace(course.copy(), last=sample)
     ahead = other.weights[sample + 1 :]
-    ahead[:, :DRIFT] = uses[rng.integers(len(uses))]
+    ahead[:, :DRIFT] = uses[int(rng.integers(len(uses)))]
     ahead[:, DRIFT:] = 0.0
     ahead[:back, DRIFT:] = DRIFT_SHARE * rng.standard_normal(course.steps.shape[1])
     return other

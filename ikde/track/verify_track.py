@@ -1,4 +1,4 @@
-"""The judge of a motion: plain numpy, straight from the path and the joint values; it shares nothing with the search.
+"""The judge of a motion: plain numpy, straight from the path and the joint values; no kernel of the search has a say.
 
 Everything is computed again from `q` alone: the base's twist from its places, speeds from differences. Between samples
 joints run linearly and a base with wheels along its arc, so speeds are constant there and joint values lie between

@@ -4,7 +4,8 @@ import os
 
 import pytest
 
-from ikde.files.atomic import remove_temporaries, temporary_path, write_atomically, write_together
+from ikde.errors import FileError
+from ikde.files.atomic import remove_temporaries, replace_all, temporary_path, write_atomically, write_together
 
 
 def test_a_file_is_written_and_written_over(tmp_path):
@@ -26,6 +27,19 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="No space left"):
         write_atomically(path, b"new")
     assert [(p, p.read_bytes()) for p in tmp_path.iterdir()] == [(path, b"old")]
+
+
+def test_a_folder_holds_what_is_new_and_nothing_that_was_before(tmp_path):
+    assert replace_all(tmp_path, {"b": b"1", "a": b"2"}, "abc") == (tmp_path / "b", tmp_path / "a")
+    (tmp_path / "mine").touch()
+    replace_all(tmp_path, {"c": b"3"}, "abc")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["c", "mine"]
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
+    (tmp_path / "a").mkdir()
+    with pytest.raises(FileError, match=r"a: cannot be written: [^\n]*$"):
+        replace_all(tmp_path, {"a": b"1"}, ())
 
 
 def test_leftovers_are_removed_and_nothing_else(tmp_path):

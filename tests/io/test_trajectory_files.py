@@ -119,6 +119,12 @@ def test_a_robot_that_stands_still_has_no_base(tmp_path):
     assert json.loads((tmp_path / "joint_trajectory.json").read_text())["joint_names"] == list(NAMES)
 
 
+def test_nothing_of_an_earlier_motion_stays_beside_another(tmp_path):
+    write_trajectory(str(tmp_path), make_motion())
+    write_trajectory(str(tmp_path), make_motion(base=False), ["csv", "json"])
+    assert names_in(tmp_path) == ["joint_trajectory.json", "trajectory.csv"]
+
+
 def test_what_was_reached_is_written(tmp_path):
     write_trajectory(tmp_path, make_motion(reached=0), ["csv", "json"])
     assert len(json.loads((tmp_path / "joint_trajectory.json").read_text())["points"]) == 1

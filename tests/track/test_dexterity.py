@@ -42,6 +42,12 @@ def test_a_singularity_counts_only_for_what_is_asked():
     assert least["free"] > 0.05
 
 
+def test_an_arm_with_too_few_joints_is_always_singular(qiao):
+    q, fixed = wave(qiao, 6, 0.3)[2:5], ("d_x", "d_y", "q_z", "q1")
+    assert (smallest_singular_values(qiao, q, fixed, "axis") > 0.0).all()
+    assert (smallest_singular_values(qiao, q, fixed, "pose") == 0.0).all()
+
+
 def test_the_base_is_left_out(qiao):
     q = wave(qiao, 6, 0.3)[2:5]
     whole, arm = smallest_singular_values(qiao, q), smallest_singular_values(qiao, q, ("d_x", "d_y", "q_z"))
