@@ -1,0 +1,109 @@
+"""The examples of the documentation, loaded and run as their readers would."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import ikde
+
+ROOT = Path(__file__).parent.parent
+PAGES = {page.name: page.read_text(encoding="utf-8") for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]}
+BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
+LEAST = {
+    "robot": "qiao2021",
+    "dt_s": 0.02,
+    "path": {"waypoints": [{"position": [1, 0, 0.9]}, {"position": [1, 0.1, 0.9]}]},
+}
+WELD = "x,y,z,qw,qx,qy,qz\n900,0,900,0,1,0,0\n900,100,900,0,1,0,0\n900,200,1000,0,1,0,0\n"
+
+
+def find_blocks(page, language, having=""):
+    """The blocks of a language in a page that match, each called by its line."""
+    text = PAGES[page]
+    return [
+        pytest.param(block[2], id=f"{page}:{text.count(chr(10), 0, block.start()) + 1}")
+        for block in BLOCK.finditer(text)
+        if block[1] == language and re.search(having, block[2], flags=re.MULTILINE)
+    ]
+
+
+TRACKS = find_blocks("track.md", "yaml")
+RUNS = find_blocks("batch.md", "yaml", having="^targets:")
+ROBOTS = find_blocks("robot_file.md", "yaml", having="^joints:")
+PYTHON = {page: find_blocks(page, "python") for page in sorted(PAGES)}
+
+
+def load_track(text, folder):
+    """The plan of a track file, or of a part of one with the least that is missing."""
+    missing = {key: value for key, value in LEAST.items() if key not in yaml.safe_load(text)}
+    file = folder / "example.yaml"
+    file.write_text(text + (yaml.safe_dump(missing) if missing else ""), encoding="utf-8")
+    (folder / "weld.csv").write_text(WELD, encoding="utf-8")
+    return ikde.load_track(file)
+
+
+def test_examples_are_found():
+    assert len(TRACKS) >= 7
+    assert len(PYTHON["track.md"]) >= 2
+    assert RUNS
+    assert ROBOTS
+    assert PYTHON["README.md"]
+
+
+@pytest.mark.parametrize("text", TRACKS)
+def test_a_track_example_loads(text, tmp_path):
+    plan, asked = load_track(text, tmp_path), yaml.safe_load(text)
+    assert plan.path.samples == asked.get("samples", plan.path.samples)
+
+
+def test_the_first_track_example_is_a_whole_file():
+    text = TRACKS[0].values[0]
+    assert set(LEAST) <= set(yaml.safe_load(text))
+
+
+def test_the_curve_is_as_the_page_says(tmp_path):
+    """A line to rest, an arc that goes on in its direction and turns left, a circle, and back to the beginning."""
+    (example,) = find_blocks("track.md", "yaml", having="curve:")
+    p = load_track(example.values[0], tmp_path).path.p_world_tool
+    line, arc, circle, spline = p[:101], p[100:151] - [0.9, 0.4, 0.9], p[150:301], p[300:]
+    assert len(p) == 451
+    assert np.allclose(line[[0, -1]], [[1, 0, 0.9], [1, 0.4, 0.9]])
+    assert np.linalg.norm(line[-1] - line[-2]) < 1e-5
+    assert np.allclose(np.linalg.norm(arc, axis=1), 0.1)
+    assert np.allclose(np.arctan2(arc[:, 1], arc[:, 0]), np.linspace(0.0, 1.5, 51))
+    assert np.linalg.norm(circle - [1.2, 0.0, 1.0], axis=1).min() < 0.005
+    assert np.allclose(circle[-1], [1, 0, 1.1])
+    assert np.linalg.norm(spline - [1.1, 0.0, 1.0], axis=1).min() < 0.005
+    assert np.allclose(spline[-1], line[0])
+
+
+@pytest.mark.parametrize("text", RUNS)
+def test_a_run_example_loads(text, tmp_path):
+    file = tmp_path / "example.yaml"
+    file.write_text(text, encoding="utf-8")
+    assert ikde.load_batch(file).name == "example"
+
+
+@pytest.mark.parametrize("text", ROBOTS)
+def test_a_robot_example_loads(text, tmp_path):
+    file = tmp_path / "example.yaml"
+    file.write_text(text, encoding="utf-8")
+    robot = ikde.load_robot(file)
+    assert robot.tool in ikde.forward(robot, robot.home)
+
+
+@pytest.mark.parametrize("text", [block for blocks in PYTHON.values() for block in blocks])
+def test_a_python_example_is_python(text):
+    compile(text, "example", "exec")
+
+
+@pytest.mark.parametrize("text", PYTHON["track.md"])
+def test_a_python_example_of_a_track_follows_its_path(text, tmp_path, monkeypatch):
+    (tmp_path / "configs").symlink_to(ROOT / "configs")
+    monkeypatch.chdir(tmp_path)
+    names = {"ikde": ikde}
+    exec(compile(text, "example", "exec"), names)
+    assert names["motion"].reached
