@@ -185,7 +185,7 @@ class TrackSpec(Entry):
     dt_s: Positive
     """Time from a sample to the next, s."""
     samples: Annotated[int, Field(strict=True, ge=1, le=10**6)] | None = None
-    """N, samples after the start (default: one a waypoint, or what the segments' durations make)."""
+    """N, samples after the start (default: one fewer than waypoints, or what the segments' durations make)."""
     path: PathEntry
     """Where the tool goes."""
     orientation: Orientation | None = None
