@@ -105,7 +105,7 @@ def observe_volumes(robot: Robot) -> list[Observation]:
 
 
 def observe_collisions(robot: Robot) -> list[Observation]:
-    """Everything that hangs on where the spheres stand."""
+    """Everything that depends on where the spheres stand."""
     sweeps = [observe_sweep(robot, sweep, detector) for sweep in load_sweeps() for detector in APPROXIMATIONS]
     return [*observe_home(robot), *sweeps, *observe_labels(robot)]
 

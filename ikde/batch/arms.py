@@ -42,7 +42,7 @@ def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry) -> A
 
 
 def describe_arm(arm: Arm) -> dict[str, Any]:
-    """All of an arm that its answers hang on, as plain data in m and rad."""
+    """All of an arm that its answers depend on, as plain data in m and rad."""
     problem, names = arm.problem, arm.problem.robot.joint_names
     start = dict(zip(names, problem.lower, strict=True))
     return as_plain(

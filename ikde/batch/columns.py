@@ -29,7 +29,7 @@ def make_solutions(
     groups: Sequence[str],
     graders: Sequence[Detector],
 ) -> pa.Table:
-    """The solutions of a part: what hangs on recipe and seed only, the same bits in every run.
+    """The solutions of a part: what depends on recipe and seed only, the same bits in every run.
 
     Args:
         arm: its name.
@@ -50,7 +50,7 @@ def make_solutions(
 
 
 def make_timing(arm: str, rows: Rows, *, numbers: Ints, repeats: int) -> pa.Table:
-    """What hangs on the machine: seconds and host of each solve of a part."""
+    """What depends on the machine: seconds and host of each solve of a part."""
     columns = _identity(arm, numbers, repeats, None)
     columns["solve_seconds"] = pa.array(rows.found.seconds)
     columns["host"] = _word(socket.gethostname(), len(rows))

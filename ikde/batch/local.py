@@ -25,7 +25,7 @@ Announce = Callable[[], None]
 def solve_parts(
     batch: Batch, parts: Sequence[Part], threads: int | None = None, announce_compile: Announce | None = None
 ) -> Generator[SealedPart]:
-    """Solve parts and give them back sealed, in order. The answers do not hang on `threads` (None: all cores)."""
+    """Solve parts and give them back sealed, in order. The answers do not depend on `threads` (None: all cores)."""
     threads, recipe = threads or usable_cores(), batch.hash
 
     def solve(part: Part, inside: int, announce_compile: Announce | None = None) -> SealedPart:

@@ -41,7 +41,7 @@ class Batch:
     explain: bool
     """Probe why a target was not reached."""
     recipe: Mapping[str, Any]
-    """Plain JSON data: all that the answers hang on."""
+    """Plain JSON data: all that the answers depend on."""
     file: str | None
     """The file it was read from, for the record only."""
 

@@ -1,4 +1,4 @@
-"""The recipe of a run: plain data that holds all that the answers hang on, so that two runs can be compared."""
+"""The recipe of a run: plain data that holds all that the answers depend on, so that two runs can be compared."""
 
 import hashlib
 import json
@@ -39,7 +39,7 @@ def ikde_version() -> str:
 
 
 def robot_digest(robot: Robot) -> str:
-    """Digest of everything about a robot that an answer hangs on: not its title, nor where its numbers come from."""
+    """Digest of everything about a robot that an answer depends on: not its title, nor where its numbers come from."""
     changes = {field.name: as_plain(getattr(robot, field.name)) for field in fields(robot)}
     return digest({name: value for name, value in changes.items() if name not in LEAVES_ANSWERS_ALONE})
 

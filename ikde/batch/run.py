@@ -54,7 +54,7 @@ def run_batch(
     Args:
         batch: what to solve (`load_batch`).
         out: the folder of the run: new, empty, or that of the same batch.
-        threads: how many; None for all cores. The answers do not hang on it.
+        threads: how many; None for all cores. The answers do not depend on it.
         overwrite: delete the run that is there, if it is one of ours, and start again.
         dask: address of a Dask cluster that does the work, or `"local"` for processes on this machine.
         workers: processes of `dask="local"`; None for one a core.

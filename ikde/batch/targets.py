@@ -20,7 +20,7 @@ Recipe = dict[str, Any]
 
 
 def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[TargetSource, Recipe]:
-    """The source of a run's targets, and what its answers hang on.
+    """The source of a run's targets, and what its answers depend on.
 
     Args:
         spec: the run file.

@@ -1,4 +1,4 @@
-"""How Table 4's rates hang on what the paper does not print: one setting changed at a time."""
+"""How Table 4's rates depend on what the paper does not print: one setting changed at a time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

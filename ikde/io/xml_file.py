@@ -13,7 +13,7 @@ from ikde.model.tree import build_tree
 
 _NO_XML = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
-# Placeholders of what a robot file does not hold: neither forward kinematics nor spheres hang on them.
+# Placeholders of what a robot file does not hold: neither forward kinematics nor spheres depend on them.
 MASS_KG, INERTIA_KG_M2 = 1.0, 0.01
 EFFORT, VELOCITY = 100.0, 1.0
 PLACEHOLDERS = (

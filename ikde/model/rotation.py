@@ -77,7 +77,7 @@ def rotation_with_z(axis: Floats) -> Floats:
 
 
 def length(vectors: Floats) -> Floats:
-    """Lengths [...] of vectors [..., 3]: element by element, so that a vector's bits do not hang on its neighbours."""
+    """Lengths [...] of vectors [..., 3]: element by element, so that a vector's bits do not depend on others."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     return np.sqrt(x * x + y * y + z * z)
 

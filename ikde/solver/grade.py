@@ -102,7 +102,7 @@ def confirm(result: SolveResult) -> SolveResult:
 
 
 def _choose(verify: Verify, streams: Ints) -> Bools:
-    """Which rows plain numpy grades [T]: the sample hangs on the streams, not on where a batch is cut."""
+    """Which rows plain numpy grades [T]: the sample depends on the streams, not on where a batch is cut."""
     if verify not in get_args(Verify):
         raise InputError(f"expected one of {', '.join(get_args(Verify))}, got {verify!r}", ("verify",))
     return {"all": streams >= 0, "sample": streams % SAMPLE == 0, "none": streams < 0}[verify]

@@ -42,7 +42,7 @@ def search(
     `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach. `spent_s`: what
     is gone of each target's time, if the settings have a timeout.
 
-    The answer for a target hangs on (seed, stream, attempt) only: not on the other targets, the number of threads, or
+    The answer for a target depends on (seed, stream, attempt) only: not on the other targets, the number of threads, or
     how the attempts are cut into calls; with a timeout also on the clock.
     """
     targets = Targets.of(targets)

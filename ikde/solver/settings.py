@@ -42,7 +42,7 @@ class SolveSettings:
     that of the engine that comes last."""
     timeout_s: float | None = None
     """Seconds of search, compiling not counted, after which no further attempt at a target is begun; what is reached by
-    then stays. Answers may then hang on the machine and on what else it does. None: on nothing but the attempts."""
+    then stays. Answers may then depend on the machine and on what else it does. None: on nothing but the attempts."""
     strategy: str | None = None
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
     population: int | None = None

@@ -42,7 +42,7 @@ ALLOWED = f"a formula has numbers, {', '.join(NAMES)}, + - * / % **, brackets, a
 
 
 class Sampling(NamedTuple):
-    """What a formula hangs on: the samples k, whole or not, and their count N."""
+    """What a formula depends on: the samples k, whole or not, and their count N."""
 
     k: Floats
     N: int

@@ -57,7 +57,7 @@ class Course:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Follower:
-    """Everything that following one path hangs on but the start and the use of the null space."""
+    """Everything that following one path depends on but the start and the use of the null space."""
 
     robot: Robot
     detector: Detector | None

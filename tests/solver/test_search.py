@@ -1,4 +1,4 @@
-"""The one place that calls the search kernels: bits do not hang on threads or calls, and Ctrl-C gets through."""
+"""The one place that calls the search kernels: bits do not depend on threads or calls, and Ctrl-C gets through."""
 
 import threading
 from itertools import count

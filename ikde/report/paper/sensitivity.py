@@ -1,4 +1,4 @@
-"""How Table 4 hangs on what is not printed."""
+"""How Table 4 depends on what is not printed."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,7 +20,7 @@ def make_sensitivity(data: Data) -> Section:
     """Every variation's four rates, and which come closest."""
     printed = data["exact"]["printed"]
     return Section(
-        "Table 4: what it hangs on",
+        "Table 4: what it depends on",
         (
             _introduce(data),
             _make_closest(data),

@@ -14,7 +14,7 @@ from ikde.solver.problem import Problem, shrink_tolerances
 
 
 class Engine(Protocol):
-    """Makes attempts on the rows of a `Found`: each row's answer hangs on its stream and the attempts only."""
+    """Makes attempts on the rows of a `Found`: each row's answer depends on its stream and the attempts only."""
 
     name: str
     rows_per_call: int

@@ -1,4 +1,4 @@
-"""What Table 4 hangs on: a row a variation and reading, the closest on top, a forest a cell."""
+"""What Table 4 depends on: a row a variation and reading, the closest on top, a forest a cell."""
 
 from ikde.report.page import Gallery, Table
 from ikde.report.paper.sensitivity import make_sensitivity
