@@ -5,11 +5,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ikde.kernels.arrays import DRIFT, Floats
+from ikde.solver.joints import FARTHEST
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
 from ikde.track.certify import bound_segments
 from ikde.track.courses import ContinuationSettings, choose_course
-from ikde.track.follower import FARTHEST, Course, Follower
+from ikde.track.follower import Course, Follower
 from ikde.track.refusal import (
     explain_stop,
     first_out_of_reach,

@@ -11,6 +11,7 @@ from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.robot import Detector, Robot
 from ikde.solver.engines.pool import rotation_length_m
+from ikde.solver.joints import FARTHEST
 from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
@@ -21,7 +22,6 @@ GOAL_M, GOAL_RAD = 1e-9, 1e-8  # a sample is refined until it is met
 SHARE = 0.5  # of the tolerances, within which a sample is accepted that can't be refined
 ROUNDING = 1e-12  # m, rad: ranges are kept this far from their ends
 MOST_ROUNDS = 30  # of one sample: 2 are usual, 10 in a twofold singularity
-FARTHEST = 1e5  # m or rad: no range
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

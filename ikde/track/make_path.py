@@ -99,7 +99,7 @@ def _between_waypoints(waypoints: Waypoints, spec: TrackSpec) -> Way:
     return Way(
         samples=samples,
         positions=lambda k: follow_points(points, k * legs / samples),  # exact where they are samples
-        turn=(lambda k: waypoints.turn(k * legs / samples)) if waypoints.turns else None,
+        turn=(lambda k: waypoints.turn(k * legs / samples)) if waypoints.are_turned else None,
     )
 
 

@@ -24,7 +24,7 @@ NO_WHEELS = "an omnidirectional drive has no such wheels"
 KINDS = ("prismatic", "revolute")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TrackPlan:
     """Everything about a track but where its motion goes."""
 
@@ -46,6 +46,10 @@ class TrackPlan:
     """What is wrong at a key of the file, as an error in its place."""
     replaced: tuple[str, ...] = ()
     """Keys of which it no longer has what the file says."""
+
+    def __repr__(self) -> str:
+        told = f"{self.robot.name}, {self.method}, {self.drive}, {self.path.samples} points"
+        return f"<TrackPlan {self.name}: {told}>"
 
     def with_changes(
         self,

@@ -10,10 +10,11 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.tracking import REACHED, track_sample
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import reach_excess_m
+from ikde.solver.joints import FARTHEST
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
 from ikde.track.drive import largest_steps, wheel_speeds
-from ikde.track.follower import FARTHEST, Course, Follower
+from ikde.track.follower import Course, Follower
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
 FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)

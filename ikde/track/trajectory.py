@@ -49,7 +49,7 @@ class TrackStop:
     """Whose limit is in the way: a joint by name, `the base`, `wheels`, or the frame of a largest distance."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Trajectory:
     """A motion through the samples 0 .. M of a path of K: all of them, M = K, or those before the stop.
 
@@ -84,6 +84,10 @@ class Trajectory:
     """What plain numpy says about the samples."""
     certificate: Certificate
     """What is certain between them."""
+
+    def __repr__(self) -> str:
+        told = f"{self.method}, {self.drive}, {self.reached_points} of {self.path.samples} points"
+        return f"<Trajectory of {self.path.name}: {told}{', stopped' if self.stop else ''}>"
 
     @property
     def error_m(self) -> Floats:

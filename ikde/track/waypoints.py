@@ -27,7 +27,7 @@ class Waypoints:
     """What is wrong with the waypoint of this index, as an error in its place."""
 
     @property
-    def turns(self) -> bool:
+    def are_turned(self) -> bool:
         """Whether they ask for orientations."""
         return self.targets.kind[0] != POSITION
 

@@ -37,6 +37,10 @@ def test_what_is_left_out_has_defaults(qiao):
     assert (made.detector, made.start, made.path.name) == (qiao.detectors["improved"], None, "track")
 
 
+def test_it_introduces_itself_in_a_line(qiao):
+    assert repr(plan(qiao)) == "<TrackPlan track: qiao2021, continuation, differential, 1 points>"
+
+
 def test_it_is_called_by_its_name_or_its_file(qiao):
     assert plan(qiao, file="a/shelf.yaml").name == "shelf"
     assert plan(qiao, file="a/shelf.yaml", name="Shelf").path.name == "Shelf"

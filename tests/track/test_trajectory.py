@@ -15,6 +15,12 @@ def test_a_whole_motion_is_reached():
     np.testing.assert_allclose(motion.joint_speeds[:, 3:], np.diff(motion.q[:, 3:], axis=0) / 0.02)
 
 
+def test_it_introduces_itself_in_a_line():
+    stop = TrackStop(sample=3, reason=TrackStopReason.SELF_COLLISION, text="")
+    told = "continuation, differential, 2 of 4 points, stopped"
+    assert repr(make_motion(reached=2, stop=stop)) == f"<Trajectory of made up: {told}>"
+
+
 def test_a_stop_says_where_and_why():
     stop = TrackStop(sample=3, reason=TrackStopReason.SELF_COLLISION, text="(M, L2) touch", pair=("M", "L2"))
     motion = make_motion(reached=2, stop=stop)
