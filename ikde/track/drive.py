@@ -11,9 +11,9 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import COORDINATE, DriveArrays, Floats, Ints
 from ikde.model.pack import frame_names, pack_robot
+from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import Robot
 from ikde.model.tree import build_tree
-from ikde.solver.engines.pool import find_planar_base
 from ikde.track.limits import MotionLimits
 from ikde.track.spec import DRIVES, Drive
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import Detector, Robot
-from ikde.solver.engines.pool import find_planar_base
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed

@@ -21,7 +21,7 @@ from ikde.kernels.step_evolution import (
     make_step_workspace,
 )
 from ikde.model.pack import pack_detector, pack_robot
-from ikde.solver.engines.pool import find_planar_base
+from ikde.model.planar_base import find_planar_base
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import compute_orientation_errors
 from ikde.track.drive import WHEEL_RADIUS_M, wheel_speeds

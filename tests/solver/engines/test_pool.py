@@ -14,7 +14,6 @@ from ikde.solver.engines.pool import (
     DRAWN,
     PER_CELL,
     find_base,
-    find_planar_base,
     load_kernels,
     make_seeds,
     pool_name,
@@ -72,7 +71,6 @@ def test_a_base_is_one_that_drives_turns_has_room_and_carries_all(qiao):
     half = upper.copy()
     half[2] = 0.0
     assert find_base(qiao, lower, half).tolist() == [-1, -1, -1]
-    assert find_planar_base(qiao).tolist() == [0, 1, 2]
     ur5 = ikde.load_robot("ur5")
     assert find_base(ur5, ur5.lower, ur5.upper).tolist() == [-1, -1, -1]
 
