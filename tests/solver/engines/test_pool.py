@@ -86,6 +86,11 @@ def test_pools_of_other_detectors_have_other_names(qiao):
     assert len(names) == 9
 
 
+def test_wheels_leave_the_pool_alone(qiao, unwheeled):
+    detector = qiao.detector(None)
+    assert pool_name(unwheeled, detector, "axis") == pool_name(qiao, detector, "axis")
+
+
 def test_tables_take_the_place_of_modules_if_asked(qiao, monkeypatch):
     monkeypatch.setenv("IKDE_KERNELS", "tables")
     _, robot, detector = load_kernels(qiao, qiao.detector(None), "pose")
