@@ -1,6 +1,7 @@
 """What every test shares: the robots, a random generator, and a matplotlib that needs no screen."""
 
 import os
+from dataclasses import replace
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 # Kernels written for a robot are compiled for that robot alone, 10 s a kind of target. What is not about them uses the
@@ -25,6 +26,12 @@ settings.load_profile("ikde")
 def qiao():
     """The 9-DoF robot of the paper."""
     return ikde.load_robot("qiao2021")
+
+
+@pytest.fixture(scope="session")
+def unwheeled(qiao):
+    """The same robot, but nobody told of its wheels."""
+    return replace(qiao, wheels=None)
 
 
 @pytest.fixture(params=ROBOTS)

@@ -9,7 +9,7 @@ from ikde.errors import InputError, nearest
 from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
-from ikde.model.robot import NO_DETECTOR, Detector, Frame, Joint, Provenance, Robot, SphereRow
+from ikde.model.robot import NO_DETECTOR, Detector, Frame, Joint, Provenance, Robot, SphereRow, Wheels
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import NON_ADJACENT, check_robot
 
@@ -101,6 +101,13 @@ class ConventionEntry(Entry):
     offsets: dict[Name, Number]
 
 
+class WheelsEntry(Entry):
+    """The two driven wheels of a base: how large, and how far from its middle."""
+
+    radius: Number
+    half_track: Number
+
+
 class RobotFile(BaseModel):
     """The whole file."""
 
@@ -119,6 +126,7 @@ class RobotFile(BaseModel):
     pairs: dict[Name, PairEntry] = {}
     detectors: dict[Name, DetectorEntry] = {}
     default_detector: Name = NO_DETECTOR
+    wheels: WheelsEntry | None = None
 
 
 def parse_robot(document: Document) -> Robot:
@@ -153,6 +161,7 @@ def _to_robot(file: RobotFile) -> Robot:
         convention=file.convention,
         conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
         provenance=_provenance(file),
+        wheels=_to_wheels(file.wheels, length) if file.wheels else None,
     )
 
 
@@ -190,6 +199,10 @@ def _to_row(entry: SphereEntry, length: float) -> SphereRow:
     )
 
 
+def _to_wheels(entry: WheelsEntry, length: float) -> Wheels:
+    return Wheels(radius_m=entry.radius * length, half_track_m=entry.half_track * length)
+
+
 def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     """Pairs of a list with those of the lists it includes, each once."""
     if name in seen:
@@ -214,8 +227,7 @@ def _provenance(file: RobotFile) -> dict[Where, Provenance]:
     entries: list[tuple[Where, Any]] = [
         ((section, name), entry) for section, named in sections.items() for name, entry in named.items()
     ]
-    if file.adjacent:
-        entries.append((("adjacent",), file.adjacent))
+    entries += [((key,), entry) for key in ("adjacent", "wheels") if (entry := getattr(file, key))]
     entries += [(("spheres", n, i), e) for n, rows in file.spheres.items() for i, e in enumerate(rows)]
     for where, entry in entries:
         named = entry.source if isinstance(entry.source, dict) else {None: entry.source}

@@ -70,6 +70,15 @@ class Detector:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Wheels:
+    """The two driven wheels of a base that drives in the plane and turns, side by side on one axis."""
+
+    radius_m: float
+    half_track_m: float
+    """From the middle of the base, the origin of what its turning joint moves, to either wheel."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
     """Where a number comes from: printed, forced by printed numbers, or chosen inside what they leave free."""
 
@@ -102,6 +111,8 @@ class Robot:
     """Other conventions: offsets in rad, q_other = q + offset."""
     provenance: Mapping[tuple[str | int, ...], Provenance]
     """Path of a number in the robot's file -> where it comes from."""
+    wheels: Wheels | None = None
+    """None for a robot without a base that drives on two wheels, and for one whose wheels nobody told."""
 
     @property
     def joint_names(self) -> tuple[str, ...]:

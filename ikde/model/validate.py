@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.errors import InputError, nearest
 from ikde.model.pairs import component_bodies, non_adjacent_pairs
+from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import NO_DETECTOR, WORLD, Frame, Robot, SphereRow, check_detector
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
@@ -38,6 +39,7 @@ def check_robot(draft: Robot) -> Robot:
     robot = replace(robot, pair_lists={**robot.pair_lists, NON_ADJACENT: every})
     _check_detectors(robot)
     _check_conventions(robot)
+    _check_wheels(robot)
     return robot
 
 
@@ -174,3 +176,14 @@ def _check_conventions(robot: Robot) -> None:
         for joint in offsets:
             _check_name(joint, kinds, ("conventions", name, joint), "joint")
             _require(kinds[joint] == "revolute", "only a revolute joint can be shifted", "conventions", name, joint)
+
+
+def _check_wheels(robot: Robot) -> None:
+    """Wheels with a size, under a base that they can drive."""
+    wheels = robot.wheels
+    if wheels is None:
+        return
+    drives = bool(find_planar_base(robot)[0] >= 0)
+    _require(drives, "wheels need a base that drives in the plane, turns, and carries all that can collide", "wheels")
+    for key, what, value in (("radius", "radius", wheels.radius_m), ("half_track", "distance", wheels.half_track_m)):
+        _require(0.0 < value < np.inf, f"expected a {what} above 0", "wheels", key)

@@ -45,7 +45,7 @@ def plot_joint_speeds(motion: TrackSummary) -> Any:
 
 
 def plot_base(motion: TrackSummary) -> Any:
-    """The base's place, its speeds with their limits, and its wheels'; None for a robot that stands still."""
+    """The base's place, its speeds with their limits, and its wheels', if known; None for a robot that stands still."""
     trajectory = motion.trajectory
     if not trajectory.base_joints:
         return None
@@ -62,7 +62,7 @@ def plot_base(motion: TrackSummary) -> Any:
 
 def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     trajectory, bounds = motion.trajectory, _speed_bounds(motion)
-    labels = ("v along x", "v along y") if trajectory.wheel_speeds is None else ("",)
+    labels = ("v along x", "v along y") if trajectory.drive == "omnidirectional" else ("",)
     times, v = _in_steps(motion, trajectory.v.reshape(-1, len(labels)))
     _, omega = _in_steps(motion, trajectory.omega[:, None])
     lines = [Line(label=label, x=times, y=v[:, k]) for k, label in enumerate(labels)]

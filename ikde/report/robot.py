@@ -2,10 +2,11 @@
 
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import Any
 
 from ikde.io.units import LENGTHS_M
-from ikde.model.robot import Robot
+from ikde.model.robot import Robot, Wheels
 from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units
 
@@ -52,6 +53,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
             for name, d in robot.detectors.items()
         },
         "default_detector": robot.default_detector,
+        "wheels": None if robot.wheels is None else asdict(robot.wheels),
         "provenance": dict(Counter(p.kind for p in robot.provenance.values())),
     }
 
@@ -59,7 +61,9 @@ def robot_json(robot: Robot) -> dict[str, Any]:
 def format_robot(robot: Robot, units: Units, *, color: bool = False) -> str:
     """A robot for the terminal: joints, frames, detectors and the provenance of its numbers."""
     head = f"[bold]{plain(robot.name)}[/]: {plain(robot.title)}"
-    tables = [_joint_table(robot, units), _frame_table(robot, units), _detector_table(robot, units), _sources(robot)]
+    wheels = [_wheel_table(robot, robot.wheels, units)] if robot.wheels else []
+    tables = [_joint_table(robot, units), _frame_table(robot, units), *wheels, _detector_table(robot, units)]
+    tables.append(_sources(robot))
     return render(head, "", *tables, color=color)
 
 
@@ -89,6 +93,14 @@ def _frame_table(robot: Robot, units: Units) -> Any:
         table.add_row(
             plain(frame.name), plain(frame.parent), offset, plain(frame.joint or ""), source.kind if source else ""
         )
+    return table
+
+
+def _wheel_table(robot: Robot, wheels: Wheels, units: Units) -> Any:
+    table = make_table("wheels", f">[{units.length}]", "from", title="wheels")
+    for key, value in (("radius", wheels.radius_m), ("half_track", wheels.half_track_m)):
+        source = robot.provenance.get(("wheels", key)) or robot.provenance.get(("wheels",))
+        table.add_row(key, f"{value / LENGTHS_M[units.length]:.6g}", source.kind if source else "")
     return table
 
 

@@ -108,7 +108,7 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
         if trajectory.path.orientation != "free":
             off += f", {_tiny(float(certificate.deviation_rad.max()))} rad"
         yield "tool off the path half-way between samples, at most", off, ""
-    if trajectory.wheel_speeds is not None:
+    if trajectory.drive == "differential":
         yield "base sliding sideways, at most", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
     if motion.started:
         yield "smallest singular value of the arm", significant(float(motion.singular_values.min())), ""
@@ -132,7 +132,7 @@ def _list_limits(motion: TrackSummary) -> Iterator[Row]:
         if worst is not None:
             name, value, limit = worst
             unit = ("m" if robot.joints[robot.joint_names.index(name)].kind == "prismatic" else "rad") + per
-            drives = name in motion.trajectory.base_joints[:2] and motion.trajectory.wheel_speeds is not None
+            drives = name in motion.trajectory.base_joints[:2] and motion.trajectory.drive == "differential"
             share = f", {100.0 * value / limit:.0f} %" if 0.0 < limit < np.inf else ""
             yield f"largest {what}, {'base' if drives else name}{share}", f"{value:.4g} {unit}", f"{limit:.4g} {unit}"
     wheels = largest_wheel_speed(motion)

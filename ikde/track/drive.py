@@ -1,7 +1,8 @@
 """Bases: how one moves between samples, its twist and its wheels, in plain numpy; and a drive packed for the kernels.
 
-`differential`: two driven wheels. Between samples the speeds v and omega stay, so the base runs along an exact arc and
-never slides sideways (5). `omnidirectional`: x, y and heading run linearly. So does every joint of an arm.
+`differential`: two driven wheels, whether the robot tells of them or not. Between samples the speeds v and omega stay,
+so the base runs along an exact arc and never slides sideways (5). `omnidirectional`: x, y and heading run linearly. So
+does every joint of an arm.
 """
 
 from collections.abc import Collection
@@ -11,14 +12,12 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import COORDINATE, DriveArrays, Floats, Ints
 from ikde.model.pack import frame_names, pack_robot
-from ikde.model.robot import Robot
+from ikde.model.planar_base import find_planar_base
+from ikde.model.robot import Robot, Wheels
 from ikde.model.tree import build_tree
-from ikde.solver.engines.pool import find_planar_base
 from ikde.track.limits import MotionLimits
 from ikde.track.spec import DRIVES, Drive
 
-WHEEL_RADIUS_M = 0.100  # [Qiao2022]
-HALF_TRACK_M = 0.259  # calibrated: not printed
 MOST_M, MOST_RAD = 0.5, 0.5 * np.pi  # of one sample, whatever the speed limits: a step is found near its start
 
 
@@ -41,15 +40,15 @@ def base_twist(start: Floats, end: Floats, dt_s: float) -> tuple[Floats, Floats,
     return along / np.sinc(0.5 * angle / np.pi) / dt_s, angle / dt_s, across / dt_s
 
 
-def wheel_speeds(v: Floats, omega: Floats) -> Floats:
-    """Speeds of the left and the right wheel [..., 2] in rad/s (6)."""
-    return np.stack([v - HALF_TRACK_M * omega, v + HALF_TRACK_M * omega], axis=-1) / WHEEL_RADIUS_M
+def wheel_speeds(wheels: Wheels, v: Floats, omega: Floats) -> Floats:
+    """Speeds of the left and the right wheel [..., 2] in rad/s (6), of `v` m/s and `omega` rad/s [...]."""
+    return np.stack([v - wheels.half_track_m * omega, v + wheels.half_track_m * omega], axis=-1) / wheels.radius_m
 
 
-def implied_wheel_speed(speed: Floats, base: Ints) -> float:
+def implied_wheel_speed(wheels: Wheels, speed: Floats, base: Ints) -> float:
     """The wheel speed that the speed limits [N] of a base imply, rad/s: (v + B omega) / r."""
     v = float(min(speed[base[0]], speed[base[1]]))
-    return (v + HALF_TRACK_M * float(speed[base[2]])) / WHEEL_RADIUS_M
+    return (v + wheels.half_track_m * float(speed[base[2]])) / wheels.radius_m
 
 
 def usual_drive(robot: Robot) -> Drive:
@@ -58,7 +57,7 @@ def usual_drive(robot: Robot) -> Drive:
 
 
 def find_wheels(robot: Robot, drive: str) -> Ints:
-    """Coordinates [3] of x, y and heading of a base with wheels; -1 thrice for a drive without.
+    """Coordinates [3] of x, y and heading of a base that runs on arcs; -1 thrice for a drive without.
 
     Raises `InputError` for an unknown drive, or a robot that has no base to drive.
     """
@@ -85,14 +84,14 @@ def pack_drive(
     others = np.array([c for c in pack_robot(robot).bodies[1:, COORDINATE].tolist() if c not in base])
     tree = build_tree(robot)
     centre = limits.center or robot.tool
-    wheel = np.inf if limits.wheel_speed_rad_s is None else limits.wheel_speed_rad_s * WHEEL_RADIUS_M * dt_s
+    half_track, wheel_travel = _wheels_of(limits, robot.wheels, dt_s)
     return DriveArrays(
         base=base,
         others=others,
         largest=_by_step(largest, base, others),
         change=_shares(_by_step(change, base, others), _by_step(largest, base, others)),
-        half_track=HALF_TRACK_M,
-        wheel_travel=float(wheel),
+        half_track=half_track,
+        wheel_travel=wheel_travel,
         centre_body=tree.frame_body[centre],
         p_body_centre=_to_packed(robot, centre),
         farthest=np.inf if limits.farthest_m is None else float(limits.farthest_m),
@@ -102,6 +101,14 @@ def pack_drive(
 def largest_steps(robot: Robot) -> Floats:
     """[N] m or rad: what a joint moves in one sample at most."""
     return np.where(robot.slides, MOST_M, MOST_RAD)
+
+
+def _wheels_of(limits: MotionLimits, wheels: Wheels | None, dt_s: float) -> tuple[float, float]:
+    """Half track, and how far a wheel rolls in a sample at most, in m: any way for wheels without a limit, or none."""
+    if wheels is None:
+        return 0.0, np.inf
+    fastest = limits.wheel_speed_rad_s
+    return wheels.half_track_m, np.inf if fastest is None else float(fastest * wheels.radius_m * dt_s)
 
 
 def _by_step(values: Floats, base: Ints, others: Ints) -> Floats:

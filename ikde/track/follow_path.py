@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import Detector, Robot
-from ikde.solver.engines.pool import find_planar_base
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
@@ -42,7 +42,7 @@ def follow_path(
     Args:
         robot: the robot.
         path: poses of the tool, a sample every `path.dt_s`.
-        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself. None: on wheels if
+        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself. None: on arcs if
             the robot has a base. `typical` minds no wheels and always moves every joint by itself.
         method: `continuation`; or one of the paper's: `optimized`, which keeps the limits at samples only, or
             `typical`, which goes on to the end whatever it breaks: see `Trajectory.breaches`.
@@ -103,7 +103,7 @@ def grade_motion(
         q=q,
         v=v,
         omega=omega,
-        wheel_speeds=None if drive == "omnidirectional" else graded.wheel_speeds,
+        wheel_speeds=None if drive == "omnidirectional" or robot.wheels is None else graded.wheel_speeds,
         stop=followed.stop,
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,

@@ -33,7 +33,8 @@ class MotionLimits:
     segment may have any speed, and what comes after the last is not looked at: a path may begin and end in motion. The
     paper has no such limit."""
     wheel_speed_rad_s: float | None = None
-    """Of both wheels of a differential base (6). The speed limits of the base imply (v + B omega) / r."""
+    """Of both wheels of a differential base (6), if the robot tells of them. The speed limits of the base imply
+    (v + B omega) / r."""
     farthest_m: float | None = None
     """Of the tool from the platform's centre, at every sample (18): D_max, which is not printed."""
     center: str | None = None
@@ -78,6 +79,8 @@ class MotionLimits:
         frames = (WORLD, *(frame.name for frame in robot.frames))
         if self.center is not None and self.center not in frames:
             raise InputError(f"{robot.name} has no frame {self.center!r}", ("limits", "center"))
+        if self.wheel_speed_rad_s is not None and robot.wheels is None:
+            raise InputError(f"{robot.name} has no wheels", ("limits", "wheel_speed_rad_s"))
         return self
 
 

@@ -21,10 +21,9 @@ from ikde.kernels.step_evolution import (
     make_step_workspace,
 )
 from ikde.model.pack import pack_detector, pack_robot
-from ikde.solver.engines.pool import find_planar_base
+from ikde.model.planar_base import find_planar_base
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import compute_orientation_errors
-from ikde.track.drive import WHEEL_RADIUS_M, wheel_speeds
 from ikde.track.follower import Follower
 from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach, tell_when
 from ikde.track.starts import keeps_distance
@@ -160,7 +159,7 @@ def find_broken(follower: Follower, q: Floats, step: Floats) -> tuple[TrackStopR
     drive = follower.drive
     if drive.base[0] >= 0:
         v, omega = step[:2] * drive.largest[:2]
-        if np.abs(wheel_speeds(v, omega)).max() * WHEEL_RADIUS_M > drive.wheel_travel:
+        if abs(v) + drive.half_track * abs(omega) > drive.wheel_travel:
             return TrackStopReason.WHEEL_LIMIT, "the wheels' limit", "wheels"
     if not keeps_distance(follower, q[None])[0]:
         return TrackStopReason.DISTANCE_LIMIT, "the largest distance", follower.limits.center

@@ -120,6 +120,8 @@ def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> MotionLimits:
     """Those of the file; what it leaves out is as in the paper (`MotionLimits.of`)."""
     limits, units, usual = spec.limits, spec.units, MotionLimits.of(robot)
     with placed("limits"):
+        if limits.wheel_speed is not None and robot.wheels is None:
+            raise InputError(f"{robot.name} has no wheels: its file has no `wheels`", ("wheel_speed",))
         if limits.wheel_speed is not None and drive == "omnidirectional":
             raise InputError(NO_WHEELS, ("wheel_speed",))
         _check_center(limits, robot)

@@ -155,13 +155,14 @@ def _without_acceleration(follower: Follower, course: Course, sample: int) -> Tr
 
 
 def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    if np.isinf(follower.drive.wheel_travel) or follower.drive.base[0] < 0:
+    wheels = follower.robot.wheels
+    if wheels is None or np.isinf(follower.drive.wheel_travel) or follower.drive.base[0] < 0:
         return None
     found = _try(follower.with_drive(wheel_travel=np.inf), course, sample)
     if found is None:
         return None
     v, omega = found[1][:2] * follower.drive.largest[:2] / follower.path.dt_s
-    needed = float(np.abs(wheel_speeds(v, omega)).max())
+    needed = float(np.abs(wheel_speeds(wheels, v, omega)).max())
     limit = follower.limits.wheel_speed_rad_s
     text = f"{tell_when(follower, sample)}: a wheel would have to turn at {needed:.4g} rad/s, its limit is {limit:.4g}"
     return TrackStop(sample=sample, reason=TrackStopReason.WHEEL_LIMIT, text=text, limit="wheels")

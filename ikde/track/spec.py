@@ -162,7 +162,7 @@ class LimitsEntry(Entry):
     acceleration: dict[Name, Positive | None] = {}
     """Likewise, units a second squared (default: no limits)."""
     wheel_speed: Positive | None = None
-    """Of the wheels of a differential drive, angle a second (default: what the base's speeds imply)."""
+    """Of a differential drive's wheels, if the robot has any: angle a second (default: as the base's speeds imply)."""
     farthest: Positive | None = None
     """Of the tool from the frame `center`, at every sample (default: any distance)."""
     center: Name | None = None

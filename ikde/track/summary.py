@@ -109,7 +109,8 @@ class TrackSummary:
         own, base = self.limits.wheel_speed_rad_s, find_wheels(self.robot, self.trajectory.drive)
         if own is not None:
             return own
-        return np.inf if self.limits.speed is None or base[0] < 0 else implied_wheel_speed(self.limits.speed, base)
+        speed, wheels = self.limits.speed, self.robot.wheels
+        return np.inf if speed is None or wheels is None or base[0] < 0 else implied_wheel_speed(wheels, speed, base)
 
     @property
     def largest_acceleration(self) -> Worst | None:

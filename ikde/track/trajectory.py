@@ -72,7 +72,7 @@ class Trajectory:
     omega: Floats
     """[M] rad/s, to the left."""
     wheel_speeds: Floats | None
-    """[M, 2] rad/s, left and right; None for an omnidirectional drive."""
+    """[M, 2] rad/s, left and right; None for an omnidirectional drive, and for a robot that tells of no wheels."""
     stop: TrackStop | None
     """Why the motion ends before its path does; None if it does not."""
     seconds: Floats

@@ -15,7 +15,7 @@ from ikde.kernels.evolution import IGNORE, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_detector, pack_robot
-from ikde.solver.engines.pool import find_planar_base
+from ikde.model.planar_base import find_planar_base
 from ikde.track.follower import Follower
 
 

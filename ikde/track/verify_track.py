@@ -57,11 +57,11 @@ class TrackVerification:
     speeds: Floats
     """[M, N] m/s and rad/s of each segment; of a base with wheels the chord's."""
     v: Floats
-    """[M] m/s along the base's heading; NaN without wheels."""
+    """[M] m/s along the base's heading; NaN without a base on arcs."""
     omega: Floats
     """[M] rad/s"""
     wheel_speeds: Floats
-    """[M, 2] rad/s, left and right; NaN without wheels."""
+    """[M, 2] rad/s, left and right; NaN without a base on arcs, or for a robot that tells of no wheels."""
     sideways_m_s: Floats
     """[M] chord velocity across the mid heading (5); 0 without wheels."""
     gaps_m: Floats
@@ -99,7 +99,11 @@ class TrackVerification:
 def verify_track(
     robot: Robot, path: ToolPath, q: Floats, *, drive: str, limits: MotionLimits, detector: Detector | None
 ) -> TrackVerification:
-    """Grade the joint values `q` [M + 1, N] of the samples 0 .. M, M <= K, against path and limits."""
+    """Grade the joint values `q` [M + 1, N] of the samples 0 .. M, M <= K, against path and limits.
+
+    Raises `InputError` for limits that do not fit the robot.
+    """
+    limits.check(robot)
     dt_s = path.dt_s
     targets = path.targets()[: len(q)]
     frames = compute_frames(robot, q)
@@ -112,7 +116,7 @@ def verify_track(
     v, omega, across = (nothing, nothing, np.zeros(len(nothing)))
     if base[0] >= 0:
         v, omega, across = base_twist(q[:-1, base], q[1:, base], dt_s)
-    wheels = wheel_speeds(v, omega)
+    wheels = wheel_speeds(robot.wheels, v, omega) if robot.wheels else np.full((len(v), 2), np.nan)
     gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), q) if detector else np.empty((len(q), 0))
     centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)

@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from ikde.io.robots import robot_path
+
 SPEC = """
 name: short
 robot: qiao2021
@@ -55,6 +57,32 @@ def test_without_figures_and_from_a_start(cli, spec, tmp_path):
     assert (again["seed"], again["asked_start"], chosen["asked_start"]) == (5, chosen["start"], None)
     assert f"--seed 5 --start {start} --out FOLDER" in (tmp_path / "b" / "report.html").read_text(encoding="utf-8")
     assert again["start"] == pytest.approx(chosen["start"])
+
+
+@pytest.fixture
+def cart(spec):
+    """A robot file like the paper's but for its wheels, and the track file that names it."""
+    lines = robot_path("qiao2021").read_text().splitlines()
+    (spec.parent / "cart.yaml").write_text("\n".join(line for line in lines if not line.startswith("wheels:")))
+    spec.write_text(SPEC.replace("qiao2021", "cart.yaml"))
+    return spec
+
+
+def test_a_robot_of_ones_own_needs_no_wheels(cli, cart, tmp_path):
+    outcome = cli("track", cart, "--out", tmp_path / "a")
+    assert outcome.code == 0, outcome
+    assert outcome.out.startswith("followed: 6 of 6 points of short, 0.12 s, differential\n")
+    assert "wheel" not in outcome.out
+    assert names(tmp_path / "a") == FILES
+    for file in ("base.yaml", "trajectory.csv"):
+        assert "wheel" not in (tmp_path / "a" / file).read_text()
+    assert json.loads((tmp_path / "a" / "summary.json").read_text())["largest_wheel_speed_rad_s"] is None
+
+
+def test_wheels_that_nobody_told_of_have_no_limit(cart, refuse):
+    cart.write_text(cart.read_text() + "limits: {wheel_speed: 5}\n")
+    told = refuse("track", cart)
+    assert "short.yaml:7 → limits.wheel_speed: qiao2021 has no wheels: its file has no `wheels`" in told
 
 
 def test_a_path_that_ends_early_says_where_and_exits_with_1(cli, spec, tmp_path):

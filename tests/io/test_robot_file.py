@@ -39,6 +39,26 @@ default_detector: coarse
 """
 
 
+DRIVEN = """\
+name: cart
+units: {length: mm, angle: deg}
+sources:
+  maker: {kind: published, text: "the maker's drawing"}
+  ours: {kind: calibrated, text: "measured on the floor"}
+joints:
+  x: {kind: prismatic, lower: -5000, upper: 5000}
+  y: {kind: prismatic, lower: -5000, upper: 5000}
+  turn: {kind: revolute, lower: -180, upper: 180}
+frames:
+  along:    {parent: world, joint: x, axis: [1, 0, 0]}
+  across:   {parent: along, joint: y, axis: [0, 1, 0]}
+  platform: {parent: across, xyz: [0, 0, 75], joint: turn, axis: [0, 0, 1]}
+  mast:     {parent: platform, xyz: [0, 0, 900]}
+tool: mast
+wheels: {radius: 75, half_track: 210.5, source: {radius: maker, half_track: ours}}
+"""
+
+
 def parse(text, tmp_path):
     path = tmp_path / "robot.yaml"
     path.write_text(text)
@@ -67,6 +87,45 @@ def test_provenance_is_kept_by_entry_and_by_key(tmp_path):
     provenance = parse(GOOD, tmp_path).provenance
     assert provenance[("joints", "slide")].kind == "calibrated"
     assert provenance[("frames", "rail", "axis")].text == "made up"
+
+
+def test_wheels_are_in_metres_with_their_sources(tmp_path):
+    robot = parse(DRIVEN, tmp_path)
+    assert (robot.wheels.radius_m, robot.wheels.half_track_m) == pytest.approx((0.075, 0.2105))
+    kinds = {place: source.kind for place, source in robot.provenance.items()}
+    assert kinds == {("wheels", "radius"): "published", ("wheels", "half_track"): "calibrated"}
+    whole = parse(DRIVEN.replace("{radius: maker, half_track: ours}", "ours"), tmp_path)
+    assert whole.provenance[("wheels",)].kind == "calibrated"
+
+
+def test_wheels_may_be_left_out(tmp_path):
+    assert parse(GOOD, tmp_path).wheels is None
+    assert parse("\n".join(DRIVEN.splitlines()[:-1]), tmp_path).wheels is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "words"),
+    [
+        ("radius: 75", "radius: 0", "robot.yaml:16 → wheels.radius", "expected a radius above 0"),
+        ("radius: 75", "radius: .inf", "robot.yaml:16 → wheels.radius", "finite"),
+        ("radius: 75", "radius: .nan", "robot.yaml:16 → wheels.radius", "finite"),
+        ("radius: 75", "radius: '75'", "robot.yaml:16 → wheels.radius", "expected a number, got '75'"),
+        ("half_track: 210.5", "half_track: -1", "robot.yaml:16 → wheels.half_track", "expected a distance above 0"),
+        ("half_track: 210.5, ", "", "robot.yaml:16 → wheels.half_track", "missing"),
+        ("half_track: 210.5", "halftrack: 210.5", "wheels.halftrack", "did you mean 'half_track'?"),
+        ("half_track: ours", "half_track: our", "wheels.source", "did you mean 'ours'?"),
+        ("half_track: ours", "track: ours", "wheels.source.track", "this entry has no key 'track'"),
+        ("{radius: 75", "[{radius: 75", "robot.yaml", ""),
+        ("axis: [0, 0, 1]", "axis: [0, 1, 0]", "robot.yaml:16 → wheels", "drives in the plane, turns, and carries all"),
+    ],
+)
+def test_what_is_wrong_with_wheels_is_said_with_its_place(old, new, place, words, tmp_path):
+    assert old in DRIVEN
+    with pytest.raises(FileError) as caught:
+        parse(DRIVEN.replace(old, new, 1), tmp_path)
+    assert "\n" not in str(caught.value)
+    assert place in str(caught.value)
+    assert words in str(caught.value)
 
 
 def test_frames_may_stand_in_any_order(tmp_path):

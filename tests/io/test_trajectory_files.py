@@ -73,6 +73,16 @@ def test_columns_without_numbers_are_left_out():
     assert "v_m_s" not in omni
 
 
+def test_a_base_on_arcs_without_wheels_has_a_twist_alone(tmp_path):
+    bare = make_motion(wheel_speeds=None)
+    with_wheels = trajectory_table(make_motion()).column_names
+    assert trajectory_table(bare).column_names == [name for name in with_wheels if not name.startswith("wheel")]
+    write_trajectory(tmp_path, bare)
+    base = json.loads((tmp_path / "base.json").read_text())
+    assert list(base) == ["drive", "t_s", "x_m", "y_m", "heading_rad", "v_m_s", "omega_rad_s"]
+    assert (base["drive"], base["v_m_s"]) == ("differential", [1.5, 1.5, 1.5, 1.5, 0.0])
+
+
 def test_the_arm_is_a_ros_message():
     message = joint_trajectory(make_motion())
     assert list(message) == ["header", "joint_names", "points"]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError, nearest
-from ikde.model.robot import Detector, Frame, Joint, Robot, SphereRow
+from ikde.model.robot import Detector, Frame, Joint, Robot, SphereRow, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.random_robots import make_frame
 
@@ -335,6 +335,33 @@ def test_a_convention_with_an_unknown_joint():
 def test_a_slide_cannot_be_shifted():
     message = "only a revolute joint can be shifted"
     reject(message, "conventions", "other", "slide", conventions={"other": {"slide": 1.0}})
+
+
+# ---- wheels
+
+
+def test_wheels_need_a_base():
+    message = "wheels need a base that drives in the plane, turns, and carries all that can collide"
+    reject(message, "wheels", wheels=Wheels(radius_m=0.1, half_track_m=0.2))
+
+
+@pytest.mark.parametrize("value", [0.0, -0.1, np.nan, np.inf])
+def test_wheels_have_a_size(qiao, value):
+    for key, message in (("radius", "expected a radius above 0"), ("half_track", "expected a distance above 0")):
+        wheels = Wheels(**{"radius_m": 0.1, "half_track_m": 0.2, f"{key}_m": value})
+        with pytest.raises(InputError) as caught:
+            check_robot(unchecked(replace(qiao, wheels=wheels)))
+        assert (caught.value.message, caught.value.where) == (message, ("wheels", key))
+
+
+def unchecked(robot):
+    """As it was before ikde made its list of pairs."""
+    return replace(robot, pair_lists={name: pairs for name, pairs in robot.pair_lists.items() if name != NON_ADJACENT})
+
+
+def test_a_base_may_have_wheels_or_not(qiao, unwheeled):
+    assert check_robot(unchecked(qiao)).wheels == Wheels(radius_m=0.1, half_track_m=0.259)
+    assert check_robot(unchecked(unwheeled)).wheels is None
 
 
 @pytest.mark.parametrize(("name", "expected"), [("improvd", " (did you mean 'improved'?)"), ("xyz", "")])

@@ -41,6 +41,12 @@ def test_a_base_with_wheels_shows_them(motion):
     assert levels(charts["wheels [rad/s]"])[1] == pytest.approx(motion.wheel_limit_rad_s)
 
 
+def test_a_base_on_arcs_may_have_no_wheels(unwheeled):
+    charts = plot_base(make_measured(unwheeled)).axes
+    assert [axes.get_ylabel() for axes in charts][2:] == ["v [m/s]", "ω [deg/s]"]
+    np.testing.assert_allclose(charts[2].lines[0].get_ydata(), 0.2)
+
+
 def test_a_base_without_wheels_has_two_speeds(qiao):
     charts = plot_base(make_measured(qiao, drive="omnidirectional")).axes
     assert [axes.get_ylabel() for axes in charts][2:] == ["v [m/s]", "ω [deg/s]"]

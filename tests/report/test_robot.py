@@ -64,6 +64,16 @@ def test_text_says_where_limits_and_offsets_come_from(qiao):
     assert words_of(text, "load_centre")[-1] == "calibrated"
 
 
+def test_wheels_are_shown_with_their_sources(qiao, unwheeled):
+    text = format_robot(qiao, MM_DEG)
+    assert words_of(text, "radius") == ["radius", "100", "published"]
+    assert words_of(text, "half_track") == ["half_track", "259", "calibrated"]
+    assert words_of(format_robot(qiao, Units()), "half_track")[1] == "0.259"
+    assert robot_json(qiao)["wheels"] == {"radius_m": 0.1, "half_track_m": 0.259}
+    assert "half_track" not in format_robot(replace(unwheeled, provenance={}), MM_DEG)
+    assert robot_json(unwheeled)["wheels"] is None
+
+
 def test_text_names_the_unit_of_the_offsets(qiao):
     assert "offset [mm]" in format_robot(qiao, MM_DEG)
     assert "offset [m]" in format_robot(qiao, Units())

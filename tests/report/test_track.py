@@ -70,6 +70,15 @@ def test_the_faster_wheel_counts(qiao):
     assert np.isfinite(motion.wheel_limit_rad_s)
 
 
+def test_a_base_without_wheels_has_all_rows_but_theirs(qiao, unwheeled, plan):
+    motion = make_measured(unwheeled)
+    rows = [row[0] for row in list_figures(motion)]
+    assert rows == [row[0] for row in list_figures(make_measured(qiao)) if "wheel" not in row[0]]
+    assert "base sliding sideways, at most" in rows
+    data = track_json(plan, motion)
+    assert (data["drive"], data["largest_wheel_speed_rad_s"], data["wheel_limit_rad_s"]) == ("differential", None, None)
+
+
 def test_what_was_asked_for_is_on_record(qiao, plan):
     data = track_json(plan.with_changes(seed=3, start=qiao.home), make_measured(qiao))
     home = dict(zip(qiao.joint_names, qiao.home.tolist(), strict=True))

@@ -100,7 +100,7 @@ def number_entries(data):
     found = [("frames", name) for name, frame in data["frames"].items() if has_numbers(frame)]
     found += [("spheres", name, i) for name, rows in data.get("spheres", {}).items() for i in range(len(rows))]
     found += [(section, name) for section in NAMED_ENTRIES for name in data.get(section, {})]
-    return found + ([("adjacent",)] if "adjacent" in data else [])
+    return found + [(section,) for section in ("adjacent", "wheels") if section in data]
 
 
 def joint_numbers(data):
@@ -112,6 +112,11 @@ def joint_numbers(data):
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_shipped_robot_bears_the_name_of_its_file(name):
     assert ikde.load_robot(name).name == name
+
+
+def test_only_the_papers_robot_has_wheels(any_robot):
+    told = any_robot.wheels and (any_robot.wheels.radius_m, any_robot.wheels.half_track_m)
+    assert told == ((0.1, 0.259) if any_robot.name.startswith("qiao2021") else None)
 
 
 def test_home_lies_inside_the_limits(any_robot):

@@ -7,9 +7,8 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
+from ikde.model.robot import Wheels
 from ikde.track.drive import (
-    HALF_TRACK_M,
-    WHEEL_RADIUS_M,
     base_twist,
     find_wheels,
     implied_wheel_speed,
@@ -49,11 +48,12 @@ def test_sliding_sideways_is_told():
 
 
 def test_wheels():
-    left, right = wheel_speeds(np.array(0.3), np.array(0.5))
-    assert left == pytest.approx((0.3 - HALF_TRACK_M * 0.5) / WHEEL_RADIUS_M)
-    assert right == pytest.approx((0.3 + HALF_TRACK_M * 0.5) / WHEEL_RADIUS_M)
-    speed = np.array([0.5, 0.4, 1.0])
-    assert implied_wheel_speed(speed, np.arange(3)) == pytest.approx(wheel_speeds(np.array(0.4), np.array(1.0))[1])
+    wheels = Wheels(radius_m=0.08, half_track_m=0.3)
+    left, right = wheel_speeds(wheels, np.array(0.3), np.array(0.5))
+    assert left == pytest.approx((0.3 - 0.3 * 0.5) / 0.08)
+    assert right == pytest.approx((0.3 + 0.3 * 0.5) / 0.08)
+    fastest = wheel_speeds(wheels, np.array(0.4), np.array(1.0))[1]
+    assert implied_wheel_speed(wheels, np.array([0.5, 0.4, 1.0]), np.arange(3)) == pytest.approx(fastest)
 
 
 def test_what_is_packed(qiao):
@@ -64,7 +64,17 @@ def test_what_is_packed(qiao):
     np.testing.assert_allclose(drive.largest, [0.01] + 6 * [0.01 * np.pi] + [0.0])
     np.testing.assert_allclose(drive.change, [0.4] + 6 * [0.004 / (0.01 * np.pi)] + [np.inf])
     assert (drive.wheel_travel, drive.farthest, drive.centre_body) == (4.0 * 0.1 * 0.02, 1.2, 3)
+    assert drive.half_track == 0.259
     np.testing.assert_allclose(drive.p_body_centre, [0.34, 0.0, 0.119])
+
+
+def test_wheels_are_the_robots(qiao, unwheeled):
+    own = replace(qiao, wheels=Wheels(radius_m=0.05, half_track_m=0.4))
+    limits = MotionLimits.of(own, wheel_speed_rad_s=4.0)
+    drive = pack_drive(own, "differential", limits, 0.02)
+    assert (drive.half_track, drive.wheel_travel) == (0.4, 4.0 * 0.05 * 0.02)
+    none = pack_drive(unwheeled, "differential", MotionLimits.of(unwheeled), 0.02)
+    assert (none.base.tolist(), none.wheel_travel) == ([0, 1, 2], np.inf)
 
 
 def test_a_base_with_wheels_keeps_to_the_lower_of_two_speeds(qiao):

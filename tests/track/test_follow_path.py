@@ -178,6 +178,17 @@ def test_an_arm_on_the_floor_has_no_wheels():
         follow_path(arm, path, drive="differential")
 
 
+def test_a_base_without_wheels_runs_on_the_same_arcs(unwheeled):
+    path = make_line([0.9, 0, 1.0], [1.1, 0.3, 1.0], 150)
+    motion, other = follow_path(unwheeled, path), follow_path(robot(), path)
+    assert motion.reached
+    assert (motion.drive, motion.wheel_speeds, motion.base_joints) == ("differential", None, BASE)
+    for bare, wheeled in ((motion.q, other.q), (motion.v, other.v), (motion.omega, other.omega)):
+        np.testing.assert_array_equal(bare, wheeled)
+    with pytest.raises(InputError, match=r"limits.wheel_speed_rad_s: qiao2021 has no wheels"):
+        follow_path(unwheeled, path, limits=MotionLimits.of(unwheeled, wheel_speed_rad_s=2.0))
+
+
 def test_twists_and_wheels_are_those_of_the_motion():
     motion, other = follow_task("task2", "differential"), follow_task("task2", "omnidirectional")
     verdict, _ = judge(motion)

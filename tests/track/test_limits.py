@@ -47,7 +47,11 @@ def test_what_is_refused(given, key):
 
 def test_what_does_not_fit_a_robot_is_refused():
     panda = ikde.load_robot("panda")
-    for given, key in (({"speed": [1.0]}, "speed"), ({"farthest_m": 1.0, "center": "Oc"}, "center")):
+    for given, key in (
+        ({"speed": [1.0]}, "speed"),
+        ({"farthest_m": 1.0, "center": "Oc"}, "center"),
+        ({"wheel_speed_rad_s": 1.0}, "wheel_speed_rad_s"),
+    ):
         with pytest.raises(InputError) as caught:
             MotionLimits(**{"speed": None, **given}).check(panda)
         assert caught.value.where == ("limits", key)

@@ -93,6 +93,14 @@ def test_what_does_not_fit_is_placed(qiao, keys, words):
     assert str(caught.value).startswith(words)
 
 
+@pytest.mark.parametrize("drive", [None, "differential", "omnidirectional"])
+def test_a_robot_without_wheels_has_no_limit_of_theirs(unwheeled, drive):
+    told = {} if drive is None else {"drive": drive}
+    assert plan(unwheeled, **told).drive == (drive or "differential")
+    with pytest.raises(InputError, match=r"^limits.wheel_speed: qiao2021 has no wheels: its file has no `wheels`$"):
+        plan(unwheeled, limits={"wheel_speed": 360}, **told)
+
+
 def test_a_robot_without_a_base_needs_no_drive():
     ur5 = ikde.load_robot("ur5")
     assert plan(ur5).drive == plan(ur5, drive="omnidirectional").drive == "omnidirectional"

@@ -25,6 +25,13 @@ def test_the_base_counts_by_its_arc(motion):
     assert motion.wheel_limit_rad_s == pytest.approx((0.5 + 0.259 * np.pi / 2) / 0.1)
 
 
+def test_without_wheels_the_base_counts_by_its_arc_all_the_same(motion, unwheeled):
+    bare = make_measured(unwheeled)
+    np.testing.assert_array_equal(bare.driven, motion.driven)
+    assert bare.trajectory.wheel_speeds is None
+    assert bare.wheel_limit_rad_s == np.inf
+
+
 def test_the_fastest_joint_is_named(qiao, motion):
     speeds = np.abs(np.diff(wave(qiao, 20, 0.05), axis=0)) / DT_S
     name, value, limit = motion.fastest

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ikde.errors import InputError
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.drive import step_base
@@ -108,6 +109,19 @@ def test_sliding_sideways_is_a_breach_of_wheels_only(qiao):
     q[4:, 1] += 1e-5
     assert judge(qiao, q).breaches.sideways == 1
     assert judge(qiao, q, drive="omnidirectional").breaches.sideways == 0
+
+
+def test_a_base_without_wheels_is_held_to_its_arc_but_to_no_wheel(qiao, unwheeled):
+    q = make_q(qiao)
+    found = judge(unwheeled, q)
+    assert found.accepted
+    np.testing.assert_allclose(found.v, V)
+    assert found.wheel_speeds.shape == (10, 2)
+    assert np.isnan(found.wheel_speeds).all()
+    q[4:, 1] += 1e-5
+    assert judge(unwheeled, q).breaches.sideways == 1
+    with pytest.raises(InputError, match=r"limits.wheel_speed_rad_s: qiao2021 has no wheels"):
+        judge(unwheeled, q, wheel_speed_rad_s=4.2)
 
 
 def test_collisions_are_counted_by_sample(qiao):

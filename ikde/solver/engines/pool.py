@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Floats, Ints, SeedArrays
+from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
 from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
 from ikde.model.generate.module import load_module, module_name
 from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.planar_base import NO_BASE, find_planar_base
 from ikde.model.reach import arm_length_m
 from ikde.model.robot import Detector, Robot
 from ikde.solver.engines import pool_file
@@ -36,8 +37,6 @@ GRIDS = {
 ROOMY_M = 2.0  # a base must have so much room in x and in y for it to be set freely
 FULL_TURN_RAD = 2.0 * np.pi - 0.01
 SHORTEST_M = 1e-3
-NO_BASE = np.array([-1, -1, -1])
-NO_BASE.setflags(write=False)
 
 
 Kernels = tuple[Any, Any, Any]
@@ -169,30 +168,4 @@ def find_base(robot: Robot, lower: Floats, upper: Floats) -> Ints:
     x, y, turn = base = find_planar_base(robot)
     if x < 0 or min(upper[x] - lower[x], upper[y] - lower[y]) < ROOMY_M or upper[turn] - lower[turn] < FULL_TURN_RAD:
         return NO_BASE
-    return base
-
-
-@lru_cache(maxsize=64)
-def find_planar_base(robot: Robot) -> Ints:
-    """Coordinates [3] of x, y and turn of a base that drives in the plane and carries all that can collide.
-
-    -1 thrice for any other robot; read-only.
-    """
-    arrays = pack_robot(robot)
-    bodies, T = arrays.bodies, arrays.T_parent_body
-    if len(bodies) < 4 or bodies[1:4, PARENT].tolist() != [0, 1, 2] or bodies[1:4, SLIDES].tolist() != [1, 1, 0]:
-        return NO_BASE
-    x, y, turn = bodies[1:4, COORDINATE].tolist()
-    steps = np.eye(4)
-    axes = []
-    for k in (1, 2, 3):
-        steps = steps @ np.vstack([T[k], [0.0, 0.0, 0.0, 1.0]])
-        axes.append(steps[:3, 2])
-    is_plane = np.allclose(axes, np.eye(3), atol=1e-12) and np.allclose(steps[:2, 3], 0.0, atol=1e-12)
-    components = [pack_detector(robot, detector).components[:, 0] for detector in robot.detectors.values()]
-    carries_all = all((carried >= 3).all() for carried in components) and (bodies[4:, PARENT] >= 3).all()
-    if not (is_plane and carries_all):
-        return NO_BASE
-    base = np.array([x, y, turn])
-    base.setflags(write=False)
     return base

@@ -75,6 +75,13 @@ def variants(robot):
     yield robot, None
 
 
+def test_wheels_are_no_part_of_it(qiao, unwheeled):
+    detector = qiao.detector(None)
+    for kind in KINDS:
+        assert module.module_name(unwheeled, detector, kind) == module.module_name(qiao, detector, kind)
+        assert assemble.format_module(unwheeled, detector, kind) == assemble.format_module(qiao, detector, kind)
+
+
 @pytest.mark.parametrize("robot", [ikde.load_robot("qiao2021"), random_robot(3)], ids=lambda robot: robot.name)
 def test_what_differs_has_a_name_of_its_own(robot):
     names = [module.module_name(*case, kind) for case in variants(robot) for kind in KINDS]

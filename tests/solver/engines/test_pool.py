@@ -14,7 +14,6 @@ from ikde.solver.engines.pool import (
     DRAWN,
     PER_CELL,
     find_base,
-    find_planar_base,
     load_kernels,
     make_seeds,
     pool_name,
@@ -72,7 +71,6 @@ def test_a_base_is_one_that_drives_turns_has_room_and_carries_all(qiao):
     half = upper.copy()
     half[2] = 0.0
     assert find_base(qiao, lower, half).tolist() == [-1, -1, -1]
-    assert find_planar_base(qiao).tolist() == [0, 1, 2]
     ur5 = ikde.load_robot("ur5")
     assert find_base(ur5, ur5.lower, ur5.upper).tolist() == [-1, -1, -1]
 
@@ -86,6 +84,11 @@ def test_pools_of_other_detectors_have_other_names(qiao):
     wider = replace(detector, safe_distance_m=detector.safe_distance_m + 1e-3)
     names = {pool_name(qiao, each, kind) for each in (None, detector, wider) for kind in KINDS}
     assert len(names) == 9
+
+
+def test_wheels_leave_the_pool_alone(qiao, unwheeled):
+    detector = qiao.detector(None)
+    assert pool_name(unwheeled, detector, "axis") == pool_name(qiao, detector, "axis")
 
 
 def test_tables_take_the_place_of_modules_if_asked(qiao, monkeypatch):

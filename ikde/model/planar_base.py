@@ -1,0 +1,48 @@
+"""Which joints drive a base in the plane and turn it."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Ints
+from ikde.model.pack import pack_robot
+from ikde.model.pairs import component_bodies
+from ikde.model.robot import Robot
+from ikde.model.tree import build_tree
+
+NO_BASE = np.array([-1, -1, -1])
+NO_BASE.setflags(write=False)
+
+
+@lru_cache(maxsize=64)
+def find_planar_base(robot: Robot) -> Ints:
+    """Coordinates [3] of x, y and turn of a base that drives in the plane and carries all that can collide.
+
+    -1 thrice for any other robot; read-only.
+    """
+    arrays = pack_robot(robot)
+    bodies, T = arrays.bodies, arrays.T_parent_body
+    if len(bodies) < 4 or bodies[1:4, PARENT].tolist() != [0, 1, 2] or bodies[1:4, SLIDES].tolist() != [1, 1, 0]:
+        return NO_BASE
+    x, y, turn = bodies[1:4, COORDINATE].tolist()
+    steps = np.eye(4)
+    axes = []
+    for k in (1, 2, 3):
+        steps = steps @ np.vstack([T[k], [0.0, 0.0, 0.0, 1.0]])
+        axes.append(steps[:3, 2])
+    is_plane = np.allclose(axes, np.eye(3), atol=1e-12) and np.allclose(steps[:2, 3], 0.0, atol=1e-12)
+    carries_all = min(_bodies_looked_at(robot), default=3) >= 3 and (bodies[4:, PARENT] >= 3).all()
+    if not (is_plane and carries_all):
+        return NO_BASE
+    base = np.array([x, y, turn])
+    base.setflags(write=False)
+    return base
+
+
+def _bodies_looked_at(robot: Robot) -> set[int]:
+    """Bodies that carry a component of any detector's pairs."""
+    tree, found = build_tree(robot), set()
+    for detector in robot.detectors.values():
+        bodies = component_bodies(robot.approximations[detector.spheres], tree)
+        found |= {bodies[component] for pair in robot.pairs(detector) for component in pair}
+    return found
