@@ -41,13 +41,13 @@ def plot_errors(motion: TrackSummary) -> Any:
 
 
 def plot_joints(motion: TrackSummary) -> Any:
-    """Joint values of the arm with the ends of their ranges, where they come near."""
+    """Joint values of the arm with the ends of their ranges, where they come near; None without an arm."""
     values = motion.trajectory.times_s, motion.trajectory.q
     return _plot_arm(motion, *values, _ranges(motion), ("deg", LEAST_TURN_DEG), ("mm", LEAST_PLACE_MM))
 
 
 def plot_joint_speeds(motion: TrackSummary) -> Any:
-    """Joint speeds of the arm with their limits, where they come near."""
+    """Joint speeds of the arm with their limits, where they come near; None without an arm."""
     values = _in_steps(motion, motion.verification.speeds)
     return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", LEAST_RATE), ("mm/s", LEAST_RATE))
 
@@ -109,7 +109,7 @@ def plot_clearance(motion: TrackSummary) -> Any:
 def _plot_arm(
     motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Sequence[float]], turns: Shown, slides: Shown
 ) -> Any:
-    """One small chart a joint of the arm, two side by side if their names are short."""
+    """One small chart a joint of the arm, two side by side if their names are short; None for a base alone."""
     panels = []
     for joint in motion.arm:
         slide = motion.robot.joints[joint].kind == "prismatic"
@@ -117,6 +117,8 @@ def _plot_arm(
         line = Line(label="", x=times, y=scale * values[:, joint])
         ends = _scaled(scale, bounds[joint])
         panels.append(_limited(Axis(label=unit), [line], ends, least, motion.robot.joint_names[joint]))
+    if not panels:
+        return None
     columns = 2 if len(panels) > 1 and all(len(panel.title) <= LONGEST_NAME for panel in panels) else 1
     return plot_panels(panels, x=TIME, columns=columns, height_in=ARM_IN)
 

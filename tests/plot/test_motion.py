@@ -80,6 +80,18 @@ def _renamed(frame):
     return frame if frame.joint is None else replace(frame, joint=f"left_robot_{frame.joint}")
 
 
+def test_a_base_without_an_arm_has_no_joints_to_show():
+    kinds = {"d_x": "prismatic", "d_y": "prismatic", "q_z": "revolute"}
+    axes = zip(kinds, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], ["world", "d_x", "d_y"], strict=True)
+    base = make_robot(
+        kinds, [make_frame(name, parent, joint=name, axis=axis) for name, axis, parent in axes], tool="q_z"
+    )
+    motion = make_still(base, detector="none")
+    assert plot_joints(motion) is None
+    assert plot_joint_speeds(motion) is None
+    assert plot_base(motion) is not None
+
+
 def test_slides_are_in_millimetres():
     frames = [
         make_frame("a", "world", joint="s1", axis=(1, 0, 0)),
