@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import AnglesOption, AngleUnit, ConventionOption, JsonOption, LengthUnit, UnitOption, read_q
+from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, read_q
 from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
@@ -36,15 +36,23 @@ def track(
         str | None,
         typer.Option(metavar="Q", help="Configuration at the first pose (as --q of check).", rich_help_panel=INSTEAD),
     ] = None,
-    unit: UnitOption = LengthUnit.m,
-    angles: AnglesOption = AngleUnit.rad,
-    convention: ConventionOption = None,
+    unit: Annotated[
+        LengthUnit, typer.Option("--unit", help="Unit of lengths in --start.", rich_help_panel=INSTEAD)
+    ] = LengthUnit.m,
+    angles: Annotated[
+        AngleUnit, typer.Option("--angles", help="Unit of angles in --start.", rich_help_panel=INSTEAD)
+    ] = AngleUnit.rad,
+    convention: Annotated[
+        str | None,
+        typer.Option(help="How joints are counted in --start (default: the robot's own).", rich_help_panel=INSTEAD),
+    ] = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Make the page with figures: report.html.")] = True,
     as_json: JsonOption = False,
 ) -> None:
     """Follow a tool path inside all limits, free of self-collision at the samples and between them.
 
     If it cannot be followed it says at which sample and what is in the way, writes what was followed, and exits with 1.
+    Lengths are printed in mm and ranges in deg; files and --json are in m, rad and s.
 
     Example: ikde track configs/tracks/qiao2022_task1.yaml --out runs/task1
     """

@@ -14,7 +14,13 @@ from ikde.track.summary import TrackSummary
 MM, DEG = 1e3, 180.0 / np.pi
 LEAST_MM, LEAST_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
 MOST_STAIRS = 200  # more cannot be seen
+LEAST_PLACE_MM, LEAST_TURN_DEG, LEAST_RATE = 1.0, 1.0, 0.1  # what an axis spans at least; rates in mm/s and deg/s
+LONGEST_NAME = 26  # letters of a joint's name for which there is room above half a figure
+ARM_IN = 1.55  # height of a joint's chart
 TIME = Axis(label="t", unit="s")
+
+Shown = tuple[str, float]
+"""Unit of an axis, and what it spans at least."""
 
 
 def plot_errors(motion: TrackSummary) -> Any:
@@ -35,17 +41,19 @@ def plot_errors(motion: TrackSummary) -> Any:
 
 
 def plot_joints(motion: TrackSummary) -> Any:
-    """Joint values of the arm with the ends of their ranges."""
-    return _plot_arm(motion, motion.trajectory.times_s, motion.trajectory.q, _ranges(motion), "deg", "mm")
+    """Joint values of the arm with the ends of their ranges, where they come near; None without an arm."""
+    values = motion.trajectory.times_s, motion.trajectory.q
+    return _plot_arm(motion, *values, _ranges(motion), ("deg", LEAST_TURN_DEG), ("mm", LEAST_PLACE_MM))
 
 
 def plot_joint_speeds(motion: TrackSummary) -> Any:
-    """Joint speeds of the arm with their limits."""
-    return _plot_arm(motion, *_in_steps(motion, motion.verification.speeds), _speed_bounds(motion), "deg/s", "mm/s")
+    """Joint speeds of the arm with their limits, where they come near; None without an arm."""
+    values = _in_steps(motion, motion.verification.speeds)
+    return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", LEAST_RATE), ("mm/s", LEAST_RATE))
 
 
 def plot_base(motion: TrackSummary) -> Any:
-    """The base's place, its speeds with their limits, and its wheels', if known; None for a robot that stands still."""
+    """The base's place, its speeds and, if known, its wheels', with limits that come near; None without a base."""
     trajectory = motion.trajectory
     if not trajectory.base_joints:
         return None
@@ -53,29 +61,30 @@ def plot_base(motion: TrackSummary) -> Any:
     times, q = trajectory.times_s, trajectory.q
     place = [Line(label=name, x=times, y=q[:, joint]) for name, joint in (("x", x), ("y", y))]
     turned = Line(label="", x=times, y=DEG * q[:, heading])
+    ends = _scaled(DEG, _ranges(motion)[heading])
     panels = [
-        Panel(y=Axis(label="place", unit="m"), lines=place),
-        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=_scaled(DEG, _ranges(motion)[heading])),
+        Panel(y=Axis(label="place", unit="m"), lines=place, least=LEAST_PLACE_MM / MM),
+        _limited(Axis(label="heading", unit="deg"), [turned], ends, LEAST_TURN_DEG),
     ]
     return plot_panels([*panels, *_speed_panels(motion, x, heading)], x=TIME)
 
 
 def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     trajectory, bounds = motion.trajectory, _speed_bounds(motion)
-    labels = ("v along x", "v along y") if trajectory.drive == "omnidirectional" else ("",)
+    labels = ("",) if trajectory.drive == "differential" else ("v along x", "v along y")
     times, v = _in_steps(motion, trajectory.v.reshape(-1, len(labels)))
     _, omega = _in_steps(motion, trajectory.omega[:, None])
     lines = [Line(label=label, x=times, y=v[:, k]) for k, label in enumerate(labels)]
     turning = Line(label="", x=times, y=DEG * omega[:, 0])
     panels = [
-        Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
-        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading])),
+        _limited(Axis(label="v", unit="m/s"), lines, bounds[x], LEAST_RATE / MM),
+        _limited(Axis(label="ω", unit="deg/s"), [turning], _scaled(DEG, bounds[heading]), LEAST_RATE),
     ]
     if trajectory.wheel_speeds is not None:
         _, speeds = _in_steps(motion, trajectory.wheel_speeds)
         wheels = [Line(label=f"{side} wheel", x=times, y=speeds[:, k]) for k, side in enumerate(("left", "right"))]
-        limit = motion.wheel_limit_rad_s
-        panels.append(Panel(y=Axis(label="wheels", unit="rad/s"), lines=wheels, bounds=_both(limit)))
+        y = Axis(label="wheels", unit="rad/s")
+        panels.append(_limited(y, wheels, _both(motion.wheel_limit_rad_s), LEAST_RATE / DEG))
     return panels
 
 
@@ -98,17 +107,32 @@ def plot_clearance(motion: TrackSummary) -> Any:
 
 
 def _plot_arm(
-    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Sequence[float]], turns: str, slides: str
+    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Sequence[float]], turns: Shown, slides: Shown
 ) -> Any:
-    """One small chart a joint of the arm, two side by side."""
+    """One small chart a joint of the arm, two side by side if their names are short; None for a base alone."""
     panels = []
     for joint in motion.arm:
         slide = motion.robot.joints[joint].kind == "prismatic"
-        scale, unit = (MM, slides) if slide else (DEG, turns)
-        y = Axis(label=motion.robot.joint_names[joint], unit=unit)
+        scale, (unit, least) = (MM, slides) if slide else (DEG, turns)
         line = Line(label="", x=times, y=scale * values[:, joint])
-        panels.append(Panel(y=y, lines=[line], bounds=_scaled(scale, bounds[joint])))
-    return plot_panels(panels, x=TIME, columns=min(len(panels), 2), height_in=1.55)
+        ends = _scaled(scale, bounds[joint])
+        panels.append(_limited(Axis(label=unit), [line], ends, least, motion.robot.joint_names[joint]))
+    if not panels:
+        return None
+    columns = 2 if len(panels) > 1 and all(len(panel.title) <= LONGEST_NAME for panel in panels) else 1
+    return plot_panels(panels, x=TIME, columns=columns, height_in=ARM_IN)
+
+
+def _limited(y: Axis, lines: Sequence[Line], bounds: Sequence[float], least: float, title: str = "") -> Panel:
+    """A chart with those of its bounds that are near: others would press its curves flat.
+
+    Near is what lies no farther from the curves than they span themselves, or half of what the axis shows at least.
+    """
+    values = np.concatenate([np.asarray(line.y) for line in lines])
+    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+    reach = max(high - low, 0.5 * least)
+    near = [bound for bound in bounds if low - reach <= bound <= high + reach]
+    return Panel(y=y, lines=lines, bounds=near, title=title, least=least)
 
 
 def _ranges(motion: TrackSummary) -> list[list[float]]:

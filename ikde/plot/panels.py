@@ -9,6 +9,7 @@ from ikde.plot.images import INK
 from ikde.plot.style import COLORS, DASHES, Axis, drawing_panels, pick
 
 PANEL_IN = 1.75  # height of a row
+TITLE_PT = 9.5
 BOUND = (0, (6, 2))
 
 
@@ -24,6 +25,10 @@ class Panel:
     marks: Sequence[float] = ()
     """Places on x where something is wrong: small triangles on the lower edge."""
     mark: str = "collision"
+    title: str = ""
+    """What stands above the chart, where its y axis has no room for it."""
+    least: float = 0.0
+    """The smallest span of the y axis, so that rounding is no mountain."""
 
 
 def plot_panels(panels: Sequence[Panel], *, x: Axis, columns: int = 1, height_in: float = PANEL_IN) -> Any:
@@ -40,7 +45,19 @@ def plot_panels(panels: Sequence[Panel], *, x: Axis, columns: int = 1, height_in
                 axes.axhline(value, color=INK, linewidth=0.9, linestyle=BOUND, label=label)
             if len(panel.marks):
                 _draw_marks(axes, panel)
+            if panel.title:
+                axes.set_title(panel.title, loc="left", fontsize=TITLE_PT, color=INK)
+            _widen(axes, panel.least)
+        figure.align_ylabels()
     return figure
+
+
+def _widen(axes: Any, least: float) -> None:
+    """Let the y axis span at least so much, with what it shows in its middle."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
 
 
 def _draw_marks(axes: Any, panel: Panel) -> None:

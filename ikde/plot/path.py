@@ -1,4 +1,4 @@
-"""The path in space: what was asked, where the tool went, and where the base drove."""
+"""The path in space: what was asked, where the tool went, and where the base drove, if it can."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from ikde.track.summary import TrackSummary
 
 
 def plot_path(motion: TrackSummary) -> Any:
-    """Asked path, tool and base in the world, m."""
+    """Asked path, tool and a base that drives in the world, m."""
     trajectory = motion.trajectory
     asked, reached = trajectory.path.p_world_tool, trajectory.path.p_world_tool[: len(trajectory.q)]
     tool = reached + trajectory.error_m

@@ -7,14 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from ikde import __version__
 from ikde.kernels.arrays import Floats
-from ikde.report.numbers import significant
+from ikde.report.numbers import fixed, seconds, significant
 from ikde.report.render import make_table, plain, render
 from ikde.track.plan import TrackPlan
 from ikde.track.summary import TrackSummary, Worst
 
-MM = 1e3
+MM, DEG = 1e3, 180.0 / np.pi
 WIDTH = 120
+LEAST_SINGULAR = 1e-12  # what is smaller is the rounding of 0
+FIXED = "fixed base"
+
 Row = tuple[str, str, str]
 """What was measured, how much it is, and what it may be."""
 
@@ -22,9 +26,11 @@ Row = tuple[str, str, str]
 def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
     """A motion's figures as plain data: m, rad, s; None where there is nothing to measure."""
     trajectory, graded, certificate = motion.trajectory, motion.verification, motion.certificate
-    stop, seconds = trajectory.stop, trajectory.seconds
+    stop, steps_s = trajectory.stop, trajectory.seconds
     detected = motion.detector is not None and motion.started
+    turned, wheeled = trajectory.path.orientation != "free", trajectory.drive == "differential"
     return {
+        "ikde": __version__,
         "name": plan.name,
         "file": plan.file,
         "robot": motion.robot.name,
@@ -43,7 +49,7 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "start": name_joints(motion, trajectory.q[0]) if motion.started else None,
         "largest_error_m": dict(zip("xyz", motion.largest_axis_errors_m.tolist(), strict=True)),
         "largest_total_error_m": graded.total_error_m,
-        "largest_orientation_error_rad": graded.largest_orientation_error_rad,
+        "largest_orientation_error_rad": graded.largest_orientation_error_rad if turned else None,
         "breaches": {name: getattr(graded.breaches, name) for name in type(graded.breaches).__slots__},
         "accepted": graded.accepted,
         "fastest": _worst_json(motion.fastest),
@@ -57,11 +63,13 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "closest_pair": list(motion.closest_pair) if motion.closest_pair else None,
         "certified_clearance_m": _finite(certificate.clearance_m) if detected else None,
         "largest_deviation_m": float(certificate.deviation_m.max(initial=0.0)),
-        "largest_deviation_rad": float(certificate.deviation_rad.max(initial=0.0)),
-        "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)),
+        "largest_deviation_rad": float(certificate.deviation_rad.max(initial=0.0)) if turned else None,
+        "largest_distance_m": motion.farthest_m,
+        "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)) if wheeled else None,
         "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
-        "median_seconds": _quantile(seconds, 0.5),
-        "p99_seconds": _quantile(seconds, 0.99),
+        "search_seconds": trajectory.search_seconds,
+        "median_seconds": _quantile(steps_s, 0.5),
+        "p99_seconds": _quantile(steps_s, 0.99),
     }
 
 
@@ -70,7 +78,7 @@ def format_track(plan: TrackPlan, motion: TrackSummary, files: tuple[Path, ...] 
     verdict = _verdict(plan, motion)
     if not motion.started:
         return render(verdict, *_list_files(files), color=color, width=WIDTH)
-    table = make_table("measured by separate code", ">", "asked for")
+    table = make_table("measured by plain numpy", ">", "asked for")
     for row in list_figures(motion):
         table.add_row(*map(plain, row))
     return render(verdict, table, *_list_files(files), color=color, width=WIDTH)
@@ -86,7 +94,8 @@ def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
         broken = {name.replace("_", " "): getattr(graded.breaches, name) for name in type(graded.breaches).__slots__}
         told = ", ".join(f"{name} {count} times" for name, count in broken.items() if count)
         return f"[bold red]followed {of}, against its limits[/]: {told}"
-    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {trajectory.drive}"
+    base = trajectory.drive if trajectory.base_joints else FIXED
+    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {base}"
 
 
 def list_figures(motion: TrackSummary) -> Iterator[Row]:
@@ -111,27 +120,31 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     if trajectory.drive == "differential":
         yield "base sliding sideways, at most", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
     if motion.started:
-        yield "smallest singular value of the arm", significant(float(motion.singular_values.min())), ""
+        yield "smallest singular value of the arm", singular(float(motion.singular_values.min())), ""
     if len(trajectory.seconds):
         times = (1e6 * float(np.quantile(trajectory.seconds, share)) for share in (0.5, 0.99))
-        yield "time a sample, median / p99", f"{' / '.join(map(significant, times))} µs", _period(trajectory.path.dt_s)
+        spread = " / ".join(map(significant, times))
+        yield "time of a single step, median / p99", f"{spread} µs", _period(trajectory.path.dt_s)
+        yield "time of the whole search", seconds(trajectory.search_seconds), ""
 
 
 def _list_limits(motion: TrackSummary) -> Iterator[Row]:
-    """Angles, speeds, accelerations, wheels."""
-    robot, breaches = motion.robot, motion.verification.breaches
-    left = motion.range_left
-    if motion.limits.ranges and left is not None and np.isfinite(left[1]):
+    """Ranges, the tool's distance, speeds, accelerations, wheels."""
+    left, breaches = motion.range_left, motion.verification.breaches
+    if motion.limits.ranges and left is not None:
+        name, value, end = left
+        scale, unit = (MM, "mm") if _slides(motion, name) else (DEG, "deg")
         outside = f", {breaches.range} outside" if breaches.range else ""
-        yield (
-            f"least range left, {left[0]}{outside}",
-            f"{np.degrees(left[1]):.1f} deg",
-            f"to {np.degrees(left[2]):g} deg",
-        )
+        yield f"least range left, {name}{outside}", f"{fixed(scale * value, 1)} {unit}", f"to {scale * end:g} {unit}"
+    farthest, most = motion.farthest_m, motion.limits.farthest_m
+    if farthest is not None and most is not None:
+        beyond = f", {breaches.distance} beyond" if breaches.distance else ""
+        what = f"largest distance of the tool from {motion.limits.center}{beyond}"
+        yield what, f"{MM * farthest:.2f} mm", f"{MM * most:g} mm"
     for what, worst, per in (("speed", motion.fastest, "/s"), ("acceleration", motion.largest_acceleration, "/s²")):
         if worst is not None:
             name, value, limit = worst
-            unit = ("m" if robot.joints[robot.joint_names.index(name)].kind == "prismatic" else "rad") + per
+            unit = ("m" if _slides(motion, name) else "rad") + per
             drives = name in motion.trajectory.base_joints[:2] and motion.trajectory.drive == "differential"
             share = f", {100.0 * value / limit:.0f} %" if 0.0 < limit < np.inf else ""
             yield f"largest {what}, {'base' if drives else name}{share}", f"{value:.4g} {unit}", f"{limit:.4g} {unit}"
@@ -175,6 +188,11 @@ def name_joints(motion: TrackSummary, q: Floats) -> dict[str, float]:
     return dict(zip(motion.robot.joint_names, q.tolist(), strict=True))
 
 
+def singular(value: float, digits: int = 3) -> str:
+    """A singular value; 0 if nothing but rounding tells it from 0."""
+    return significant(value, digits) if value >= LEAST_SINGULAR else "0"
+
+
 def gap_mm(gap_m: float, digits: int = 2) -> str:
     """A gap in mm, as many digits as tell it from 0."""
     gap = MM * gap_m
@@ -195,6 +213,10 @@ def _limits_json(motion: TrackSummary) -> dict[str, Any]:
         "position_error_m": limits.position_error_m,
         "orientation_error_rad": limits.orientation_error_rad,
     }
+
+
+def _slides(motion: TrackSummary, name: str) -> bool:
+    return motion.robot.joints[motion.robot.joint_names.index(name)].kind == "prismatic"
 
 
 def _worst_json(worst: Worst | None) -> dict[str, Any] | None:

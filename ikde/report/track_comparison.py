@@ -11,6 +11,7 @@ from ikde import __version__
 from ikde.bench.tracks import Compared, TrackBudget
 from ikde.report.numbers import significant
 from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
+from ikde.report.track import singular
 from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
 from ikde.track.summary import TrackSummary
 
@@ -18,7 +19,8 @@ FRAMES, DPI = 101, 70  # of an animation and of a picture: there are many on thi
 DRAWINGS = (
     ("Path and error", (PATH, ERRORS)),
     ("Joint angles and speeds", (JOINTS, SPEEDS)),
-    ("Base and clearance", (BASE, CLEARANCE)),
+    ("Base", (BASE,)),
+    ("Clearance", (CLEARANCE,)),
 )
 OURS = "continuation"
 FIGURES = (
@@ -109,7 +111,7 @@ def list_cells(runs: Sequence[Row]) -> list[str]:
         _span(runs, "colliding_samples"),
         _worst(runs, "largest_jump_m", max, lambda value: f"{1e3 * value:.1f}"),
         _worst(runs, "largest_jump_rad", max, lambda value: f"{float(np.degrees(value)):.1f}"),
-        _worst(runs, "smallest_singular_value", min, "{:.2g}".format),
+        _worst(runs, "smallest_singular_value", min, lambda value: singular(value, 2)),
         _worst(runs, "certified_clearance_mm", min, lambda value: f"{value:.1f}"),
         *(_worst(alone, key, max, lambda value: significant(1e6 * value)) for key in ("median_s", "p99_s")),
         _worst(alone, "search_s", max, "{:.2g}".format),
@@ -159,8 +161,9 @@ def _make_task(one: Compared) -> Section:
     blocks.append(_beside(shown, lambda motion, prefix: animate(motion, FRAMES, prefix)))
     blocks.append(_beside(shown, lambda motion, prefix: draw_moments(motion, prefix, DPI)))
     for title, drawings in DRAWINGS:
-        blocks.append(Text(f"**{title}**"))
-        blocks += (_beside(shown, partial(draw, drawing)) for drawing in drawings)
+        galleries = [_beside(shown, partial(draw, drawing)) for drawing in drawings]
+        if drawn := [gallery for gallery in galleries if gallery.figures]:
+            blocks += [Text(f"**{title}**"), *drawn]
     return Section(one.data["name"], tuple(blocks))
 
 

@@ -3,13 +3,13 @@
 import json
 import shlex
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ikde import __version__
-from ikde.plot.animation import make_animation
+from ikde.plot.animation import MOST_FRAMES, make_animation
 from ikde.plot.images import to_png, to_svg
 from ikde.plot.moments import plot_moments
 from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints
@@ -30,7 +30,7 @@ from ikde.report.page import (
     Section,
     Table,
 )
-from ikde.report.track import gap_mm, list_figures, name_joints
+from ikde.report.track import FIXED, gap_mm, list_figures, name_joints
 from ikde.track.plan import TrackPlan
 from ikde.track.summary import TrackSummary
 
@@ -47,15 +47,22 @@ class Drawing:
 
 
 PATH = Drawing(plot_path, "path in space", "Where the tool was asked to go and went, and where the base drove.")
+PATH_ALONE = replace(PATH, caption="Where the tool was asked to go and went.")  # of a robot that stands still
 ERRORS = Drawing(
     plot_errors,
     "tracking errors over time",
     "At the samples along each axis, and how far the tool leaves the path half-way between them: that is what "
     "the sampling costs.",
 )
-JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
-SPEEDS = Drawing(plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample.")
-BASE = Drawing(plot_base, "the base over time", "The base: its place and all its speeds.")
+JOINTS = Drawing(
+    plot_joints, "joint values of the arm over time", "Joints of the arm, and ends of their ranges that are near."
+)
+SPEEDS = Drawing(
+    plot_joint_speeds,
+    "joint speeds of the arm over time",
+    "Their speeds from sample to sample, and limits that are near.",
+)
+BASE = Drawing(plot_base, "the base over time", "The base: its place, all its speeds, and limits that are near.")
 CLEARANCE = Drawing(
     plot_clearance,
     "clearance over time",
@@ -74,11 +81,11 @@ def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | N
 def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
     """The robot at eight moments, as a picture."""
     image = to_png(plot_moments(motion), dpi=dpi)
-    caption = "Arm red, platform blue, what collides black; the path grey, what was run of it orange."
+    caption = "Arm red, base blue, what collides black; the path grey, what was run of it orange."
     return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
 
 
-def animate(motion: TrackSummary, frames: int = 251, prefix: str = "", caption: str = "") -> Animation:
+def animate(motion: TrackSummary, frames: int = MOST_FRAMES, prefix: str = "", caption: str = "") -> Animation:
     """The motion itself."""
     data = json.dumps(make_animation(motion, frames), separators=(",", ":"), allow_nan=False)
     return Animation(
@@ -103,8 +110,12 @@ def _describe(motion: TrackSummary) -> str:
     asked = {"free": "any orientation", "axis": "the tool's axis given", "pose": "the whole pose given"}
     return (
         f"A tool path followed by {motion.robot.name}: {path.samples:,} points in {path.duration_s:g} s, "
-        f"{asked[path.orientation]}, {trajectory.drive} drive, method {trajectory.method}."
+        f"{asked[path.orientation]}, {_name_base(motion)}, method {trajectory.method}."
     )
+
+
+def _name_base(motion: TrackSummary) -> str:
+    return f"{motion.trajectory.drive} drive" if motion.trajectory.base_joints else FIXED
 
 
 def _warn(motion: TrackSummary) -> list[Block]:
@@ -130,15 +141,18 @@ def _headline(motion: TrackSummary) -> list[Block]:
     items.append(Number(f"{graded.breaches.total}", "limits broken", "of all kinds, at all samples"))
     if len(trajectory.seconds):
         most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
-        items.append(Number(f"{significant(1e6 * float(np.median(trajectory.seconds)))} µs", "a sample, median", most))
+        items.append(
+            Number(f"{significant(1e6 * float(np.median(trajectory.seconds)))} µs", "a single step, median", most)
+        )
     return [Numbers(tuple(items))]
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:
     moving = animate(motion, caption="Play it, or drag the slider. What collides is black.")
+    path = PATH if motion.trajectory.base_joints else PATH_ALONE
     groups = [
         ("Motion", [moving, draw_moments(motion)]),
-        ("Path and error", [draw(PATH, motion), draw(ERRORS, motion)]),
+        ("Path and error", [draw(path, motion), draw(ERRORS, motion)]),
         ("Joints", [draw(JOINTS, motion), draw(SPEEDS, motion)]),
         ("Base", [draw(BASE, motion)]),
         ("Clearance", [draw(CLEARANCE, motion)]),
@@ -149,14 +163,14 @@ def _list_sections(motion: TrackSummary) -> list[Section]:
 
 def _make_measured(motion: TrackSummary) -> Section:
     columns = Column("figure", align="left"), Column("measured", mark="ours"), Column("asked for", align="left")
-    caption = "Measured by code that shares nothing with what searched"
+    caption = "Measured by plain numpy, not by the kernels that search"
     return Section("Figures", (Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption),))
 
 
 def _make_recipe(plan: TrackPlan, motion: TrackSummary) -> Section:
     facts = [
         ("robot", verbatim(motion.robot.name)),
-        ("drive", motion.trajectory.drive),
+        ("base", _name_base(motion)),
         ("method", code(motion.trajectory.method)),
         ("detector", verbatim(motion.detector.name) if motion.detector else "none"),
         ("time between samples", f"{1e3 * motion.trajectory.path.dt_s:g} ms"),

@@ -12,7 +12,7 @@ from ikde.track.dexterity import smallest_singular_values
 from ikde.track.drive import find_wheels, implied_wheel_speed
 from ikde.track.limits import MotionLimits
 from ikde.track.trajectory import Trajectory
-from ikde.track.verify_track import TrackVerification
+from ikde.track.verify_track import ROUNDING, TrackVerification
 
 Worst = tuple[str, float, float]
 """A joint, its value, and its limit."""
@@ -127,13 +127,29 @@ class TrackSummary:
 
     @property
     def range_left(self) -> Worst | None:
-        """The joint that comes nearest to an end of its range: what is left of it (negative: beyond), and that end."""
-        q, robot = self.trajectory.q, self.robot
+        """The joint with the least share of its range left: what is left (negative: beyond), and to which end.
+
+        The base's x and y do not count, nor do joints without a range or with one of a single value, unless they
+        leave it. None if no joint counts.
+        """
+        q, ends = self.trajectory.q, np.stack([self.robot.lower, self.robot.upper])
         if not len(q):
             return None
-        left = np.stack([q - robot.lower, robot.upper - q]).min(axis=1)
-        end, joint = np.unravel_index(int(np.argmin(np.where(robot.slides, np.inf, left))), left.shape)
-        return robot.joint_names[joint], float(left[end, joint]), float((robot.lower, robot.upper)[end][joint])
+        left = np.stack([q - ends[0], ends[1] - q]).min(axis=1)
+        width = ends[1] - ends[0]
+        share = np.where(left < -ROUNDING, -np.inf, np.inf)
+        np.divide(left, width, out=share, where=(width > 0.0) & np.isfinite(width))
+        share[:, np.isin(self.robot.joint_names, self.trajectory.base_joints[:2])] = np.inf
+        end, joint = np.unravel_index(int(np.argmin(share)), share.shape)
+        if share[end, joint] == np.inf:
+            return None
+        return self.robot.joint_names[joint], float(left[end, joint]), float(ends[end, joint])
+
+    @property
+    def farthest_m(self) -> float | None:
+        """Largest distance of the tool from the centre that it is held near, m; None if it is not, or did not start."""
+        asked = self.limits.farthest_m is not None and self.started
+        return float(self.verification.distance_m.max()) if asked else None
 
 
 def summarise_track(robot: Robot, detector: Detector | None, trajectory: Trajectory) -> TrackSummary:

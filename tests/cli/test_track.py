@@ -1,6 +1,7 @@
 """`ikde track`: files that are whole, a stop that says why, and words for what is wrong."""
 
 import json
+import math
 
 import pytest
 
@@ -142,3 +143,19 @@ def test_a_wrong_option_is_one_line_and_nothing_is_written(refuse, spec, options
 
 def test_a_file_that_is_not_there(refuse):
     assert "nowhere.yaml" in refuse("track", "nowhere.yaml", "--out", "run")
+
+
+def test_units_are_those_of_the_start(cli, spec):
+    told = " ".join(cli("track", "--help").out.replace("│", " ").split())
+    for words in ("Unit of lengths in --start.", "Unit of angles in --start.", "counted in --start (default"):
+        assert words in told
+    assert "in and out" not in told
+    assert "in and out" in cli("fk", "--help").out
+    chosen = cli("track", spec, "--json").data["start"]
+    start = ",".join(f"{name}={value}" for name, value in zip(chosen, _in_mm_and_deg(chosen), strict=True))
+    again = cli("track", spec, "--start", start, "--unit", "mm", "--angles", "deg", "--json").data
+    assert again["start"] == pytest.approx(chosen)
+
+
+def _in_mm_and_deg(joints):
+    return [value * (1e3 if name in ("d_x", "d_y") else math.degrees(1.0)) for name, value in joints.items()]

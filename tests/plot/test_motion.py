@@ -1,10 +1,14 @@
 """Figures of a motion: every curve is the motion's, with its limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import ikde
 from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints
-from tests.track.measured import make_measured
+from tests.random_robots import make_frame, make_robot
+from tests.track.measured import make_measured, make_still
 
 
 @pytest.fixture(scope="module")
@@ -17,11 +21,89 @@ def levels(axes):
     return sorted(line.get_ydata()[0] for line in axes.lines if line.get_transform() != axes.transData)
 
 
-def test_joints_are_in_degrees_between_their_ranges(qiao, motion):
+def names(figure):
+    """What stands above the charts."""
+    return [axes.get_title(loc="left") for axes in figure.axes]
+
+
+def test_joints_are_named_above_and_in_degrees(motion):
+    figure = plot_joints(motion)
+    assert names(figure) == [f"q{k}" for k in range(1, 7)]
+    assert {axes.get_ylabel() for axes in figure.axes} == {"deg"}
+    np.testing.assert_allclose(figure.axes[2].lines[0].get_ydata(), np.degrees(motion.trajectory.q[:, 5]))
+
+
+def test_ends_of_ranges_are_drawn_where_they_are_near(qiao, motion):
+    wide = make_measured(qiao, amplitude=2.0)
+    q3 = plot_joints(wide).axes[2]
+    assert q3.lines[0].get_ydata().min() == pytest.approx(-np.degrees(2.0), abs=1.0)
+    assert levels(q3) == pytest.approx([-150.0])
     charts = plot_joints(motion).axes
-    assert [axes.get_ylabel() for axes in charts] == [f"q{k} [deg]" for k in range(1, 7)]
-    np.testing.assert_allclose(charts[2].lines[0].get_ydata(), np.degrees(motion.trajectory.q[:, 5]))
-    np.testing.assert_allclose(levels(charts[3]), [-102.5, 102.5])
+    assert not any(levels(axes) for axes in charts)
+    low, high = charts[2].get_ylim()
+    assert high - low < 5.0
+    heading = plot_base(motion).axes[1]
+    assert levels(heading) == []
+    assert np.ptp(heading.get_ylim()) < 30.0
+
+
+def test_what_stands_still_is_a_flat_line(motion):
+    still = np.tile(motion.trajectory.q[0], (21, 1)) + 1e-12 * np.arange(21)[:, None]
+    for axes in plot_joints(replace(motion, trajectory=replace(motion.trajectory, q=still))).axes:
+        low, high = axes.get_ylim()
+        assert high - low >= 1.0
+        assert low < axes.lines[0].get_ydata()[0] < high
+
+
+def overlaps(figure):
+    """Pairs of titles and labels that cover each other, or leave the figure."""
+    figure.draw_without_rendering()
+    texts = [text for axes in figure.axes for text in (axes._left_title, axes.yaxis.label, axes.xaxis.label)]
+    boxes = [text.get_window_extent() for text in texts if text.get_text()]
+    outside = [box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1]
+    return outside + [box for k, box in enumerate(boxes) if box.count_overlaps(boxes[:k])]
+
+
+def test_long_names_have_their_place():
+    arm = ikde.load_robot("ur5")
+    figure = plot_joints(make_still(arm))
+    assert names(figure) == list(arm.joint_names)
+    assert overlaps(figure) == overlaps(plot_joint_speeds(make_still(arm))) == []
+    longer = replace(arm, joints=tuple(replace(joint, name=f"left_robot_{joint.name}") for joint in arm.joints))
+    longer = replace(longer, frames=tuple(_renamed(frame) for frame in arm.frames))
+    figure = plot_joints(make_still(longer))
+    assert names(figure)[0] == "left_robot_shoulder_pan_joint"
+    assert overlaps(figure) == []
+
+
+def _renamed(frame):
+    return frame if frame.joint is None else replace(frame, joint=f"left_robot_{frame.joint}")
+
+
+def test_a_base_without_an_arm_has_no_joints_to_show():
+    kinds = {"d_x": "prismatic", "d_y": "prismatic", "q_z": "revolute"}
+    axes = zip(kinds, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], ["world", "d_x", "d_y"], strict=True)
+    base = make_robot(
+        kinds, [make_frame(name, parent, joint=name, axis=axis) for name, axis, parent in axes], tool="q_z"
+    )
+    motion = make_still(base, detector="none")
+    assert plot_joints(motion) is None
+    assert plot_joint_speeds(motion) is None
+    assert plot_base(motion) is not None
+
+
+def test_slides_are_in_millimetres():
+    frames = [
+        make_frame("a", "world", joint="s1", axis=(1, 0, 0)),
+        make_frame("b", "a", joint="s2", axis=(0, 0, 1)),
+    ]
+    gantry = make_robot({"s1": "prismatic", "s2": "prismatic"}, frames, tool="b")
+    motion = make_still(gantry, detector="none")
+    axes = plot_joints(motion).axes[0]
+    assert axes.get_ylabel() == "mm"
+    assert axes.lines[0].get_ydata()[-1] == pytest.approx(-800.0)
+    assert levels(axes) == [-1000.0]
+    assert plot_joint_speeds(motion).axes[0].get_ylabel() == "mm/s"
 
 
 def test_speeds_hold_from_a_sample_to_the_next(motion):
@@ -30,15 +112,34 @@ def test_speeds_hold_from_a_sample_to_the_next(motion):
     np.testing.assert_allclose(y[::2], y[1::2])
     np.testing.assert_allclose(y[::2], np.degrees(motion.trajectory.joint_speeds[:, 3]))
     np.testing.assert_allclose((x[0], x[-1]), (0.0, 0.4))
-    np.testing.assert_allclose(levels(axes), [-90.0, 90.0])
+
+
+def test_speed_limits_are_drawn_where_they_are_near(qiao, motion):
+    assert levels(plot_joint_speeds(motion).axes[2]) == []
+    fast = make_measured(qiao, amplitude=0.2)
+    assert levels(plot_joint_speeds(fast).axes[2]) == pytest.approx([-90.0, 90.0])
 
 
 def test_a_base_with_wheels_shows_them(motion):
     charts = {axes.get_ylabel(): axes for axes in plot_base(motion).axes}
     assert list(charts) == ["place [m]", "heading [deg]", "v [m/s]", "ω [deg/s]", "wheels [rad/s]"]
     np.testing.assert_allclose(charts["v [m/s]"].lines[0].get_ydata(), 0.2)
-    np.testing.assert_allclose(levels(charts["v [m/s]"]), [-0.5, 0.5])
-    assert levels(charts["wheels [rad/s]"])[1] == pytest.approx(motion.wheel_limit_rad_s)
+    assert len(charts["v [m/s]"].lines) == 1
+
+
+def test_a_base_near_its_limits_shows_them(qiao):
+    limits = {"speed": np.full(9, 0.2), "wheel_speed_rad_s": 3.0}
+    v, omega, wheels = plot_base(make_measured(qiao, **limits)).axes[2:]
+    assert levels(v) == pytest.approx([0.2])
+    assert levels(omega) == []
+    assert levels(wheels) == [3.0]
+
+
+def test_wheels_that_are_not_known_are_left_out(motion):
+    unknown = replace(motion, trajectory=replace(motion.trajectory, wheel_speeds=None))
+    charts = plot_base(unknown).axes
+    assert [axes.get_ylabel() for axes in charts] == ["place [m]", "heading [deg]", "v [m/s]", "ω [deg/s]"]
+    assert len(charts[2].lines) == 1
 
 
 def test_a_base_on_arcs_may_have_no_wheels(unwheeled):
@@ -50,7 +151,11 @@ def test_a_base_on_arcs_may_have_no_wheels(unwheeled):
 def test_a_base_without_wheels_has_two_speeds(qiao):
     charts = plot_base(make_measured(qiao, drive="omnidirectional")).axes
     assert [axes.get_ylabel() for axes in charts][2:] == ["v [m/s]", "ω [deg/s]"]
-    assert len(charts[2].lines) == 4
+    assert len([line for line in charts[2].lines if line.get_label().startswith("v along")]) == 2
+
+
+def test_a_robot_that_stands_still_has_no_base():
+    assert plot_base(make_still(ikde.load_robot("ur5"))) is None
 
 
 def test_errors_have_their_tolerance_and_orientation_if_asked_for(qiao, motion):

@@ -30,5 +30,17 @@ def test_one_legend_names_each_look_once(figure):
     assert first.get_color() != figure.axes[1].lines[0].get_color()
 
 
+def test_a_title_stands_above_its_chart():
+    figure = plot_panels([panel("a", title="elbow"), panel("b")], x=TIME)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["elbow", ""]
+
+
+@pytest.mark.parametrize(("least", "span"), [(0.0, 1.1), (1.0, 1.1), (5.0, 5.0)])
+def test_an_axis_spans_what_it_must(least, span):
+    low, high = plot_panels([panel("a", least=least)], x=TIME).axes[0].get_ylim()
+    assert high - low == pytest.approx(span)
+    assert 0.5 * (low + high) == pytest.approx(1.5)
+
+
 def test_a_curve_without_a_label_needs_no_legend():
     assert plot_panels([Panel(y=TIME, lines=[Line(label="", x=[0], y=[0])])], x=TIME).legends == []

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+import ikde
 from ikde.plot.path import plot_path
-from tests.track.measured import make_measured
+from tests.track.measured import make_measured, make_still
 
 
 def test_path_tool_and_base_are_drawn(qiao):
@@ -14,3 +15,8 @@ def test_path_tool_and_base_are_drawn(qiao):
     np.testing.assert_allclose(drawn["tool"], motion.trajectory.path.p_world_tool)
     np.testing.assert_allclose(drawn["base, on the floor"][:, :2], motion.trajectory.q[:, :2])
     assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["path", "tool", "base, on the floor"]
+
+
+def test_a_robot_that_stands_still_drives_nowhere():
+    axes = plot_path(make_still(ikde.load_robot("ur5"))).axes[0]
+    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["path", "tool"]

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.report.track import format_track, gap_mm, largest_wheel_speed, list_figures, track_json
+from ikde.report.track import format_track, gap_mm, largest_wheel_speed, list_figures, singular, track_json
 from ikde.track.trajectory import TrackStop, TrackStopReason
-from tests.track.measured import make_measured
+from tests.random_robots import make_frame, make_robot
+from tests.track.measured import make_measured, make_still
 
 STOP = TrackStop(
     sample=21,
@@ -32,7 +33,8 @@ def test_a_followed_path_is_green_with_its_figures(qiao, plan):
     assert rows["points reached"] == ("20", "20")
     assert rows["largest error along x / y / z"] == ("0 / 0 / 0 mm", "0.001 mm")
     assert rows["largest speed, base, 40 %"] == ("0.2 m/s", "0.5 m/s")
-    assert rows["time a sample, median / p99"] == ("20.0 / 20.0 µs", "20,000 µs")
+    assert rows["time of a single step, median / p99"] == ("20.0 / 20.0 µs", "20,000 µs")
+    assert rows["time of the whole search"] == ("250 ms", "")
     assert all(name in text for name in rows)
 
 
@@ -104,6 +106,71 @@ def test_a_point_that_is_missed_is_not_reached(qiao, plan):
     assert format_track(plan, motion).startswith("followed: 18 of 20 points")
     data = track_json(plan, motion)
     assert (data["reached_points"], data["met_points"]) == (20, 18)
+
+
+def rows_of(motion):
+    """What was measured and what was asked, by name."""
+    return {name: (value, asked) for name, value, asked in list_figures(motion)}
+
+
+def test_what_is_left_of_a_range_has_the_units_of_its_joint(qiao, plan):
+    turning = make_measured(qiao)
+    left = turning.range_left[1]
+    assert rows_of(turning)["least range left, q1"] == (f"{np.degrees(left):.1f} deg", "to 169 deg")
+    frames = [make_frame("a", "world", joint="s1", axis=(1, 0, 0)), make_frame("b", "a", joint="s2", axis=(0, 0, 1))]
+    gantry = make_robot({"s1": "prismatic", "s2": "prismatic"}, frames, tool="b")
+    q = [[0.0, 0.5], [0.0, 1.0 + 1e-15]]
+    sliding = make_measured(gantry, q=q, drive="omnidirectional", detector="none")
+    assert rows_of(sliding)["least range left, s2"] == ("0.0 mm", "to 1000 mm")
+    least = track_json(plan, sliding)["least_range_left"]
+    assert (least["joint"], least["limit"]) == ("s2", 1.0)
+    assert least["value"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_joints_without_ends_have_no_range_left(qiao, plan):
+    joints = tuple(replace(joint, lower=-np.inf, upper=np.inf) for joint in qiao.joints)
+    motion = replace(make_measured(qiao), robot=replace(qiao, joints=joints))
+    assert not any("range" in name for name in rows_of(motion))
+    assert track_json(plan, motion)["least_range_left"] is None
+
+
+def test_a_limited_distance_is_told(qiao, plan):
+    motion = make_measured(qiao, farthest_m=0.5, center="Oc")
+    farthest = motion.verification.distance_m.max()
+    row = "largest distance of the tool from Oc, 21 beyond"
+    assert rows_of(motion)[row] == (f"{1e3 * farthest:.2f} mm", "500 mm")
+    assert track_json(plan, motion)["largest_distance_m"] == farthest
+    kept = make_measured(qiao, farthest_m=5.0, center="Oc")
+    assert "largest distance of the tool from Oc" in rows_of(kept)
+    assert track_json(plan, make_measured(qiao))["largest_distance_m"] is None
+
+
+def test_what_is_not_asked_for_is_none(qiao, plan):
+    pose, free = (track_json(plan, make_measured(qiao, orientation=asked)) for asked in ("axis", "free"))
+    for key in ("largest_orientation_error_rad", "largest_deviation_rad"):
+        assert pose[key] >= 0.0
+        assert free[key] is None
+    assert pose["largest_sideways_m_s"] < 1e-9
+    assert track_json(plan, make_measured(qiao, drive="omnidirectional"))["largest_sideways_m_s"] is None
+    assert pose["ikde"] == ikde.__version__
+
+
+def test_a_base_whose_wheels_are_not_known_still_drives_on_arcs(qiao, plan):
+    motion = make_measured(qiao)
+    unknown = replace(motion, trajectory=replace(motion.trajectory, wheel_speeds=None))
+    assert {"base sliding sideways, at most", "largest speed, base, 40 %"} <= set(rows_of(unknown))
+    assert "largest wheel speed" not in rows_of(unknown)
+    assert track_json(plan, unknown)["largest_wheel_speed_rad_s"] is None
+
+
+def test_a_robot_that_stands_still_has_a_fixed_base(plan):
+    motion = make_still(ikde.load_robot("ur5"), detector="none", speed=None)
+    assert format_track(plan, motion).startswith("followed: 20 of 20 points of wave [1], 0.4 s, fixed base\n")
+
+
+@pytest.mark.parametrize(("value", "told"), [(0.1749, "0.175"), (2e-12, "2.00e-12"), (1.8e-18, "0"), (0.0, "0")])
+def test_rounding_is_no_singular_value(value, told):
+    assert singular(value) == told
 
 
 @pytest.mark.parametrize(("gap_m", "told"), [(0.0123, "12.30"), (3.1e-6, "0.00310"), (-2e-9, "-2.00e-06"), (0, "0.00")])

@@ -1,5 +1,7 @@
 """The page of several methods: one table over all, ours marked, and their figures side by side."""
 
+from dataclasses import replace
+
 import pytest
 
 import ikde
@@ -7,8 +9,8 @@ from ikde.bench.tracks import Compared, TrackBudget, measure
 from ikde.report import track_comparison
 from ikde.report.html import render_html
 from ikde.report.track_comparison import compare_json, make_comparison_page, make_ends_table, make_runs_table
-from ikde.report.track_page import CLEARANCE, PATH
-from tests.track.measured import make_measured
+from ikde.report.track_page import BASE, CLEARANCE, PATH
+from tests.track.measured import make_measured, make_still
 
 BUDGET = TrackBudget(seeds=2, starts=4)
 
@@ -56,6 +58,22 @@ def test_the_page_shows_the_methods_side_by_side(compared, monkeypatch):
     assert text.count("<svg") == 4
     assert "ikde bench track wave.yaml" in text
     assert compare_json(compared, BUDGET)["made"]["budget"] == {"seeds": 2, "starts": 4}
+
+
+def test_a_singular_value_of_nothing_but_rounding_is_0(compared):
+    (one,) = compared
+    runs = [{**run, "smallest_singular_value": 1.8e-18} for run in one.data["runs"]]
+    table = make_runs_table([replace(one, data={**one.data, "runs": runs})])
+    assert dict(zip([c.head for c in table.columns], table.rows[0], strict=True))["least σ"] == "0"
+
+
+def test_a_robot_that_stands_still_has_nothing_about_its_base(compared, monkeypatch):
+    monkeypatch.setattr(track_comparison, "DRAWINGS", (("Base", (BASE,)), ("Path", (PATH,))))
+    still = make_still(ikde.load_robot("ur5"), detector="none")
+    motions = dict.fromkeys(compared[0].motions, still)
+    text = render_html(make_comparison_page([replace(compared[0], motions=motions)], BUDGET, "ikde bench track"))
+    assert "Path</strong>" in text
+    assert "Base</strong>" not in text
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from ikde.track.follow_path import grade_motion
 from ikde.track.methods import Followed
 from ikde.track.summary import summarise_track
 from ikde.track.trajectory import TrackStop, TrackStopReason
-from tests.track.measured import make_measured
+from tests.track.measured import make_measured, make_still
 
 MOST_BYTES = 5_000_000
 STOP = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
@@ -57,6 +57,21 @@ def test_a_stop_is_not_overlooked(page):
     text = render_html(page)
     assert "The path was not followed to its end" in text
     assert STOP.text in text
+
+
+def test_a_robot_that_stands_still_has_a_fixed_base(plan):
+    page = make_track_page(plan, make_still(ikde.load_robot("ur5")))
+    assert "Base" not in [section.title for section in page.sections]
+    assert "the tool's axis given, fixed base, method continuation" in page.subtitle
+    assert ("base", "fixed base") in page.sections[-1].blocks[0].items
+    text = render_html(page)
+    assert "Where the tool was asked to go and went.<" in text
+    assert not any(word in text for word in ("omnidirectional", "differential", "drove", "platform"))
+
+
+def test_it_says_who_measured(page):
+    assert page.sections[0].blocks[0].caption == "Measured by plain numpy, not by the kernels that search"
+    assert "differential drive" in page.subtitle
 
 
 def make_empty(motion):

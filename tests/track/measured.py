@@ -14,8 +14,13 @@ DT_S = 0.02
 
 
 def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="axis", drive="differential", **changes):
-    """A motion through `steps` samples that meets its own path; `changes` are of the path's length and of limits."""
-    q = wave(robot, steps, amplitude)
+    """A motion through `steps` samples that meets its own path; `changes` are of the path's length and of limits.
+
+    `q` [steps + 1, N] among them is another motion, of any robot.
+    """
+    q = changes.pop("q", None)
+    q = wave(robot, steps, amplitude) if q is None else np.array(q)
+    steps = len(q) - 1
     tool = compute_frames(robot, q)[robot.tool]
     further = changes.pop("further", 0)
     rows = np.minimum(np.arange(steps + 1 + further), steps)
@@ -32,6 +37,12 @@ def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="ax
     followed = Followed(q=q, stop=stop, seconds=np.full(steps, 2e-5), search_seconds=0.25)
     motion = grade_motion(robot, path, followed, **told)
     return summarise_track(robot, chosen, motion)
+
+
+def make_still(robot, **changes):
+    """A motion of a robot that stands still: all joints turn, or slide, by 0.2 from home."""
+    q = robot.home + np.linspace(0.0, 0.2, 21)[:, None]
+    return make_measured(robot, q=q, drive="omnidirectional", **changes)
 
 
 def wave(robot, steps, amplitude):

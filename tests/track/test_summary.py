@@ -1,8 +1,11 @@
 """The figures of a motion, against what is known of one that was made up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from tests.random_robots import make_frame, make_robot
 from tests.track.measured import DT_S, make_measured, wave
 
 
@@ -47,6 +50,69 @@ def test_the_rest_of_a_range_is_the_smallest(qiao, motion):
     assert name == "q1"
     assert end == pytest.approx(np.radians(169))
     assert left == pytest.approx(np.radians(169) - qiao.home[3] - 0.025)
+
+
+BASE = [
+    make_frame("x", "world", joint="d_x", axis=(1, 0, 0)),
+    make_frame("y", "x", joint="d_y", axis=(0, 1, 0)),
+    make_frame("z", "y", joint="q_z", axis=(0, 0, 1)),
+]
+SLIDES = {"d_x": "prismatic", "d_y": "prismatic"}
+
+
+def with_ranges(robot, **ranges):
+    """The robot with other ends of some joints' ranges."""
+    joints = {joint.name: joint for joint in robot.joints}
+    for name, (lower, upper) in ranges.items():
+        joints[name] = replace(joints[name], lower=lower, upper=upper)
+    return replace(robot, joints=tuple(joints.values()))
+
+
+def test_a_lift_that_touches_its_end_is_named():
+    kinds = {**SLIDES, "q_z": "revolute", "lift": "prismatic", "q1": "revolute"}
+    up, arm = (
+        make_frame("up", "z", joint="lift", axis=(0, 0, 1)),
+        make_frame("arm", "up", joint="q1", axis=(0, 1, 0)),
+    )
+    robot = make_robot(kinds, [*BASE, up, arm, make_frame("tool", "arm", (1, 0, 0))])
+    q = [[-1.0, 0, 0, 0.9, -0.9], [-1.0, 0, 0, 1.0, -0.9]]
+    motion = make_measured(robot, q=q, detector="none", drive="omnidirectional")
+    assert motion.trajectory.base_joints == ("d_x", "d_y", "q_z")
+    assert motion.range_left == ("lift", 0.0, 1.0)
+
+
+def test_what_is_left_counts_by_its_share(qiao, motion):
+    assert with_q6_in(qiao, motion, 0.5).range_left[0] == "q1"
+    name, left, end = with_q6_in(qiao, motion, 0.011).range_left
+    assert (name, end) == ("q6", qiao.home[8] + 0.011)
+    assert left == pytest.approx(0.011 - 0.05 * 0.2)
+
+
+def with_q6_in(robot, motion, half):
+    """The motion with q6 kept so near home, rad."""
+    return replace(motion, robot=with_ranges(robot, q6=(robot.home[8] - half, robot.home[8] + half)))
+
+
+@pytest.mark.parametrize("ends", [(-np.inf, np.inf), (-10.0, np.inf), (None, None)])
+def test_a_joint_without_a_range_does_not_count(qiao, motion, ends):
+    home = dict(zip(qiao.joint_names, qiao.home, strict=True))
+    still = replace(motion, trajectory=replace(motion.trajectory, q=np.tile(qiao.home, (3, 1))))
+    free = {name: tuple(home[name] if end is None else end for end in ends) for name in qiao.joint_names}
+    assert replace(still, robot=with_ranges(qiao, **free)).range_left is None
+    assert replace(still, robot=with_ranges(qiao, **{**free, "q2": (-7.0, 7.0)})).range_left[0] == "q2"
+
+
+def test_a_joint_beyond_its_range_is_named_before_all(qiao, motion):
+    robot = with_ranges(qiao, q1=(-np.inf, qiao.home[3] - 0.01), q2=(qiao.home[4] - 1.0, qiao.home[4] + 0.04))
+    name, left, _ = replace(motion, robot=robot).range_left
+    assert name == "q1"
+    assert left < 0.0
+
+
+def test_the_tools_distance_counts_where_it_is_limited(qiao, motion):
+    assert motion.farthest_m is None
+    near = make_measured(qiao, farthest_m=5.0, center="Oc")
+    assert near.farthest_m == near.verification.distance_m.max() > 0.0
 
 
 def test_limits_that_are_off_have_no_worst(qiao):
