@@ -83,15 +83,7 @@ class TrackSummary:
     @property
     def steps(self) -> Floats:
         """Change of every joint from sample to sample [M, N], m and rad; of a base with wheels along its arc."""
-        return self.driven * self.trajectory.path.dt_s
-
-    @cached_property
-    def driven(self) -> Floats:
-        """Speeds [M, N] as the limits mean them: of a base with wheels along its heading, in the columns of x and y."""
-        speeds, base = self.verification.speeds.copy(), find_wheels(self.robot, self.trajectory.drive)
-        if base[0] >= 0:
-            speeds[:, base[:2]] = self.verification.v[:, None]
-        return speeds
+        return self.verification.driven * self.trajectory.path.dt_s
 
     def largest_step(self, kind: str) -> float:
         """Largest change of a joint of a kind between two samples, m or rad."""
@@ -101,7 +93,7 @@ class TrackSummary:
     @property
     def fastest(self) -> Worst | None:
         """The joint nearest to its speed limit, or farthest beyond it; None without a limit or a motion."""
-        return self._worst(np.abs(self.driven), self.limits.speed)
+        return self._worst(np.abs(self.verification.driven), self.limits.speed)
 
     @property
     def wheel_limit_rad_s(self) -> float:
@@ -115,7 +107,8 @@ class TrackSummary:
     @property
     def largest_acceleration(self) -> Worst | None:
         """The joint nearest to its acceleration limit."""
-        return self._worst(np.abs(np.diff(self.driven, axis=0)) / self.trajectory.path.dt_s, self.limits.acceleration)
+        changes = np.diff(self.verification.driven, axis=0)
+        return self._worst(np.abs(changes) / self.trajectory.path.dt_s, self.limits.acceleration)
 
     def _worst(self, values: Floats, limit: Floats | None) -> Worst | None:
         if limit is None or not len(values):

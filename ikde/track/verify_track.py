@@ -56,6 +56,8 @@ class TrackVerification:
     """[M + 1]"""
     speeds: Floats
     """[M, N] m/s and rad/s of each segment; of a base with wheels the chord's."""
+    driven: Floats
+    """[M, N] the same as limits mean them: of a base with wheels along its heading, in the columns of x and y."""
     v: Floats
     """[M] m/s along the base's heading; NaN without a base on arcs."""
     omega: Floats
@@ -127,6 +129,7 @@ def verify_track(
         error_m=error,
         orientation_error_rad=turn,
         speeds=speeds,
+        driven=driven,
         v=v,
         omega=omega,
         wheel_speeds=wheels,

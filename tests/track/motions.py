@@ -32,6 +32,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         error_m=np.full((len(q), 3), 1e-9),
         orientation_error_rad=np.zeros(len(q)),
         speeds=np.diff(q, axis=0) / dt_s,
+        driven=np.diff(q, axis=0) / dt_s,
         v=v,
         omega=omega,
         wheel_speeds=wheels,

@@ -22,15 +22,15 @@ def test_it_meets_its_own_path(motion):
 
 
 def test_the_base_counts_by_its_arc(motion):
-    np.testing.assert_allclose(motion.driven[:, :2], 0.2)
-    np.testing.assert_allclose(motion.driven[:, 2], 0.3)
+    np.testing.assert_allclose(motion.verification.driven[:, :2], 0.2)
+    np.testing.assert_allclose(motion.verification.driven[:, 2], 0.3)
     assert motion.largest_step("prismatic") == pytest.approx(0.2 * DT_S)
     assert motion.wheel_limit_rad_s == pytest.approx((0.5 + 0.259 * np.pi / 2) / 0.1)
 
 
 def test_without_wheels_the_base_counts_by_its_arc_all_the_same(motion, unwheeled):
     bare = make_measured(unwheeled)
-    np.testing.assert_array_equal(bare.driven, motion.driven)
+    np.testing.assert_array_equal(bare.verification.driven, motion.verification.driven)
     assert bare.trajectory.wheel_speeds is None
     assert bare.wheel_limit_rad_s == np.inf
 
