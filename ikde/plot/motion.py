@@ -41,19 +41,19 @@ def plot_errors(motion: TrackSummary) -> Any:
 
 
 def plot_joints(motion: TrackSummary) -> Any:
-    """Joint values of the arm with the ends of their ranges, where they come near; None without an arm."""
+    """Joint values of the arm with the ends of their ranges; None without an arm."""
     values = motion.trajectory.times_s, motion.trajectory.q
     return _plot_arm(motion, *values, _ranges(motion), ("deg", LEAST_TURN_DEG), ("mm", LEAST_PLACE_MM))
 
 
 def plot_joint_speeds(motion: TrackSummary) -> Any:
-    """Joint speeds of the arm with their limits, where they come near; None without an arm."""
+    """Joint speeds of the arm with their limits; None without an arm."""
     values = _in_steps(motion, motion.verification.speeds)
     return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", LEAST_RATE), ("mm/s", LEAST_RATE))
 
 
 def plot_base(motion: TrackSummary) -> Any:
-    """The base's place, its speeds and, if known, its wheels', with limits that come near; None without a base."""
+    """The base's place, its speeds and, if known, its wheels', with their limits; None without a base."""
     trajectory = motion.trajectory
     if not trajectory.base_joints:
         return None
@@ -64,7 +64,7 @@ def plot_base(motion: TrackSummary) -> Any:
     ends = _scaled(DEG, _ranges(motion)[heading])
     panels = [
         Panel(y=Axis(label="place", unit="m"), lines=place, least=LEAST_PLACE_MM / MM),
-        _limited(Axis(label="heading", unit="deg"), [turned], ends, LEAST_TURN_DEG),
+        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, least=LEAST_TURN_DEG),
     ]
     return plot_panels([*panels, *_speed_panels(motion, x, heading)], x=TIME)
 
@@ -77,14 +77,14 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     lines = [Line(label=label, x=times, y=v[:, k]) for k, label in enumerate(labels)]
     turning = Line(label="", x=times, y=DEG * omega[:, 0])
     panels = [
-        _limited(Axis(label="v", unit="m/s"), lines, bounds[x], LEAST_RATE / MM),
-        _limited(Axis(label="ω", unit="deg/s"), [turning], _scaled(DEG, bounds[heading]), LEAST_RATE),
+        Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
+        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading]), least=LEAST_RATE),
     ]
     if trajectory.wheel_speeds is not None:
         _, speeds = _in_steps(motion, trajectory.wheel_speeds)
         wheels = [Line(label=f"{side} wheel", x=times, y=speeds[:, k]) for k, side in enumerate(("left", "right"))]
-        y = Axis(label="wheels", unit="rad/s")
-        panels.append(_limited(y, wheels, _both(motion.wheel_limit_rad_s), LEAST_RATE / DEG))
+        limit = _both(motion.wheel_limit_rad_s)
+        panels.append(Panel(y=Axis(label="wheels", unit="rad/s"), lines=wheels, bounds=limit))
     return panels
 
 
@@ -116,28 +116,20 @@ def _plot_arm(
         scale, (unit, least) = (MM, slides) if slide else (DEG, turns)
         line = Line(label="", x=times, y=scale * values[:, joint])
         ends = _scaled(scale, bounds[joint])
-        panels.append(_limited(Axis(label=unit), [line], ends, least, motion.robot.joint_names[joint]))
+        name = motion.robot.joint_names[joint]
+        panels.append(Panel(y=Axis(label=unit), lines=[line], bounds=ends, title=name, least=least))
     if not panels:
         return None
     columns = 2 if len(panels) > 1 and all(len(panel.title) <= LONGEST_NAME for panel in panels) else 1
     return plot_panels(panels, x=TIME, columns=columns, height_in=ARM_IN)
 
 
-def _limited(y: Axis, lines: Sequence[Line], bounds: Sequence[float], least: float, title: str = "") -> Panel:
-    """A chart with those of its bounds that are near: others would press its curves flat.
-
-    Near is what lies no farther from the curves than they span themselves, or half of what the axis shows at least.
-    """
-    values = np.concatenate([np.asarray(line.y) for line in lines])
-    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
-    reach = max(high - low, 0.5 * least)
-    near = [bound for bound in bounds if low - reach <= bound <= high + reach]
-    return Panel(y=y, lines=lines, bounds=near, title=title, least=least)
-
-
 def _ranges(motion: TrackSummary) -> list[list[float]]:
-    """Ends of each joint's range."""
-    return np.column_stack([motion.robot.lower, motion.robot.upper]).tolist()
+    """Ends of each joint's range; of a turn not those beyond a full one: its curve would be pressed flat."""
+    robot = motion.robot
+    ends = np.column_stack([robot.lower, robot.upper])
+    farthest = np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)
+    return [row[np.abs(row) <= most].tolist() for row, most in zip(ends, farthest, strict=True)]
 
 
 def _speed_bounds(motion: TrackSummary) -> list[list[float]]:

@@ -54,15 +54,13 @@ ERRORS = Drawing(
     "At the samples along each axis, and how far the tool leaves the path half-way between them: that is what "
     "the sampling costs.",
 )
-JOINTS = Drawing(
-    plot_joints, "joint values of the arm over time", "Joints of the arm, and ends of their ranges that are near."
-)
+JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
 SPEEDS = Drawing(
     plot_joint_speeds,
     "joint speeds of the arm over time",
-    "Their speeds from sample to sample, and limits that are near.",
+    "Their speeds from sample to sample, and their limits.",
 )
-BASE = Drawing(plot_base, "the base over time", "The base: its place, all its speeds, and limits that are near.")
+BASE = Drawing(plot_base, "the base over time", "The base: its place, all its speeds, and their limits.")
 CLEARANCE = Drawing(
     plot_clearance,
     "clearance over time",
