@@ -11,7 +11,7 @@ from ikde import __version__
 from ikde.bench.tracks import Compared, TrackBudget
 from ikde.report.numbers import significant
 from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
-from ikde.report.track import singular
+from ikde.report.track import MM, gap_mm, singular
 from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
 from ikde.track.summary import TrackSummary
 
@@ -112,7 +112,7 @@ def list_cells(runs: Sequence[Row]) -> list[str]:
         _worst(runs, "largest_jump_m", max, lambda value: f"{1e3 * value:.1f}"),
         _worst(runs, "largest_jump_rad", max, lambda value: f"{float(np.degrees(value)):.1f}"),
         _worst(runs, "smallest_singular_value", min, lambda value: singular(value, 2)),
-        _worst(runs, "certified_clearance_mm", min, lambda value: f"{value:.1f}"),
+        _worst(runs, "certified_clearance_mm", min, lambda value: gap_mm(value / MM, 1)),
         *(_worst(alone, key, max, lambda value: significant(1e6 * value)) for key in ("median_s", "p99_s")),
         _worst(alone, "search_s", max, "{:.2g}".format),
     ]
