@@ -72,24 +72,23 @@ def _make_legend() -> Block:
 
 
 def make_runs_table(compared: Sequence[Compared]) -> Table:
-    """A row a track and method: the worst of all seeds, times of the first; and dead ends."""
+    """A row a track and method: the worst of all seeds, times of the first."""
     rows, names = [], shorten_names([one.data["name"] for one in compared])
     for one, path in zip(compared, names, strict=True):
         for method in one.motions:
             runs = [run for run in one.data["runs"] if run["method"] == method]
-            cells = [path, method, *list_cells(runs), _tell_ends(one, method)]
+            cells = [path, method, *list_cells(runs)]
             rows.append(tuple(Cell(cell, "ours") if method == OURS else cell for cell in cells))
     return Table(
-        columns=(Column("path", align="left"), Column("method", align="left"), *FIGURES, Column("dead ends")),
+        columns=(Column("path", align="left"), Column("method", align="left"), *FIGURES),
         rows=tuple(rows),
         caption="What each method reaches, breaks and costs",
-        note="Counts are ranges over the seeds; errors, steps and clearances the worst; times are those of the "
-        "first seed, which ran alone; a sample of continuation is a step of the motion that was found, the whole path "
-        "all the search for it, starts and ways back; the other two were given their start. A step is what the base or "
-        "a joint does in one sample. Clearance is the "
-        "certified one, between the samples, too. σ is the smallest singular value of the arm's Jacobian, in m and "
-        "rad, in what the path asks for. Limits counts every joint, wheel and sample by itself. Dead ends are random "
-        "starts from which the path's end is not reached. The typical DE is graded as if the base could slide.",
+        note="Counts are ranges over the seeds; errors, steps and clearances the worst. A step is what the base or a "
+        "joint does in one sample. Clearance is the certified one, between the samples, too. σ is the least singular "
+        "value of the arm's Jacobian, in m and rad, in what the path asks for. Limits counts every joint, wheel and "
+        "sample by itself. Times are those of the first seed, which ran alone: a sample of continuation is a step of "
+        "the motion that was found, the whole path all the search for it, starts and ways back; the other two were "
+        "given their start. The typical DE moves the base freely in the plane.",
     )
 
 
@@ -116,11 +115,6 @@ def list_cells(runs: Sequence[Row]) -> list[str]:
         *(_worst(alone, key, max, lambda value: significant(1e6 * value)) for key in ("median_s", "p99_s")),
         _worst(alone, "search_s", max, "{:.2g}".format),
     ]
-
-
-def _tell_ends(one: Compared, method: str) -> str:
-    ends = one.data["dead_ends"]
-    return f"{ends[method]} of {ends['starts']}" if method in ends else "–"
 
 
 def _worst(runs: Sequence[Row], key: str, pick: Callable[..., float], write: Callable[[float], str]) -> str:
