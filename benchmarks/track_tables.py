@@ -60,7 +60,7 @@ def format_whole_paths(record: Record) -> str:
         ratios.append(theirs / mine)
         ours.append(1e3 * mine)
     return (
-        "From the same random starts, where both reach the end, `continuation` takes "
+        "From the same random starts, two motions at a time, where both reach the end, `continuation` takes "
         f"{significant(min(ours))} to {significant(max(ours))} ms for a whole path in the middle of the starts, ways "
         f"back included: {significant(min(ratios), 2)} to {significant(max(ratios), 2)} times less than `optimized`."
     )

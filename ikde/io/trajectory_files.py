@@ -36,7 +36,7 @@ def write_trajectory(
     *,
     velocities: bool = False,
 ) -> tuple[Path, ...]:
-    """Write a motion into a folder; what an earlier one left there is replaced or removed.
+    """Write a motion into a folder; what an earlier one left there in these formats is replaced or removed.
 
     `csv` and `parquet`: `trajectory.<format>`, a row a sample. `yaml` and `json`: `joint_trajectory.<format>`, the arm
     as a ROS message, and `base.<format>`, the base's twist and its wheels' speeds at the same times.
@@ -56,14 +56,14 @@ def write_trajectory(
     """
     files = format_trajectory(trajectory, formats, velocities=velocities)
     prepare_folder(Path(folder))
-    return replace_all(Path(folder), files, MOTION)
+    return replace_all(Path(folder), files, [name for name in MOTION if name.rpartition(".")[2] in formats])
 
 
 def format_trajectory(
     trajectory: Trajectory, formats: Sequence[Format] = FORMATS, *, velocities: bool = False
 ) -> dict[str, bytes]:
     """Name -> content of a motion's files, in the order in which they get their names; as for `write_trajectory`."""
-    for name in formats:
+    for name in formats or ("none",):
         if name not in FORMATS:
             raise InputError(f"expected one of {', '.join(FORMATS)}, got {name!r}", ("formats",))
     table, files = trajectory_table(trajectory), {}

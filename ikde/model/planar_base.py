@@ -7,11 +7,12 @@ import numpy as np
 from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Ints
 from ikde.model.pack import pack_robot
 from ikde.model.pairs import component_bodies
-from ikde.model.robot import Robot
+from ikde.model.robot import Detector, Robot
 from ikde.model.tree import build_tree
 
 NO_BASE = np.array([-1, -1, -1])
 NO_BASE.setflags(write=False)
+HEADING = 3  # the body that a base's third joint turns
 
 
 @lru_cache(maxsize=64)
@@ -31,7 +32,8 @@ def find_planar_base(robot: Robot) -> Ints:
         steps = steps @ np.vstack([T[k], [0.0, 0.0, 0.0, 1.0]])
         axes.append(steps[:3, 2])
     is_plane = np.allclose(axes, np.eye(3), atol=1e-12) and np.allclose(steps[:2, 3], 0.0, atol=1e-12)
-    carries_all = min(_bodies_looked_at(robot), default=3) >= 3 and (bodies[4:, PARENT] >= 3).all()
+    carries_all = all(base_carries(robot, detector) for detector in robot.detectors.values())
+    carries_all &= bool((bodies[4:, PARENT] >= HEADING).all())
     if not (is_plane and carries_all):
         return NO_BASE
     base = np.array([x, y, turn])
@@ -39,10 +41,7 @@ def find_planar_base(robot: Robot) -> Ints:
     return base
 
 
-def _bodies_looked_at(robot: Robot) -> set[int]:
-    """Bodies that carry a component of any detector's pairs."""
-    tree, found = build_tree(robot), set()
-    for detector in robot.detectors.values():
-        bodies = component_bodies(robot.approximations[detector.spheres], tree)
-        found |= {bodies[component] for pair in robot.pairs(detector) for component in pair}
-    return found
+def base_carries(robot: Robot, detector: Detector) -> bool:
+    """Whether all that a detector looks at rides on a planar base: where the base is does not matter then."""
+    bodies = component_bodies(robot.approximations[detector.spheres], build_tree(robot))
+    return all(bodies[component] >= HEADING for pair in robot.pairs(detector) for component in pair)

@@ -184,6 +184,7 @@ def _check_wheels(robot: Robot) -> None:
     if wheels is None:
         return
     drives = bool(find_planar_base(robot)[0] >= 0)
-    _require(drives, "wheels need a base that drives in the plane, turns, and carries all that can collide", "wheels")
+    needed = "wheels need a base that slides along x, then y, turns about z, and carries all that can collide"
+    _require(drives, needed, "wheels")
     for key, what, value in (("radius", "radius", wheels.radius_m), ("half_track", "distance", wheels.half_track_m)):
         _require(0.0 < value < np.inf, f"expected a {what} above 0", "wheels", key)

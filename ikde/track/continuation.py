@@ -66,7 +66,8 @@ class Continuation:
             return found
         if found.course.last == end and beyond is not None:
             return replace(found, stop=tell_out_of_reach(self.follower, *beyond))
-        stop = explain_stop(found.follower, found.course, self._ask(found.course.last + 1))
+        static = self._ask(found.course.last + 1) if self.follower.limits.ranges else None
+        stop = explain_stop(found.follower, found.course, static)
         return replace(found, stop=stop)
 
     def _from_any_start(self, end: int) -> Found:
@@ -102,7 +103,8 @@ class Continuation:
         return Found(course=replace(nothing, last=-1), follower=self.follower, stop=stop)
 
     def _is_possible(self, sample: int) -> bool:
-        return self._ask(sample).reached
+        """Whether any configuration meets it; the solver, which keeps the ranges, is not asked if they don't count."""
+        return not self.follower.limits.ranges or self._ask(sample).reached
 
     def _ask(self, sample: int) -> SolveResult:
         """What the solver says about one sample by itself."""

@@ -1,8 +1,8 @@
 """Many courses along one path, and the best of them.
 
-Every start is tried along the whole path, which takes some 20 us a sample. Of those that reach its end the one with the
-largest clearance is taken, in steps of 5 mm, and of those the one that moves least. If none reaches the end, the null
-space is used otherwise; then those that came farthest go back some samples, drift another way, and try again.
+Every start is tried along the whole path, which takes some tens of us a sample. Of those that reach its end the one
+with the largest clearance is taken, in steps of 5 mm, and of those the one that moves least. If none reaches the end,
+the null space is used otherwise; then those that came farthest go back some samples, drift another way, and try again.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ikde.errors import InputError
 from ikde.kernels.arrays import DRIFT, Floats
+from ikde.track.check_settings import check_counts, require
 from ikde.track.follower import Course, Follower
 
 Use = tuple[float, float, float]
@@ -21,7 +21,6 @@ FIRST_BACK = 8  # samples to go back at first; twice as many each time
 TRIES = 16  # at each
 DRIFT_SHARE = 1.0  # of the largest steps: spread of the drift
 MOST_COURSES = 8  # from different starts, that are gone back on
-LEAST_RETURNS = 100  # of each course, however many share them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,14 +31,16 @@ class ContinuationSettings:
     """What the null space is used for beside least motion (17, 19): clearance, joint ranges, manipulability, as shares
     of the largest steps; the first that leads to the end. (0, 0, 0): least motion alone."""
     returns: int = 1000
-    """How often it goes back from dead ends at most, on all courses together."""
+    """How often one search goes back from dead ends at most, on all its courses together."""
 
     def __post_init__(self) -> None:
-        uses = np.array(self.uses, dtype=float)
-        if uses.ndim != 2 or uses.shape[1] != DRIFT or not (np.isfinite(uses) & (uses >= 0.0)).all():
-            raise InputError(f"expected rows of three numbers of at least 0, got {self.uses!r}", ("settings", "uses"))
-        if self.returns < 0:
-            raise InputError(f"expected at least 0, got {self.returns}", ("settings", "returns"))
+        try:
+            uses = np.array(self.uses, dtype=float)
+        except (TypeError, ValueError):
+            uses = np.empty(0)
+        is_good = uses.ndim == 2 and uses.shape[-1] == DRIFT and bool((np.isfinite(uses) & (uses >= 0.0)).all())
+        require(is_good, "uses", "rows of three numbers of at least 0", self.uses)
+        check_counts(self, {"returns": 0})
 
 
 def choose_course(
@@ -65,8 +66,8 @@ def choose_course(
             return farthest(tried)
     rng, best = np.random.default_rng(seed), farthest(tried)
     few = _farthest_few(tried)
-    most = min(max(settings.returns // len(few), LEAST_RETURNS), settings.returns)
-    for course in few:
+    for number, course in enumerate(few):
+        most = settings.returns // len(few) + (number < settings.returns % len(few))
         best = farthest((best, _return(follower, course, end, most, rng, settings.uses)))
         if best.last == end:
             break

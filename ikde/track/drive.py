@@ -56,6 +56,15 @@ def usual_drive(robot: Robot) -> Drive:
     return "differential" if find_planar_base(robot)[0] >= 0 else "omnidirectional"
 
 
+def choose_drive(robot: Robot, drive: Drive | None, method: str) -> Drive:
+    """The drive of a method: `typical` minds none and moves freely; None is the robot's usual one."""
+    if drive is not None:
+        find_wheels(robot, drive)
+    if method == "typical":
+        return "omnidirectional"
+    return usual_drive(robot) if drive is None else drive
+
+
 def find_wheels(robot: Robot, drive: str) -> Ints:
     """Coordinates [3] of x, y and heading of a base that runs on arcs; -1 thrice for a drive without.
 

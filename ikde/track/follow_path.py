@@ -4,21 +4,23 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import Detector, Robot
-from ikde.solver.joints import JointValues, read_configuration
+from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
 from ikde.track.certify import certify
 from ikde.track.continuation import Continuation
 from ikde.track.courses import ContinuationSettings
-from ikde.track.drive import usual_drive
+from ikde.track.drive import choose_drive
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.methods import Followed, TrackSettings, check_method, follow_by
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive, TrackMethod
+from ikde.track.starts import read_start
 from ikde.track.trajectory import Trajectory
 from ikde.track.verify_track import verify_track
 
@@ -62,14 +64,15 @@ def follow_path(
     Raises:
         InputError: for what does not fit the robot, and a start that is not at the first pose or collides.
     """
+    for value, kind, name in ((robot, Robot, "robot"), (path, ToolPath, "path"), (limits, MotionLimits, "limits")):
+        if not isinstance(value, kind) and not (value is None and name == "limits"):
+            raise InputError(f"expected a {kind.__name__}, got {type(value).__name__}", (name,))
     check_method(method, settings)
-    if method == "typical":
-        drive = "omnidirectional"
-    drive = drive or usual_drive(robot)
+    drive = choose_drive(robot, drive, method)
     limits = MotionLimits.of(robot) if limits is None else limits.check(robot)
     chosen = robot.detector(detector)
     if start is not None:
-        start = read_configuration(robot, start)
+        start = read_start(robot, start)
     problem = make_problem(robot, SolveSettings(), detector=chosen or "none", near=start, freeze=freeze)
     frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
     follower = make_follower(robot, path, drive=drive, limits=limits, detector=chosen, frozen=problem.frozen)

@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ikde.errors import InputError
 from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, TargetArrays, TrackArrays
 from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.planar_base import base_carries
 from ikde.model.robot import Detector, Robot
 from ikde.solver.engines.pool import rotation_length_m
 from ikde.solver.joints import FARTHEST
@@ -137,6 +139,9 @@ def make_follower(
     """Pack robot, path and limits; raises `InputError` for what does not fit the robot."""
     limits.check(robot)
     packed = pack_drive(robot, drive, limits, path.dt_s, frozen)
+    if packed.base[0] >= 0 and detector and not base_carries(robot, detector):
+        message = "a base on arcs must carry all that the detector looks at; say omnidirectional, or leave out the rest"
+        raise InputError(message, ("detector",))
     arrays, seen = pack_robot(robot), pack_detector(robot, detector)
     return Follower(
         robot=robot,

@@ -24,6 +24,7 @@ from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.planar_base import find_planar_base
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import compute_orientation_errors
+from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers, require
 from ikde.track.follower import Follower
 from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach, tell_when
 from ikde.track.starts import keeps_distance
@@ -58,6 +59,13 @@ class OptimizedSettings:
     """W3, per m of error: large enough that no motion saved is worth an error."""
     orientation_weight: float = 3.0
     """Per rad of error, which the print forgets: 0.3 m of W3 a radian, as far as the tool is from the wrist."""
+
+    def __post_init__(self) -> None:
+        check_counts(self, {"population": LEAST_POPULATION, "generations": 1, "returns": 0})
+        weights = ("base_weight", "arm_weight", "position_weight", "orientation_weight")
+        check_numbers(self, {"weight": (0.0, 2.0), "crossover": (0.0, 1.0), **dict.fromkeys(weights, (0.0, 1e6))})
+        is_pair = len(self.strategies) == 2 and all(name in STRATEGIES for name in self.strategies)
+        require(is_pair, "strategies", f"two of {', '.join(STRATEGIES)}", self.strategies)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

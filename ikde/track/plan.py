@@ -13,12 +13,13 @@ from ikde.files.placed import placed
 from ikde.files.robot_entries import read_detector, to_si, with_ranges
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD, Detector, Robot
-from ikde.solver.joints import JointValues, joints_outside, read_configuration
+from ikde.solver.joints import JointValues, joints_outside
 from ikde.track.drive import find_wheels, usual_drive
 from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path
 from ikde.track.path import ToolPath
 from ikde.track.spec import Drive, LimitsEntry, TrackMethod, TrackSpec
+from ikde.track.starts import read_start
 
 NO_WHEELS = "an omnidirectional drive has no such wheels"
 KINDS = ("prismatic", "revolute")
@@ -64,12 +65,12 @@ class TrackPlan:
         Raises:
             InputError: for a start that does not fit the robot, and a drive without wheels whose speed is limited.
         """
-        q = None if start is None else read_configuration(self.robot, start)
+        q = None if start is None else read_start(self.robot, start)
         given = {"method": method, "drive": drive, "seed": seed, "start": q}
         changes = {key: value for key, value in given.items() if value is not None}
         plan = replace(self, **changes, replaced=tuple(dict.fromkeys((*self.replaced, *changes))))
         has_limit = plan.limits.wheel_speed_rad_s is not None and plan.method != "typical"  # which keeps none
-        if drive == "omnidirectional" and has_limit:
+        if plan.drive == "omnidirectional" and has_limit:
             raise self.blame(NO_WHEELS, ("limits", "wheel_speed"))
         return plan
 

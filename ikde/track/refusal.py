@@ -63,14 +63,14 @@ def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
     )
 
 
-def explain_stop(follower: Follower, course: Course, static: SolveResult) -> TrackStop:
+def explain_stop(follower: Follower, course: Course, static: SolveResult | None) -> TrackStop:
     """Why the sample after the course's last is not reached; `static` is what the solver says about it alone."""
     sample = course.last + 1
     for look in LOOKS:
         stop = look(follower, course, sample)
         if stop is not None:
             return stop
-    if not static.reached:
+    if static is not None and not static.reached:
         return tell_static(follower, sample, static)
     stop = _without_speed(follower, course, sample)
     if stop is not None:

@@ -6,7 +6,8 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.solver.joints import joints_outside
+from ikde.model.robot import Robot
+from ikde.solver.joints import JointValues, joints_outside, read_configuration
 from ikde.solver.plain import compute_frames
 from ikde.solver.result import SolveResult
 from ikde.solver.settings import SolveSettings
@@ -53,6 +54,14 @@ def keeps_distance(follower: Follower, q: Floats) -> Bools:
     frames = compute_frames(follower.robot, q)
     apart = frames[follower.robot.tool][:, :3, 3] - frames[limits.center][:, :3, 3]
     return np.linalg.norm(apart, axis=1) <= limits.farthest_m
+
+
+def read_start(robot: Robot, start: JointValues) -> Floats:
+    """A given start as an array [N]; raises `InputError` at `start` for what is none."""
+    try:
+        return read_configuration(robot, start)
+    except InputError as error:
+        raise InputError(error.message, ("start", *error.where[1:])) from None
 
 
 def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:

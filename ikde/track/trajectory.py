@@ -79,7 +79,8 @@ class Trajectory:
     """[M] wall time of each sample after the start, without compiling. Of `continuation`, the steps of the motion that
     was found, taken once more one by one as a controller would take them: `search_seconds` is what finding it took."""
     search_seconds: float
-    """Wall time of the whole motion: starts, all courses, ways back; without compiling and grading."""
+    """Wall time of the whole motion: starts, all courses, ways back; without compiling and grading. Of the paper's
+    methods it holds `continuation`'s search for a start, if none was given."""
     verification: TrackVerification
     """What plain numpy says about the samples."""
     certificate: Certificate

@@ -16,6 +16,7 @@ from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.planar_base import find_planar_base
+from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers, require
 from ikde.track.follower import Follower
 
 
@@ -40,6 +41,14 @@ class TypicalSettings:
     in. The tool moves some 4 mm a sample: 0.3 m hinders nothing."""
     rotation_length_m: float = 0.3
     """What a radian of error counts beside a metre, as in `OptimizedSettings`; both sink below the position's bound."""
+
+    def __post_init__(self) -> None:
+        check_counts(self, {"population": LEAST_POPULATION, "generations": 1})
+        check_numbers(self, {"weight": (0.0, 2.0), "crossover": (0.0, 1.0), "base_range_m": (0.0, 1e5)})
+        check_numbers(self, {"rotation_length_m": (1e-6, 1e6)})
+        for name, choices in (("strategy", STRATEGIES), ("repair", REPAIRS)):
+            value = getattr(self, name)
+            require(value in choices, name, f"one of {', '.join(choices)}", value)
 
 
 def follow_typical(

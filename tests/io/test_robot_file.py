@@ -116,7 +116,7 @@ def test_wheels_may_be_left_out(tmp_path):
         ("half_track: ours", "half_track: our", "wheels.source", "did you mean 'ours'?"),
         ("half_track: ours", "track: ours", "wheels.source.track", "this entry has no key 'track'"),
         ("{radius: 75", "[{radius: 75", "robot.yaml", ""),
-        ("axis: [0, 0, 1]", "axis: [0, 1, 0]", "robot.yaml:16 → wheels", "drives in the plane, turns, and carries all"),
+        ("axis: [0, 0, 1]", "axis: [0, 1, 0]", "robot.yaml:16 → wheels", "turns about z, and carries all"),
     ],
 )
 def test_what_is_wrong_with_wheels_is_said_with_its_place(old, new, place, words, tmp_path):

@@ -132,7 +132,7 @@ def test_a_robot_that_stands_still_has_no_base(tmp_path):
 def test_nothing_of_an_earlier_motion_stays_beside_another(tmp_path):
     write_trajectory(str(tmp_path), make_motion())
     write_trajectory(str(tmp_path), make_motion(base=False), ["csv", "json"])
-    assert names_in(tmp_path) == ["joint_trajectory.json", "trajectory.csv"]
+    assert names_in(tmp_path) == sorted({*FILES, *TABLES} - {"base.json"})
 
 
 def test_what_was_reached_is_written(tmp_path):
@@ -141,6 +141,14 @@ def test_what_was_reached_is_written(tmp_path):
     with pytest.raises(InputError, match="this motion has no samples"):
         write_trajectory(tmp_path / "none", make_motion(reached=-1))
     assert not (tmp_path / "none").exists()
+
+
+def test_formats_can_be_written_one_after_the_other(tmp_path):
+    for name in ("csv", "parquet"):
+        write_trajectory(tmp_path, make_motion(), [name])
+    assert names_in(tmp_path) == TABLES
+    with pytest.raises(InputError, match="formats: expected one of"):
+        write_trajectory(tmp_path, make_motion(), [])
 
 
 def test_an_unknown_format_is_refused_before_anything_is_made(tmp_path):

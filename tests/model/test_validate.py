@@ -341,7 +341,7 @@ def test_a_slide_cannot_be_shifted():
 
 
 def test_wheels_need_a_base():
-    message = "wheels need a base that drives in the plane, turns, and carries all that can collide"
+    message = "wheels need a base that slides along x, then y, turns about z, and carries all that can collide"
     reject(message, "wheels", wheels=Wheels(radius_m=0.1, half_track_m=0.2))
 
 

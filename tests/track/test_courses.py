@@ -89,6 +89,16 @@ def test_all_returns_are_made_however_short_the_course(monkeypatch):
     assert begun == [0] * 70
 
 
+@pytest.mark.parametrize(("returns", "each"), [(1000, [125] * 8), (11, [2, 2, 2, 1, 1, 1, 1, 1]), (0, [0] * 8)])
+def test_courses_share_the_returns_evenly(monkeypatch, returns, each):
+    follower, spent = make(shorten(load_task("task1").path, 60)), []
+    starts = robot().home + np.arange(10.0)[:, None]
+    monkeypatch.setattr(type(follower), "follow", lambda self, course, end: course)
+    monkeypatch.setattr(courses, "_return", lambda follower, course, end, most, *_: spent.append(most) or course)
+    choose_course(follower, starts, 60, 0, anything, ContinuationSettings(returns=returns))
+    assert spent == each
+
+
 def test_where_no_configuration_is_nothing_else_is_tried(monkeypatch):
     p = np.tile([0.9, 0.0, 1.0], (21, 1))
     p[10:, 2] = 3.0
@@ -115,7 +125,10 @@ def test_the_null_space_is_used_as_asked():
         ({"uses": ()}, "settings.uses: expected rows of three numbers"),
         ({"uses": ((1.0, 0.3),)}, "settings.uses: expected rows of three numbers"),
         ({"uses": ((1.0, 0.3, -0.1),)}, "settings.uses: expected rows of three numbers"),
-        ({"returns": -1}, "settings.returns: expected at least 0, got -1"),
+        ({"uses": "abc"}, "settings.uses: expected rows of three numbers"),
+        ({"uses": ((1.0,), (1.0, 2.0))}, "settings.uses: expected rows of three numbers"),
+        ({"returns": -1}, "settings.returns: expected a whole number of at least 0, got -1"),
+        ({"returns": 2.5}, "settings.returns: expected a whole number of at least 0, got 2.5"),
     ],
 )
 def test_settings_that_mean_nothing_are_refused(given, words):

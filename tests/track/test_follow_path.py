@@ -1,5 +1,7 @@
 """Whole paths: the paper's tasks, singularities, refusals, and what holds of every motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -20,6 +22,25 @@ from ikde.track.verify_track import verify_track
 from tests.track.tracks import DRIVES, TASKS, follow_task, load_task, make_line, robot
 
 BASE = ("d_x", "d_y", "q_z")
+CART = """
+name: cart
+joints:
+  x: {kind: prismatic, lower: -5, upper: 5}
+  y: {kind: prismatic, lower: -5, upper: 5}
+  turn: {kind: revolute, lower: -3, upper: 3}
+  lift: {kind: prismatic, lower: -1, upper: 1}
+frames:
+  along: {parent: world, joint: x, axis: [1, 0, 0]}
+  across: {parent: along, joint: y, axis: [0, 1, 0]}
+  deck: {parent: across, joint: turn, axis: [0, 0, 1]}
+  mast: {parent: deck, joint: lift, axis: [0, 0, 1]}
+  post: {parent: world, xyz: [3, 0, 0]}
+tool: mast
+spheres: {round: [{component: mast, from: mast, radius: 0.05}, {component: post, from: post, radius: 0.05}]}
+pairs: {none: {pairs: {}}, post: {pairs: {post: [mast]}}}
+detectors: {nothing: {spheres: round, pairs: none}}
+default_detector: nothing
+"""
 
 
 def judge(motion, detector="improved"):
@@ -212,6 +233,39 @@ def test_what_is_refused(given, where):
     with pytest.raises(InputError) as caught:
         follow_path(robot(), load_task("task1").path, **given)
     assert caught.value.where == where
+
+
+@pytest.mark.parametrize("key", ["robot", "path", "limits"])
+def test_what_is_something_else_is_refused(key):
+    told = {"robot": robot(), "path": load_task("task1").path, "limits": None, key: {"speed": 1}}
+    with pytest.raises(InputError, match=rf"^{key}: expected a \w+, got dict"):
+        follow_path(**told)
+
+
+@pytest.mark.parametrize("method", ["continuation", "typical"])
+def test_a_drive_that_does_not_exist_is_refused(method):
+    with pytest.raises(InputError, match="expected one of differential, omnidirectional, got 'tank'"):
+        follow_path(robot(), load_task("task1").path, drive="tank", method=method)
+
+
+def test_a_base_on_arcs_carries_all_that_is_looked_at(tmp_path):
+    (tmp_path / "cart.yaml").write_text(CART)
+    cart = ikde.load_robot(tmp_path / "cart.yaml")
+    path = make_line([0.2, 0.0, 0.5], [0.21, 0.0, 0.5], 5)
+    post = ikde.Detector(name="post", spheres="round", pairs="post")
+    with pytest.raises(InputError, match=r"^detector: a base on arcs must carry all that the detector looks at"):
+        follow_path(cart, path, detector=post)
+    assert follow_path(cart, path, detector=post, drive="omnidirectional").reached
+
+
+def test_without_ranges_the_solver_that_keeps_them_has_no_say():
+    ur5 = ikde.load_robot("ur5")
+    joints = tuple(replace(joint, lower=-0.1, upper=0.1) if k == 0 else joint for k, joint in enumerate(ur5.joints))
+    narrow, start = replace(ur5, joints=joints), np.array([0.0, -1.2, 1.5, -1.0, 1.0, 0.0])
+    around = [start + k * 0.5 * np.eye(6)[0] for k in range(3)]
+    path = ToolPath.through(np.array([forward(ur5, q)["tool"][:3, 3] for q in around]), dt_s=0.02)
+    limits = MotionLimits.of(narrow, ranges=False)
+    assert follow_path(narrow, path, limits=limits, start=start).stop.reason == TrackStopReason.SPEED_LIMIT
 
 
 @settings(max_examples=12, suppress_health_check=list(HealthCheck))

@@ -1,0 +1,37 @@
+"""Settings of the methods: what would never end, or means nothing, is refused where it is given."""
+
+import pytest
+
+from ikde.errors import InputError
+from ikde.track.optimized import OptimizedSettings
+from ikde.track.typical import TypicalSettings
+
+
+@pytest.mark.parametrize("kind", [OptimizedSettings, TypicalSettings])
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"population": 5}, "settings.population: expected a whole number of at least 6, got 5"),
+        ({"population": 50.0}, "settings.population: expected a whole number"),
+        ({"generations": True}, "settings.generations: expected a whole number of at least 1, got True"),
+        ({"weight": "much"}, "settings.weight: expected a number from 0 to 2, got 'much'"),
+        ({"crossover": 1.1}, "settings.crossover: expected a number from 0 to 1"),
+        ({"crossover": float("nan")}, "settings.crossover: expected a number from 0 to 1"),
+    ],
+)
+def test_both_differential_evolutions_check_their_numbers(kind, given, words):
+    with pytest.raises(InputError) as caught:
+        kind(**given)
+    assert str(caught.value).startswith(words)
+
+
+@pytest.mark.parametrize("strategies", [("best/1",), ("best/1", "worst/1")])
+def test_strategies_are_two_that_exist(strategies):
+    with pytest.raises(InputError, match="strategies: expected two of rand/1, "):
+        OptimizedSettings(strategies=strategies)
+
+
+@pytest.mark.parametrize(("key", "value"), [("strategy", "worst/1"), ("repair", "wish"), ("rotation_length_m", 0.0)])
+def test_what_typical_does_not_know_is_refused(key, value):
+    with pytest.raises(InputError, match=f"settings.{key}: expected"):
+        TypicalSettings(**{key: value})
