@@ -67,13 +67,13 @@ class SolveSettings:
     def __post_init__(self) -> None:
         for name in ("position_tolerance_m", "orientation_tolerance_rad"):
             value = getattr(self, name)
-            _require(_is_number(value) and bool(0.0 < value < np.inf), name, "a finite number above 0", value)
+            require(is_number(value) and bool(0.0 < value < np.inf), name, "a finite number above 0", value)
         for name, (is_good, expected) in OPTIONAL.items():
             value = getattr(self, name)
-            _require(value is None or is_good(value), name, expected, value)
+            require(value is None or is_good(value), name, expected, value)
         for name, choices in CHOICES.items():
             value = getattr(self, name)
-            _require(value in choices or (value is None and name in KNOBS), name, f"one of {', '.join(choices)}", value)
+            require(value in choices or (value is None and name in KNOBS), name, f"one of {', '.join(choices)}", value)
         self._settle_knobs()
 
     def _settle_knobs(self) -> None:
@@ -124,15 +124,18 @@ class SolveSettings:
         return replace(self, **{name: value for name, value in changes.items() if value is not None})  # type: ignore[arg-type]
 
 
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> bool:
+    """Whether it is a number and no bool."""
     return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
-def _is_count(least: int) -> Callable[[Any], bool]:
+def is_count(least: int) -> Callable[[Any], bool]:
+    """A test for whole numbers of at least so many."""
     return lambda value: isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= least)
 
 
-def _require(condition: bool, name: str, expected: str, value: object) -> None:
+def require(condition: bool, name: str, expected: str, value: object) -> None:
+    """Raise `InputError` about a setting unless the condition holds."""
     if not condition:
         raise InputError(f"expected {expected}, got {value!r}", ("settings", name))
 
@@ -170,12 +173,12 @@ KNOBS: Mapping[str, Any] = {
 HEEDED = {"memetic": ("bounds", "collision")}
 """Knobs that another engine heeds as well."""
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "restarts": (_is_count(1), "a whole number of at least 1"),
-    "timeout_s": (lambda value: _is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
-    "population": (_is_count(LARGEST_DRAW + 1), f"a whole number of at least {LARGEST_DRAW + 1}"),
-    "generations": (_is_count(1), "a whole number of at least 1"),
-    "weight": (lambda value: _is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
-    "crossover": (lambda value: _is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),
-    "start_share": (lambda value: _is_number(value) and 0.0 < value <= 1.0, "above 0, up to 1"),
+    "restarts": (is_count(1), "a whole number of at least 1"),
+    "timeout_s": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
+    "population": (is_count(LARGEST_DRAW + 1), f"a whole number of at least {LARGEST_DRAW + 1}"),
+    "generations": (is_count(1), "a whole number of at least 1"),
+    "weight": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
+    "crossover": (lambda value: is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),
+    "start_share": (lambda value: is_number(value) and 0.0 < value <= 1.0, "above 0, up to 1"),
 }
 """Numbers that may be left out: what is accepted, and how it is asked for."""

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ikde.kernels.arrays import DRIFT, Floats
-from ikde.track.check_settings import check_counts, require
+from ikde.solver.settings import require
+from ikde.track.check_settings import check_counts
 from ikde.track.follower import Course, Follower
 
 Use = tuple[float, float, float]

@@ -23,8 +23,9 @@ from ikde.kernels.step_evolution import (
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.planar_base import find_planar_base
 from ikde.solver.plain import compute_frames
+from ikde.solver.settings import require
 from ikde.solver.verify import compute_orientation_errors
-from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers, require
+from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers
 from ikde.track.follower import Follower
 from ikde.track.refusal import entry_name, first_out_of_reach, tell_out_of_reach, tell_when
 from ikde.track.starts import keeps_distance

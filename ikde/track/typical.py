@@ -16,7 +16,8 @@ from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.planar_base import find_planar_base
-from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers, require
+from ikde.solver.settings import require
+from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers
 from ikde.track.follower import Follower
 
 

@@ -34,7 +34,9 @@ def test_joints_are_named_above_and_in_degrees(motion):
 
 
 def test_ends_of_ranges_are_drawn(motion):
-    assert levels(plot_joints(motion).axes[2]) == pytest.approx([-150.0, 150.0])
+    charts = plot_joints(motion).axes
+    assert levels(charts[2]) == pytest.approx([-150.0, 150.0])
+    assert levels(charts[3]) == pytest.approx([-102.5, 102.5])
     assert levels(plot_base(motion).axes[1]) == pytest.approx([-180.0, 180.0])
 
 
@@ -118,9 +120,11 @@ def test_speed_limits_are_drawn_both_ways(motion):
 def test_a_base_with_wheels_shows_them(motion):
     charts = {axes.get_ylabel(): axes for axes in plot_base(motion).axes}
     assert list(charts) == ["place [m]", "heading [deg]", "v [m/s]", "ω [deg/s]", "wheels [rad/s]"]
-    np.testing.assert_allclose(charts["v [m/s]"].lines[0].get_ydata(), 0.2)
     v = charts["v [m/s]"]
-    assert len(v.lines) - len(levels(v)) == 1
+    np.testing.assert_allclose(v.lines[0].get_ydata(), 0.2)
+    np.testing.assert_allclose(levels(v), [-0.5, 0.5])
+    assert len(v.lines) == 3
+    assert levels(charts["wheels [rad/s]"])[1] == pytest.approx(motion.wheel_limit_rad_s)
 
 
 def test_a_base_shows_its_limits(qiao):
@@ -135,7 +139,7 @@ def test_wheels_that_are_not_known_are_left_out(motion):
     unknown = replace(motion, trajectory=replace(motion.trajectory, wheel_speeds=None))
     charts = plot_base(unknown).axes
     assert [axes.get_ylabel() for axes in charts] == ["place [m]", "heading [deg]", "v [m/s]", "ω [deg/s]"]
-    assert len(charts[2].lines) - len(levels(charts[2])) == 1
+    assert len(charts[2].lines) == 3
 
 
 def test_a_base_on_arcs_may_have_no_wheels(unwheeled):
@@ -147,6 +151,7 @@ def test_a_base_on_arcs_may_have_no_wheels(unwheeled):
 def test_a_base_without_wheels_has_two_speeds(qiao):
     charts = plot_base(make_measured(qiao, drive="omnidirectional")).axes
     assert [axes.get_ylabel() for axes in charts][2:] == ["v [m/s]", "ω [deg/s]"]
+    assert len(charts[2].lines) == 4
     assert len([line for line in charts[2].lines if line.get_label().startswith("v along")]) == 2
 
 
