@@ -60,10 +60,12 @@ class Tally:
 
     counts: Counter = field(default_factory=Counter)
     faults: list = field(default_factory=list)
+    largest_gap: float = 0.0  # between figures told and graded, m or rad, of targets within a metre
 
     def __iadd__(self, other):
         self.counts += other.counts
         self.faults += other.faults
+        self.largest_gap = max(self.largest_gap, other.largest_gap)
         return self
 
 
@@ -136,7 +138,7 @@ def load_text(text):
         return ikde.load_robot(path)
 
 
-def ask(robot, question):
+def ask(robot, question, threads=None):
     """What ikde answers."""
     position, orientation = question.tolerances
     settings = ikde.SolveSettings(
@@ -149,7 +151,8 @@ def ask(robot, question):
     options = {"seed": question.seed, "detector": question.detector, "near": question.near, "freeze": freeze}
     targets = [_make_target(kind, T) for kind, T in zip(question.kinds, question.T_world_tool, strict=True)]
     if question.how == "many":
-        return _read_rows(ikde.solve_many(robot, targets, settings, explain_failures=False, **options))
+        options |= {"threads": threads, "explain_failures": False}
+        return _read_rows(ikde.solve_many(robot, targets, settings, **options))
     if question.how == "one":
         return _read_results([[ikde.solve(robot, target, settings, **options)] for target in targets])
     return _read_results([ikde.solve_distinct(robot, target, 3, settings, **options) for target in targets])
@@ -198,10 +201,10 @@ def regrade(grader, question, answers):
     )
     accepted = ~np.any(list(faults.values()), axis=0)
     faults = {name: rows & answers.reached for name, rows in faults.items()}
-    with np.errstate(invalid="ignore"):
-        gaps = np.where(own == answers.figures, 0.0, np.abs(own - answers.figures))
     far = np.maximum(1.0, np.abs(T[:, :, 3]).max(axis=1, keepdims=True))
-    faults["other figures than told"] = ~(gaps <= FIGURES * far).all(axis=1)
+    with np.errstate(invalid="ignore"):
+        gaps = np.where(own == answers.figures, 0.0, np.abs(own - answers.figures)) / far
+    faults["other figures than told"] = ~(gaps <= FIGURES).all(axis=1)
     counts = Counter(
         targets=len(question),
         answers=len(answers.q),
@@ -223,14 +226,14 @@ def regrade(grader, question, answers):
         for name, rows in faults.items()
         for k in np.flatnonzero(rows)
     ]
-    return Tally(counts=counts, faults=told)
+    return Tally(counts=counts, faults=told, largest_gap=float(gaps.max(initial=0.0)))
 
 
-def ask_and_regrade(robot, grader, rng, total, **options):
+def ask_and_regrade(robot, grader, rng, total, *, threads=None, **options):
     """The tally of questions with `total` targets together; options as for `draw_questions`."""
     tally = Tally()
     for question in draw_questions(grader, rng, total, **options):
-        tally += regrade(grader, question, ask(robot, question))
+        tally += regrade(grader, question, ask(robot, question, threads))
     return tally
 
 
