@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.model.robot import Robot
 
-LEAVES_ANSWERS_ALONE = ("title", "provenance", "wheels")
+LEAVES_ANSWERS_ALONE = ("title", "provenance", "wheels", "adjacent", "neighbours")  # all pairs are in `pair_lists`
 
 
 def as_plain(value: Any) -> Any:
@@ -39,7 +39,7 @@ def ikde_version() -> str:
 
 
 def robot_digest(robot: Robot) -> str:
-    """Digest of everything about a robot that an answer depends on: not its title, wheels, nor the numbers' sources."""
+    """Digest of everything about a robot that an answer depends on: not its title, wheels, reasons nor sources."""
     changes = {field.name: as_plain(getattr(robot, field.name)) for field in fields(robot)}
     return digest({name: value for name, value in changes.items() if name not in LEAVES_ANSWERS_ALONE})
 

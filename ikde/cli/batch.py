@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import JsonOption
+from ikde.cli.options import JsonOption, note_unchecked
 from ikde.cli.output import announce_compile, print_json, print_note, print_result, use_color
 from ikde.cli.progress import show_progress
 
@@ -51,6 +51,8 @@ def batch(
     if out is None and not dry_run:
         raise typer.BadParameter("a run needs a folder; only --dry-run needs none", param_hint="--out")
     plan = load_batch(spec)
+    if any(arm.problem.detector is None for arm in plan.arms):
+        note_unchecked(plan.robot)
     if out is None or dry_run:
         _preview(plan, threads, dask, workers, as_json)
         return

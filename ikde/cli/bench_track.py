@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import JsonOption
+from ikde.cli.options import JsonOption, note_unchecked
 from ikde.cli.output import announce_compile, print_json, print_result
 from ikde.cli.progress import show_benchmark
 
@@ -47,6 +47,8 @@ def bench_track(
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
     plans = [_with_drive(load_track(path), drive) for path in tracks]
+    for robot in dict.fromkeys(plan.robot for plan in plans if plan.detector is None):
+        note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
         with compile_clock(lambda: announce_compile("a minute or two")):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]

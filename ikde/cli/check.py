@@ -18,6 +18,7 @@ from ikde.cli.options import (
     UnitOption,
     check_drawable,
     draw,
+    note_unchecked,
     read_detector,
     read_q,
 )
@@ -38,6 +39,8 @@ def check(
 ) -> None:
     """Print the clearance of every pair of components, worst first. Exits with 1 on self-collision.
 
+    Without a detector nothing is compared: it says so, and exits with 0.
+
     Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
     """
     from ikde.io.robots import load_robot
@@ -50,6 +53,8 @@ def check(
     judge = read_detector(model, detector, pairs, safe_distance, unit)
     result = check_configuration(model, values, judge)
     check_drawable(plot)
+    if detector is None:
+        note_unchecked(model)
     if as_json:
         print_json(check_json(model, result, convention))
     else:

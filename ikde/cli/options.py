@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ikde.cli.output import print_note
+
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
     from ikde.model.robot import Detector, Robot
@@ -98,6 +100,14 @@ def read_detector(
             raise InputError(f"expected a distance of at least 0, got {safe_distance:g}", ("safe-distance",))
         detector = replace(detector, safe_distance_m=safe_distance * LENGTHS_M[unit])
     return detector
+
+
+def note_unchecked(robot: "Robot") -> None:
+    """Say on stderr that self-collision is not checked, if the robot has no default detector."""
+    from ikde.model.pairs import explain_no_detector
+
+    if robot.detector(None) is None:
+        print_note(f"ikde: self-collision is not checked: {explain_no_detector(robot)}")
 
 
 def read_freeze(

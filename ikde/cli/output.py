@@ -3,6 +3,7 @@
 import json
 import sys
 from contextlib import AbstractContextManager, nullcontext
+from shutil import get_terminal_size
 from typing import Any
 
 
@@ -26,6 +27,11 @@ def print_note(text: str) -> None:
 def use_color() -> bool:
     """Colour only for a terminal."""
     return sys.stdout.isatty()
+
+
+def page_width() -> int:
+    """Columns of the terminal, within what tables need and can use; 100 where nobody is looking."""
+    return min(max(get_terminal_size().columns, 60), 120) if sys.stdout.isatty() else 100
 
 
 def working(text: str) -> AbstractContextManager[Any]:

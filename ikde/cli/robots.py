@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import AnglesOption, AngleUnit, DetectorOption, JsonOption, LengthUnit, UnitOption
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import page_width, print_json, print_result, use_color
 
 if TYPE_CHECKING:
-    from ikde.model.robot import Robot
+    from ikde.model.robot import Detector, Robot
 
 robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 
@@ -44,49 +44,60 @@ def show(
     detector: DetectorOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Show a robot: joints, frames, detectors, and where its numbers come from; or the kernels written for it."""
+    """Show a robot: joints, frames, detectors, pairs, and where its numbers come from; or the kernels written for it.
+
+    Every pair of components is listed: those that the detector compares, and those that it leaves out with the reason.
+    """
     from ikde.io.robots import load_robot
     from ikde.report.robot import format_robot, robot_json
     from ikde.report.units import Units
 
     model = load_robot(name)
+    chosen = model.detector(detector)
     if kernels:
-        source = _format_kernels(model, detector, kind)
+        source = _format_kernels(model, chosen, kind)
         if as_json:
             print_json({"robot": model.name, "kind": kind, "source": source})
         else:
             print_result(source)
     elif as_json:
-        print_json(robot_json(model))
+        print_json(robot_json(model, chosen))
     else:
-        print_result(format_robot(model, Units(unit, angles), color=use_color()))
+        print_result(format_robot(model, chosen, Units(unit, angles), color=use_color(), width=page_width()))
 
 
-def _format_kernels(model: "Robot", detector: str | None, kind: str) -> str:
+def _format_kernels(model: "Robot", detector: "Detector | None", kind: str) -> str:
     from ikde.errors import InputError
     from ikde.model.generate.assemble import format_module
     from ikde.model.target import KINDS
 
     if kind not in KINDS:
         raise InputError(f"expected one of {', '.join(KINDS)}, got {kind!r}", ("kind",))
-    return format_module(model, model.detector(detector), kind)
+    return format_module(model, detector, kind)
 
 
 @robots.command("validate")
 def validate(
     file: Annotated[Path, typer.Argument(help="A robot file.")],
+    unit: UnitOption = LengthUnit.mm,
+    detector: DetectorOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Check a robot file: one line if it is good, one line with file, line and key if it is not (exit code 2)."""
+    """Check a robot file, and list every pair that its detector compares and leaves out.
+
+    What is wrong is one line with file, line and key (exit code 2). Pairs that touch in every configuration are no
+    error, but nothing is ever free then: they are named, with the line to add to the file if they may touch.
+    """
     from ikde.io.robots import load_robot
+    from ikde.report.robot import format_valid, valid_json
+    from ikde.report.units import Units
 
     model = load_robot(file)
+    chosen = model.detector(detector)
     if as_json:
-        print_json({"valid": True, "name": model.name, "joints": len(model.joints), "frames": len(model.frames)})
+        print_json(valid_json(model, chosen))
     else:
-        print_result(
-            f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames"
-        )
+        print_result(format_valid(file, model, chosen, Units(unit), color=use_color(), width=page_width()))
 
 
 @robots.command("export")

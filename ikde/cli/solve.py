@@ -20,6 +20,7 @@ from ikde.cli.options import (
     check_drawable,
     check_positive,
     draw,
+    note_unchecked,
     read_detector,
     read_freeze,
     read_q,
@@ -158,6 +159,8 @@ def solve(
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = read_freeze(model, freeze, unit, angles, convention)
     check_drawable(plot)
+    if detector is None:
+        note_unchecked(model)
     with working("searching ..."):
         results = solve_distinct(
             model,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, read_q
+from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q
 from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
@@ -66,6 +66,8 @@ def track(
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     with open_folder(out) if out else nullcontext():
+        if plan.detector is None:
+            note_unchecked(plan.robot)
         with _show_steps() as tell:
             tell(f"following {plan.name}")
             motion = _follow(plan)

@@ -3,13 +3,24 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
+from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError, nearest
 from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
-from ikde.model.robot import NO_DETECTOR, Detector, Frame, Joint, Provenance, Robot, SphereRow, Wheels
+from ikde.model.robot import (
+    NO_DETECTOR,
+    AdjacentPair,
+    Detector,
+    Frame,
+    Joint,
+    Provenance,
+    Robot,
+    SphereRow,
+    Wheels,
+)
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import NON_ADJACENT, check_robot
 
@@ -81,10 +92,17 @@ class PairEntry(Entry):
     include: list[Name] = []
 
 
-class AdjacentEntry(Entry):
-    """Pairs that are adjacent although the tree does not show it."""
+def _with_reasons(value: Any) -> Any:
+    """The pairs of a component, if each has its reason."""
+    if isinstance(value, dict) and all(isinstance(reason, str) and reason.strip() for reason in value.values()):
+        return value
+    raise PydanticCustomError("no_reason", 'expected a reason for each pair: {A: {B: "why A and B may touch"}}')
 
-    pairs: dict[Name, list[Name]]
+
+class AdjacentEntry(Entry):
+    """Pairs that are adjacent although the tree does not show it, each with the reason: {A: {B: "why"}}."""
+
+    pairs: dict[Name, Annotated[dict[Name, Name], BeforeValidator(_with_reasons)]]
 
 
 class DetectorEntry(Entry):
@@ -125,7 +143,7 @@ class RobotFile(BaseModel):
     adjacent: AdjacentEntry | None = None
     pairs: dict[Name, PairEntry] = {}
     detectors: dict[Name, DetectorEntry] = {}
-    default_detector: Name = NO_DETECTOR
+    default_detector: Name | None = None
     wheels: WheelsEntry | None = None
 
 
@@ -152,12 +170,12 @@ def _to_robot(file: RobotFile) -> Robot:
         tool=file.tool,
         approximations={name: tuple(_to_row(e, length) for e in rows) for name, rows in file.spheres.items()},
         pair_lists={name: _to_pairs(file, name, ()) for name in file.pairs},
-        adjacent=_flatten(file.adjacent.pairs) if file.adjacent else (),
+        adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
         detectors={
             name: Detector(name=name, spheres=e.spheres, pairs=e.pairs, safe_distance_m=e.safe_distance * length)
             for name, e in file.detectors.items()
         },
-        default_detector=file.default_detector,
+        default_detector=_choose_default(file),
         convention=file.convention,
         conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
         provenance=_provenance(file),
@@ -204,18 +222,34 @@ def _to_wheels(entry: WheelsEntry, length: float) -> Wheels:
 
 
 def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
-    """Pairs of a list with those of the lists it includes, each once."""
+    """Pairs of a list with those of the lists it includes, each once, whichever way round."""
     if name in seen:
         raise InputError("this list includes itself", ("pairs", seen[0], "include"))
     if name not in file.pairs:
         raise InputError(f"no pair list is called {name!r}{nearest(name, file.pairs)}", ("pairs", seen[-1], "include"))
     entry = file.pairs[name]
     pairs = [pair for other in entry.include for pair in _to_pairs(file, other, (*seen, name))]
-    return tuple(dict.fromkeys([*pairs, *_flatten(entry.pairs)]))
+    pairs += [(a, b) for a, others in entry.pairs.items() for b in others]
+    unique: dict[frozenset[str], tuple[str, str]] = {}
+    for pair in pairs:
+        unique.setdefault(frozenset(pair), pair)
+    return tuple(unique.values())
 
 
-def _flatten(pairs: dict[str, list[str]]) -> tuple[tuple[str, str], ...]:
-    return tuple((a, b) for a, others in pairs.items() for b in others)
+def _to_adjacent(pairs: dict[str, dict[str, str]]) -> tuple[AdjacentPair, ...]:
+    return tuple(AdjacentPair(a=a, b=b, reason=reason) for a, others in pairs.items() for b, reason in others.items())
+
+
+def _choose_default(file: RobotFile) -> str:
+    """The detector that the file names, or its only one."""
+    if file.default_detector is not None:
+        return file.default_detector
+    if len(file.detectors) > 1:
+        raise InputError(
+            f"there are several detectors: name one of {', '.join([*file.detectors, NO_DETECTOR])}",
+            ("default_detector",),
+        )
+    return next(iter(file.detectors), NO_DETECTOR)
 
 
 def _provenance(file: RobotFile) -> dict[Where, Provenance]:

@@ -1,8 +1,8 @@
-"""Which components can never be told apart by a joint: adjacency, and the list of all pairs that are not adjacent."""
+"""Which components are neighbours, so that their contact means nothing, and why; all other pairs are non-adjacent."""
 
 from itertools import combinations
 
-from ikde.model.robot import Pairs, SphereRow
+from ikde.model.robot import LeftOutPair, Pairs, Robot, SphereRow
 from ikde.model.tree import Tree
 
 
@@ -11,26 +11,40 @@ def component_bodies(rows: tuple[SphereRow, ...], tree: Tree) -> dict[str, int]:
     return {row.component: tree.frame_body[row.start] for row in rows}
 
 
-def are_adjacent(tree: Tree, occupied: set[int], a: int, b: int) -> bool:
-    """True if two bodies are one, or a joint connects them; a body that carries no component does not part them."""
-    return a == b or nearest_carrier(tree, occupied, a) == b or nearest_carrier(tree, occupied, b) == a
+def find_neighbours(robot: Robot, tree: Tree, bodies: dict[str, int]) -> tuple[LeftOutPair, ...]:
+    """Every pair of components that is of one body, or joined by a joint, or declared adjacent in the robot's file."""
+    declared = {frozenset((pair.a, pair.b)): f"adjacent: {pair.reason}" for pair in robot.adjacent}
+    reasons = {
+        (a, b): describe_link(robot, tree, bodies[a], bodies[b]) or declared.get(frozenset((a, b)))
+        for a, b in combinations(bodies, 2)
+    }
+    return tuple(LeftOutPair(a=a, b=b, reason=reason) for (a, b), reason in reasons.items() if reason)
 
 
-def nearest_carrier(tree: Tree, occupied: set[int], body: int) -> int | None:
-    """The nearest body below `body` that carries a component, or None: then `body` belongs to the base."""
-    while body != 0:
-        body = tree.bodies[body].parent
-        if body in occupied:
-            return body
+def describe_link(robot: Robot, tree: Tree, a: int, b: int) -> str | None:
+    """What links two bodies: they are one, or one joint of the tree joins them; None for all others.
+
+    What the bodies carry, and those in between, does not matter.
+    """
+    if a == b:
+        return "one body"
+    for child, parent in ((a, b), (b, a)):
+        joint = tree.bodies[child].joint
+        if joint is not None and tree.bodies[child].parent == parent:
+            return f"joined by joint {robot.joint_names[joint]}"
     return None
 
 
-def non_adjacent_pairs(bodies: dict[str, int], tree: Tree, adjacent: Pairs) -> Pairs:
-    """Every pair of components that is neither rigidly joined, nor shares a joint, nor is listed as `adjacent`."""
-    occupied = set(bodies.values())
-    listed = {frozenset(pair) for pair in adjacent}
-    return tuple(
-        (a, b)
-        for a, b in combinations(bodies, 2)
-        if not are_adjacent(tree, occupied, bodies[a], bodies[b]) and frozenset((a, b)) not in listed
-    )
+def non_adjacent_pairs(bodies: dict[str, int], neighbours: tuple[LeftOutPair, ...]) -> Pairs:
+    """Every pair of components that are no neighbours."""
+    left_out = {(pair.a, pair.b) for pair in neighbours}
+    return tuple(pair for pair in combinations(bodies, 2) if pair not in left_out)
+
+
+def explain_no_detector(robot: Robot) -> str:
+    """Why a robot has no default detector, so that self-collision is not checked unless one is named."""
+    if not any(robot.approximations.values()):
+        return f"{robot.name} has no spheres"
+    if not robot.detectors:
+        return f"{robot.name} has spheres, but no detector"
+    return f"the default detector of {robot.name} is none; it has {', '.join(robot.detectors)}"

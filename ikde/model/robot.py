@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from ikde.kernels.arrays import Floats
 
 WORLD = "world"
 NO_DETECTOR = "none"
+TOOL = "tool"  # what the tool's frame is called beside its own name
 
 JointKind = Literal["revolute", "prismatic"]
 Spacing = Literal["touching", "even"]
@@ -61,7 +63,10 @@ class SphereRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Detector:
-    """What self-collision means: an approximation, the pairs to look at, and the safe distance in m."""
+    """What self-collision means: an approximation, the pairs that are compared, and the safe distance in m.
+
+    It always compares something: at least one pair, with at least one sphere in each component (`check_detector`).
+    """
 
     name: str
     spheres: str
@@ -87,6 +92,26 @@ class Provenance:
 
 
 Pairs = tuple[tuple[str, str], ...]
+NAMED = 3  # pairs in a message that is about many
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdjacentPair:
+    """Two components that the robot's file declares adjacent, although no joint joins them, and why."""
+
+    a: str
+    b: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeftOutPair:
+    """Two components that a detector does not compare, and why."""
+
+    a: str
+    b: str
+    reason: str
+    """`one body`, `joined by joint NAME`, `adjacent: REASON` as in the robot's file, or `not in the pair list NAME`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, weakref_slot=True)
@@ -99,7 +124,7 @@ class Robot:
     frames: tuple[Frame, ...]
     tool: str
     approximations: Mapping[str, tuple[SphereRow, ...]]
-    adjacent: Pairs
+    adjacent: tuple[AdjacentPair, ...]
     """Pairs that are adjacent although the tree does not show it."""
     pair_lists: Mapping[str, Pairs]
     """By name; `non_adjacent` is made by `model.validate`."""
@@ -113,6 +138,8 @@ class Robot:
     """Path of a number in the robot's file -> where it comes from."""
     wheels: Wheels | None = None
     """None for a robot without a base that drives on two wheels, and for one whose wheels nobody told."""
+    neighbours: tuple[LeftOutPair, ...] = ()
+    """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -140,7 +167,7 @@ class Robot:
         return np.array([joint.kind == "prismatic" for joint in self.joints])
 
     def detector(self, choice: "str | Detector | None") -> Detector | None:
-        """Resolve a detector: a name, a `Detector`, or None for the robot's default; `"none"` looks at nothing."""
+        """Resolve a detector: a name, a `Detector`, or None for the robot's default; `"none"` compares nothing."""
         if isinstance(choice, Detector):
             check_detector(self, choice, ("detector",))
             return choice
@@ -154,8 +181,21 @@ class Robot:
         return self.detectors[name]
 
     def pairs(self, detector: Detector | None) -> Pairs:
-        """Pairs that a detector looks at; none without a detector."""
+        """Pairs that a detector compares; none without a detector."""
         return self.pair_lists[detector.pairs] if detector else ()
+
+    def left_out_pairs(self, detector: Detector | None) -> tuple[LeftOutPair, ...]:
+        """All other pairs of components, and why a detector leaves them out; none without a detector."""
+        if detector is None:
+            return ()
+        compared = {frozenset(pair) for pair in self.pairs(detector)}
+        reasons = {frozenset((pair.a, pair.b)): pair.reason for pair in self.neighbours}
+        unlisted = f"not in the pair list {detector.pairs}"
+        return tuple(
+            LeftOutPair(a=a, b=b, reason=reasons.get(frozenset((a, b)), unlisted))
+            for a, b in combinations(self.components(detector.spheres), 2)
+            if frozenset((a, b)) not in compared
+        )
 
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
@@ -163,7 +203,7 @@ class Robot:
 
 
 def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
-    """Raise `InputError` unless the detector's names exist and its approximation describes what its pairs name."""
+    """Raise `InputError` unless the detector's names exist, and it compares pairs that its approximation describes."""
     for key, what, name, known in (
         ("spheres", "approximation", detector.spheres, robot.approximations),
         ("pairs", "pair list", detector.pairs, robot.pair_lists),
@@ -173,8 +213,21 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
     if not 0.0 <= detector.safe_distance_m < np.inf:
         raise InputError("expected a distance of at least 0", (*where, "safe_distance"))
     described = robot.components(detector.spheres)
+    if not described:
+        raise InputError(f"this detector compares nothing: {detector.spheres!r} has no spheres", (*where, "spheres"))
+    if not robot.pairs(detector):
+        raise InputError(f"this detector compares nothing: {_explain_no_pairs(robot, detector)}", (*where, "pairs"))
     for component in {c for pair in robot.pair_lists[detector.pairs] for c in pair}:
         if component not in described:
             raise InputError(
                 f"the approximation {detector.spheres!r} has no component {component!r}", (*where, "pairs")
             )
+
+
+def _explain_no_pairs(robot: Robot, detector: Detector) -> str:
+    left_out = robot.left_out_pairs(detector)
+    if not left_out:
+        return f"{robot.components(detector.spheres)[0]!r} is the only component"
+    named = ", ".join(f"{pair.a} - {pair.b} ({pair.reason})" for pair in left_out[:NAMED])
+    more = f" and {len(left_out) - NAMED} more" if len(left_out) > NAMED else ""
+    return f"{'the only pair is' if len(left_out) == 1 else f'all {len(left_out)} pairs are'} left out: {named}{more}"

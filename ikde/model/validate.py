@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from ikde.errors import InputError, nearest
-from ikde.model.pairs import component_bodies, non_adjacent_pairs
+from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
 from ikde.model.planar_base import find_planar_base
-from ikde.model.robot import NO_DETECTOR, WORLD, Frame, Robot, SphereRow, check_detector
+from ikde.model.robot import NO_DETECTOR, TOOL, WORLD, Frame, Pairs, Robot, SphereRow, check_detector
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
 
@@ -23,7 +23,7 @@ def check_robot(draft: Robot) -> Robot:
     """
     _check_joints(draft)
     robot = replace(draft, frames=_sort_frames(draft))
-    _check_name(robot.tool, (f.name for f in robot.frames), ("tool",), "frame")
+    _check_tool(robot)
     tree = build_tree(robot)
     bodies: dict[str, int] = {}
     for name, rows in robot.approximations.items():
@@ -35,8 +35,9 @@ def check_robot(draft: Robot) -> Robot:
     for name in robot.approximations:
         missing = [component for component in bodies if component not in robot.components(name)]
         _require(not missing, f"the other approximations also describe {', '.join(missing)}", "spheres", name)
-    every = non_adjacent_pairs(bodies, tree, robot.adjacent)
-    robot = replace(robot, pair_lists={**robot.pair_lists, NON_ADJACENT: every})
+    neighbours = find_neighbours(robot, tree, bodies)
+    every = non_adjacent_pairs(bodies, neighbours)
+    robot = replace(robot, neighbours=neighbours, pair_lists={**robot.pair_lists, NON_ADJACENT: every})
     _check_detectors(robot)
     _check_conventions(robot)
     _check_wheels(robot)
@@ -122,6 +123,15 @@ def _check_frame(robot: Robot, frame: Frame, frames: Mapping[str, Frame]) -> Non
     _require(unit, "expected an axis that is not zero", *where, "axis")
 
 
+def _check_tool(robot: Robot) -> None:
+    names = [frame.name for frame in robot.frames]
+    _check_name(robot.tool, names, ("tool",), "frame")
+    taken = (
+        f"{TOOL!r} stands for the tool, which is {robot.tool!r} here; name this frame otherwise, or let it be the tool"
+    )
+    _require(robot.tool == TOOL or TOOL not in names, taken, "frames", TOOL)
+
+
 def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int, ...]) -> None:
     body_of: dict[str, int] = {}
     for index, row in enumerate(rows):
@@ -153,12 +163,21 @@ def _check_pairs(robot: Robot, components: Mapping[str, int]) -> None:
     _require(
         NON_ADJACENT not in robot.pair_lists, "this list is made by ikde and cannot be defined", "pairs", NON_ADJACENT
     )
-    lists = {("adjacent", "pairs"): robot.adjacent, **{("pairs", n, "pairs"): p for n, p in robot.pair_lists.items()}}
-    for where, pairs in lists.items():
-        for a, b in pairs:
-            _check_name(a, components, (*where, a), "component")
-            _check_name(b, components, (*where, a), "component")
-            _require(a != b, f"{a!r} is paired with itself", *where, a)
+    for name, pairs in robot.pair_lists.items():
+        _check_list(pairs, components, ("pairs", name, "pairs"))
+    _check_list(tuple((pair.a, pair.b) for pair in robot.adjacent), components, ("adjacent", "pairs"))
+    for pair in robot.adjacent:
+        _require(bool(pair.reason.strip()), "expected a reason", "adjacent", "pairs", pair.a, pair.b)
+
+
+def _check_list(pairs: Pairs, components: Mapping[str, int], where: tuple[str | int, ...]) -> None:
+    seen: set[frozenset[str]] = set()
+    for a, b in pairs:
+        _check_name(a, components, (*where, a), "component")
+        _check_name(b, components, (*where, a), "component")
+        _require(a != b, f"{a!r} is paired with itself", *where, a)
+        _require(frozenset((a, b)) not in seen, f"{a!r} and {b!r} are paired twice", *where, a)
+        seen.add(frozenset((a, b)))
 
 
 def _check_detectors(robot: Robot) -> None:

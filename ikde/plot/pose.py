@@ -7,10 +7,10 @@ import numpy as np
 
 from ikde.errors import FileError
 from ikde.kernels.arrays import Floats
-from ikde.model.pairs import component_bodies, nearest_carrier
+from ikde.model.pairs import component_bodies
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.target import Target
-from ikde.model.tree import build_tree
+from ikde.model.tree import Tree, build_tree
 from ikde.solver.check import compute_pairs
 from ikde.solver.plain import compute_components, compute_frames, compute_sphere_gaps
 
@@ -104,8 +104,6 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
         for centre, radius in zip(centres, radii, strict=True):
             _draw_sphere(axes, centre, radius, color, label=None if label in labelled else f"{label} spheres")
             labelled.add(label)
-    if not pairs:
-        return f"  ·  detector {detector.name}: no pairs"
     closest = pairs[0]
     a, b = components[closest.a], components[closest.b]
     gaps = compute_sphere_gaps(a, b)
@@ -129,7 +127,16 @@ def base_components(robot: Robot, detector: Detector) -> set[str]:
     tree = build_tree(robot)
     bodies = component_bodies(robot.approximations[detector.spheres], tree)
     occupied = set(bodies.values())
-    return {name for name, body in bodies.items() if nearest_carrier(tree, occupied, body) is None}
+    return {name for name, body in bodies.items() if not occupied & _bodies_below(tree, body)}
+
+
+def _bodies_below(tree: Tree, body: int) -> set[int]:
+    """The bodies that carry `body`."""
+    below: set[int] = set()
+    while body != 0:
+        body = tree.bodies[body].parent
+        below.add(body)
+    return below
 
 
 def _draw_sphere(axes: Any, centre: Floats, radius: float, color: str, label: str | None) -> None:

@@ -23,6 +23,13 @@ def plain(text: str) -> str:
     return escape(text)
 
 
+def verbatim(text: str) -> Any:
+    """Text that is neither wrapped nor read as markup: a line to be copied."""
+    from rich.text import Text
+
+    return Text(text, no_wrap=True, overflow="ignore")
+
+
 def make_table(*columns: str, title: str | None = None) -> Any:
     """A table with a line under its header; a column whose name starts with `>` is right-aligned."""
     from rich.box import SIMPLE_HEAD

@@ -3,11 +3,13 @@
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from ikde.io.units import LENGTHS_M
-from ikde.model.robot import Robot, Wheels
-from ikde.report.render import make_table, plain, render
+from ikde.model.robot import Detector, Robot, Wheels
+from ikde.report.pairs import pair_parts, pairs_json
+from ikde.report.render import make_table, plain, render, verbatim
 from ikde.report.units import Units
 
 
@@ -28,8 +30,8 @@ def format_robots(robots: Iterable[Robot], *, color: bool = False) -> str:
     return render(table, color=color)
 
 
-def robot_json(robot: Robot) -> dict[str, Any]:
-    """A robot as plain data, m and rad."""
+def robot_json(robot: Robot, detector: Detector | None) -> dict[str, Any]:
+    """A robot as plain data, m and rad, with the pairs that a detector compares and leaves out."""
     return {
         "name": robot.name,
         "title": robot.title,
@@ -53,18 +55,41 @@ def robot_json(robot: Robot) -> dict[str, Any]:
             for name, d in robot.detectors.items()
         },
         "default_detector": robot.default_detector,
+        "adjacent": [{"a": pair.a, "b": pair.b, "reason": pair.reason} for pair in robot.adjacent],
+        "collision": pairs_json(robot, detector),
         "wheels": None if robot.wheels is None else asdict(robot.wheels),
         "provenance": dict(Counter(p.kind for p in robot.provenance.values())),
     }
 
 
-def format_robot(robot: Robot, units: Units, *, color: bool = False) -> str:
-    """A robot for the terminal: joints, frames, detectors and the provenance of its numbers."""
+def format_robot(
+    robot: Robot, detector: Detector | None, units: Units, *, color: bool = False, width: int = 100
+) -> str:
+    """A robot for the terminal: joints, frames, detectors, the pairs of one, and the provenance of its numbers."""
     head = f"[bold]{plain(robot.name)}[/]: {plain(robot.title)}"
     wheels = [_wheel_table(robot, robot.wheels, units)] if robot.wheels else []
-    tables = [_joint_table(robot, units), _frame_table(robot, units), *wheels, _detector_table(robot, units)]
-    tables.append(_sources(robot))
-    return render(head, "", *tables, color=color)
+    detectors = [_detector_table(robot, units)] if robot.detectors else []
+    parts = [_joint_table(robot, units), _frame_table(robot, units), *wheels, *detectors]
+    return render(head, "", *parts, *pair_parts(robot, detector, units), "", _sources(robot), color=color, width=width)
+
+
+def format_valid(
+    file: Path, robot: Robot, detector: Detector | None, units: Units, *, color: bool = False, width: int = 100
+) -> str:
+    """A good robot file for the terminal: what it holds, and the pairs of a detector."""
+    head = f"{file}: valid, robot {robot.name} with {len(robot.joints)} joints and {len(robot.frames)} frames"
+    return render(verbatim(head), *pair_parts(robot, detector, units), color=color, width=width)
+
+
+def valid_json(robot: Robot, detector: Detector | None) -> dict[str, Any]:
+    """The same as plain data."""
+    return {
+        "valid": True,
+        "name": robot.name,
+        "joints": len(robot.joints),
+        "frames": len(robot.frames),
+        "collision": pairs_json(robot, detector),
+    }
 
 
 def _joint_table(robot: Robot, units: Units) -> Any:

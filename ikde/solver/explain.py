@@ -14,6 +14,7 @@ from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, StopReason
 from ikde.solver.search import search
+from ikde.solver.touching import AlwaysTouching, find_always_touching
 from ikde.solver.verify import Verification
 
 PROBE_ATTEMPTS = {True: 24, False: 2}  # of the DE, of other engines
@@ -79,6 +80,22 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
     if colliding > 0 and not problem.settings.evolves and timeout_s is None:
         counted = _count_pairs(problem, target, seed)
         colliding, blocking = counted if counted[0] else (colliding, blocking)
+    touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
+    if touching is not None:
+        return _never_free(touching, blocking)
+    return _explain_by_probes(problem, target, found, graded, seed, colliding, blocking)
+
+
+def _explain_by_probes(
+    problem: Problem,
+    target: Target,
+    found: Found,
+    graded: Verification,
+    seed: int,
+    colliding: int,
+    blocking: Mapping[tuple[str, str], int],
+) -> Explanation:
+    pairs = problem.robot.pairs(problem.detector)
     probe = _Probe(target, seed, float(found.seconds[0]))
     if colliding == 0 and problem.detector is not None and problem.settings.evolves:
         tested = probe.run(problem.with_settings(collision="reject"))
@@ -102,6 +119,16 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
             blocking_pairs={},
         )
     return _spent(found, graded, _tolerance_hint(problem, graded))
+
+
+def _never_free(touching: AlwaysTouching, blocking: Mapping[tuple[str, str], int]) -> Explanation:
+    lines = f": {' and '.join(touching.lines)}" if touching.lines else ""
+    return Explanation(
+        stop_reason=StopReason.SELF_COLLISION,
+        reason=f"{touching}; if that is meant, {touching.remedy}{lines}",
+        hint="leave out pairs that may touch, or give the others smaller spheres",
+        blocking_pairs=blocking,
+    )
 
 
 def _out_of_reach(excess_m: float) -> str:

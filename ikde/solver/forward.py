@@ -1,7 +1,7 @@
 """Where every frame is."""
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import WORLD, Robot
+from ikde.model.robot import TOOL, WORLD, Robot
 from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.plain import compute_frames
 
@@ -22,4 +22,4 @@ def forward(robot: Robot, q: JointValues, convention: str | None = None) -> dict
         InputError: for a wrong count, an unknown joint or convention, NaN or infinity.
     """
     Ts_world = compute_frames(robot, read_joints(robot, q, convention))
-    return {name: T for name, T in Ts_world.items() if name != WORLD} | {"tool": Ts_world[robot.tool]}
+    return {name: T for name, T in Ts_world.items() if name != WORLD} | {TOOL: Ts_world[robot.tool]}

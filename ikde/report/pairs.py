@@ -1,0 +1,70 @@
+"""Which pairs of components a detector compares, and why it leaves out the others, as text and as JSON."""
+
+from typing import Any
+
+from ikde.io.units import LENGTHS_M
+from ikde.model.pairs import explain_no_detector
+from ikde.model.robot import Detector, Robot
+from ikde.report.render import make_table, plain, verbatim
+from ikde.report.units import Units, format_fixed
+from ikde.solver.check import compute_pairs
+from ikde.solver.touching import find_always_touching
+
+
+def pairs_json(robot: Robot, detector: Detector | None) -> dict[str, Any] | None:
+    """What a detector compares, with the clearance at home in m, worst first, and what it leaves out; None for none."""
+    if detector is None:
+        return None
+    touching = find_always_touching(robot, detector)
+    return {
+        "detector": detector.name,
+        "compared": [
+            {"a": pair.a, "b": pair.b, "clearance_at_home_m": pair.clearance_m}
+            for pair in compute_pairs(robot, detector, robot.home)
+        ],
+        "left_out": [{"a": p.a, "b": p.b, "reason": p.reason} for p in robot.left_out_pairs(detector)],
+        "always_touching": [list(pair) for pair in touching.pairs] if touching else [],
+        "to_add": list(touching.lines) if touching else [],
+    }
+
+
+def pair_parts(robot: Robot, detector: Detector | None, units: Units) -> list[Any]:
+    """What there is to render: how many pairs, what always touches, and a table each of those compared and left out."""
+    told = plain(_describe(robot, detector))
+    if detector is None:
+        return [told]
+    tables = [_compared_table(robot, detector, units), _left_out_table(robot, detector)]
+    return [told, *_touching_lines(robot, detector), "", *tables]
+
+
+def _describe(robot: Robot, detector: Detector | None) -> str:
+    """One line: what is checked."""
+    if detector is None:
+        why = f" ({explain_no_detector(robot)})" if robot.detector(None) is None else ""
+        return f"no detector: collisions are not checked{why}"
+    compared, left_out = len(robot.pairs(detector)), len(robot.left_out_pairs(detector))
+    return f"collision: detector {detector.name} compares {compared} pair{'s' * (compared != 1)}, {left_out} left out"
+
+
+def _touching_lines(robot: Robot, detector: Detector) -> list[Any]:
+    touching = find_always_touching(robot, detector)
+    if touching is None:
+        return []
+    lines = [verbatim(line) for line in touching.lines]
+    meant = f"if that is meant, {plain(touching.remedy)}{':' if lines else ''}"
+    return [f"[yellow]{plain(str(touching))}[/]", meant, *lines]
+
+
+def _compared_table(robot: Robot, detector: Detector, units: Units) -> Any:
+    table = make_table("pair", f">clearance at home [{units.length}]", title="pairs compared")
+    for pair in compute_pairs(robot, detector, robot.home):
+        gap = format_fixed(pair.clearance_m / LENGTHS_M[units.length], 2 if units.length == "mm" else 5)
+        table.add_row(plain(f"{pair.a} - {pair.b}"), gap)
+    return table
+
+
+def _left_out_table(robot: Robot, detector: Detector) -> Any:
+    table = make_table("pair", "why", title="pairs left out")
+    for pair in robot.left_out_pairs(detector):
+        table.add_row(plain(f"{pair.a} - {pair.b}"), plain(pair.reason))
+    return table

@@ -1,0 +1,68 @@
+"""Pairs that touch whatever the joints do: nothing is free then, and only the robot's file can say that it is meant."""
+
+import json
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ikde.model.robot import Detector, Pairs, Robot
+from ikde.model.validate import NON_ADJACENT
+from ikde.solver.plain import compute_gaps
+
+CONFIGURATIONS = 1_000
+FIRST = 16  # of them: few pairs are left after these
+TO_FILL_IN = "why they may touch"
+PLAIN_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")  # a key that YAML reads as it is
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlwaysTouching:
+    """Pairs of a detector that touch in every configuration that was drawn, and how to leave them out."""
+
+    pairs: Pairs
+    remedy: str
+    """What to do if they may touch, in a few words."""
+    lines: tuple[str, ...]
+    """What to write into the robot's file for it, with reasons to fill in; nothing for a pair list of the file."""
+
+    def __str__(self) -> str:
+        named = ", ".join(f"{a} - {b}" for a, b in self.pairs)
+        touch = "touches" if len(self.pairs) == 1 else "touch"
+        return f"{named} {touch} in each of {CONFIGURATIONS:,} random configurations"
+
+
+@lru_cache(maxsize=64)
+def find_always_touching(robot: Robot, detector: Detector) -> AlwaysTouching | None:
+    """Pairs within the safe distance in each of 1,000 random configurations inside the limits, the same every time."""
+    drawn = np.random.default_rng(0).uniform(robot.lower, robot.upper, (CONFIGURATIONS, len(robot.joints)))
+    pairs = robot.pairs(detector)
+    for Q in (drawn[:FIRST], drawn[FIRST:]):
+        farthest = compute_gaps(robot, detector.spheres, pairs, Q).max(axis=0)
+        pairs = tuple(pair for pair, gap in zip(pairs, farthest, strict=True) if gap <= detector.safe_distance_m)
+    if not pairs:
+        return None
+    remedy, lines = _leave_out(robot, detector, pairs)
+    return AlwaysTouching(pairs=pairs, remedy=remedy, lines=lines)
+
+
+def _leave_out(robot: Robot, detector: Detector, pairs: Pairs) -> tuple[str, tuple[str, ...]]:
+    if detector.pairs != NON_ADJACENT:
+        return f"take {'it' if len(pairs) == 1 else 'them'} out of the pair list {detector.pairs}", ()
+    entries: dict[str, dict[str, str]] = {}
+    for a, b in pairs:
+        entries.setdefault(a, {pair.b: pair.reason for pair in robot.adjacent if pair.a == a})[b] = TO_FILL_IN
+    lines = tuple(f"{_quote(a)}: {_flow(others)}" for a, others in entries.items())
+    if robot.adjacent:
+        return "write under adjacent: pairs: of the robot file", lines
+    return "add to the robot file", (f"adjacent: {{pairs: {{{', '.join(lines)}}}}}",)
+
+
+def _flow(reasons: dict[str, str]) -> str:
+    """`{b: "why"}`, as YAML in one line."""
+    return f"{{{', '.join(f'{_quote(b)}: {json.dumps(why, ensure_ascii=False)}' for b, why in reasons.items())}}}"
+
+
+def _quote(key: str) -> str:
+    return key if PLAIN_WORD.fullmatch(key) else json.dumps(key, ensure_ascii=False)
