@@ -12,7 +12,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import ikde
-from ikde.model.pairs import left_out_pairs
 from tests.regrade import find_faults
 
 KINDS = ("position", "axis", "pose")
@@ -242,7 +241,7 @@ def account_for_pairs(robot, grader):
     counts, faults = Counter(), []
     for name, detector in robot.detectors.items():
         compared = [frozenset(pair) for pair in robot.pairs(detector)]
-        left_out = {frozenset((pair.a, pair.b)): pair.reason for pair in left_out_pairs(robot, detector)}
+        left_out = {frozenset((pair.a, pair.b)): pair.reason for pair in robot.left_out_pairs(detector)}
         counts.update(detectors=1, compared=len(compared), left_out=len(left_out))
         if set(compared) != grader.compared(name) or len(compared) != len(set(compared)):
             faults.append({"fault": "pairs compared", "detector": name, "ikde": _sort(compared)})

@@ -10,6 +10,7 @@ import pytest
 import ikde
 from ikde.io import robot_file
 from ikde.model.rotation import rotation_from_rpy
+from ikde.solver.plain import compute_gaps
 from tests import regrade, robot_texts
 from tests.asking import account_for_pairs, ask, ask_and_regrade, draw_question, load_text
 from tests.asking import regrade as regrade_answers
@@ -117,9 +118,10 @@ def check_agreement(grader, robot, rng):
     assert grader.lower == pytest.approx(robot.lower, abs=1e-15, rel=1e-15)
     assert grader.upper == pytest.approx(robot.upper, abs=1e-15, rel=1e-15)
     Q = random_q(robot, rng, 20)
-    T_world_tool = ikde.forward(robot, Q)
-    R, p = grader.place(Q)[grader.tool]
-    np.testing.assert_allclose(np.concatenate([R, p[:, :, None]], axis=2), T_world_tool[:, :3], atol=ROUNDING)
+    T_world = ikde.forward(robot, Q)
+    for name, (R, p) in grader.place(Q).items():
+        T_world_frame = T_world.get(name, np.broadcast_to(np.eye(4), (len(Q), 4, 4)))  # it leaves out the world
+        np.testing.assert_allclose(np.concatenate([R, p[:, :, None]], axis=2), T_world_frame[:, :3], atol=ROUNDING)
     for name, detector in robot.detectors.items():
         gaps = grader.clearances(Q, name)
         for k, q in enumerate(Q):
@@ -140,7 +142,7 @@ def test_random_robots_are_as_odd_as_the_law_asks():
     counts = [len(grader.joints) for grader in graders]
     assert min(counts) <= 2
     assert max(counts) == robot_texts.MOST_JOINTS
-    odd = [sum(is_odd(grader) for grader in graders) for is_odd in ODDITIES]
+    odd = [sum(bool(is_odd(grader)) for grader in graders) for is_odd in ODDITIES]
     assert min(odd) >= 3, odd
 
 
@@ -177,7 +179,7 @@ def test_what_is_called_reached_is_reached(seed):
     grader, robot = grader_and_robot(seed)
     tally = ask_and_regrade(robot, grader, np.random.default_rng(seed), 60, most=12)
     assert not tally.faults
-    assert tally.counts["reached"] > 10
+    assert tally.counts["reached"] >= 10
 
 
 def test_what_written_kernels_call_reached_is_reached(monkeypatch):
@@ -215,8 +217,13 @@ def forget_a_sphere(robot):
 
 
 def forget_a_pair(robot):
-    name = robot.detector(None).pairs
-    return replace(robot, pair_lists={**robot.pair_lists, name: robot.pair_lists[name][1:]})
+    """The one that touches most often."""
+    detector, Q = robot.detector(None), random_q(robot, np.random.default_rng(0), 200)
+    pairs = robot.pairs(detector)
+    hits = compute_gaps(robot, detector.spheres, pairs, Q) <= detector.safe_distance_m
+    forgotten = pairs[np.argmax(hits.sum(axis=0))]
+    kept = tuple(pair for pair in pairs if pair != forgotten)
+    return replace(robot, pair_lists={**robot.pair_lists, detector.pairs: kept})
 
 
 @pytest.mark.parametrize("spoil", [forget_a_sphere, forget_a_pair])
@@ -233,7 +240,7 @@ def test_answers_for_a_robot_whose_rpy_is_read_the_other_way_round_are_found_out
     assert any("tolerance" in fault["fault"] for fault in tally.faults)
 
 
-@pytest.mark.parametrize("spoil", [lambda robot: replace(robot, adjacent=()), forget_a_pair])
+@pytest.mark.parametrize("spoil", [lambda robot: replace(robot, neighbours=()), forget_a_pair])
 def test_a_pair_without_account_is_found_out(spoil):
     grader, robot = grader_and_robot(LISTED)
     assert account_for_pairs(spoil(robot), grader).faults
