@@ -26,13 +26,14 @@ from typing import Any
 import numpy as np
 
 from benchmarks.machine import describe
-from tests.asking import account_for_pairs, ask_and_regrade, load_text
+from tests.asking import KINDS, account_for_pairs, ask_and_regrade, load_text
 from tests.regrade import Grader
 from tests.robot_texts import random_robot_text
 
 RESULTS = Path(__file__).parent / "results" / "regrade.json"
 ROBOTS, TARGETS = 200, 5_000
 WRITTEN = 3  # one robot in so many has kernels of its own
+SMALL = 5  # joints: kernels for every kind of target
 ROBOTS_A_PROCESS = 6  # compiled code is never let go of
 
 
@@ -43,8 +44,9 @@ def regrade_robot(seed: int, targets: int) -> dict[str, Any]:
     os.environ.update({} if is_written else {"IKDE_KERNELS": "tables"})
     started, text = time.perf_counter(), random_robot_text(seed)
     grader, robot = Grader.of_text(text), load_text(text)
-    pairs = account_for_pairs(robot, grader)
-    answers = ask_and_regrade(robot, grader, np.random.default_rng(seed), targets, threads=1)
+    rng, pairs = np.random.default_rng(seed), account_for_pairs(robot, grader)
+    options = choose_written(grader, rng) if is_written else {}
+    answers = ask_and_regrade(robot, grader, rng, targets, threads=1, **options)
     return {
         "seed": seed,
         "kernels": "written" if is_written else "tables",
@@ -55,6 +57,12 @@ def regrade_robot(seed: int, targets: int) -> dict[str, Any]:
         "faults": pairs.faults + answers.faults,
         "seconds": time.perf_counter() - started,
     }
+
+
+def choose_written(grader: Grader, rng: np.random.Generator) -> dict[str, Any]:
+    """What is asked of kernels that are written for each detector and kind of target, and take seconds to compile."""
+    kinds = KINDS if len(grader.joints) <= SMALL else (str(rng.choice(KINDS)),)
+    return {"kinds": kinds, "detectors": (None,)}
 
 
 def run(seeds: range, targets: int) -> list[dict[str, Any]]:

@@ -71,26 +71,27 @@ class Tally:
 # ---- questions
 
 
-def draw_questions(grader, rng, total, *, most=250, kinds=KINDS):
-    """Questions with `total` targets together, none with more than `most`."""
+def draw_questions(grader, rng, total, *, most=250, **options):
+    """Questions with `total` targets together, none with more than `most`; options as for `draw_question`."""
     while total > 0:
-        question = draw_question(grader, rng, min(most, total), kinds)
+        question = draw_question(grader, rng, min(most, total), **options)
         yield question
         total -= len(question)
 
 
-def draw_question(grader, rng, most, kinds=KINDS):
-    """One question with at most so many targets."""
+def draw_question(grader, rng, most, *, kinds=KINDS, detectors=None):
+    """One question with at most so many targets, of these kinds, under one of these detectors; None for all."""
     how, method = _choose(rng, HOW), _choose(rng, METHODS)
     count = min(most, MOST[method], MOST_BY_CALL[how])
     freeze = _draw_freeze(grader, rng) if rng.random() < 0.2 else {}
     near = rng.uniform(grader.lower, grader.upper) if rng.random() < 0.15 else None
-    detectors = [None, None, None, "none", *grader.file.get("detectors", {})]
+    least = -9.0 if rng.random() < 0.9 else -12.0
+    detectors = detectors or [None, None, None, "none", *grader.file.get("detectors", {})]
     mixed = rng.choice(kinds, count) if rng.random() < 0.6 else np.full(count, rng.choice(kinds))
     return Question(
         kinds=mixed,
         T_world_tool=draw_poses(grader, rng, count, freeze),
-        tolerances=(10.0 ** rng.uniform(-9.0, -1.0), min(10.0 ** rng.uniform(-9.0, 0.6), 3.0)),
+        tolerances=(10.0 ** rng.uniform(least, -1.0), min(10.0 ** rng.uniform(least, 0.6), 3.0)),
         method=method,
         restarts=int(rng.choice(RESTARTS[method])),
         how=how,

@@ -40,7 +40,8 @@ class _Draft:
             self._add_ur_arm()
         else:
             self._add_links(count)
-        self.tool = self._add_fixed("tip", self.last) if rng.random() < 0.8 else self.bodies[self.last][0]
+        held = self.last if rng.random() < 0.9 else str(rng.choice(list(self.bodies)[1:]))
+        self.tool = self._add_fixed("tip", held) if rng.random() < 0.8 else held
         if rng.random() < 0.95:
             self._add_spheres()
 
@@ -78,14 +79,15 @@ class _Draft:
         ):
             self._add_joint(self.last, "revolute", axis=axis, xyz=xyz, plain=True)
 
-    def _add_joint(self, parent, kind, limits=None, *, axis=None, xyz=None, plain=False):
+    def _add_joint(self, parent, kind, limits=None, *, axis=None, xyz=(0, 0, 0), plain=False):
+        """A frame that a joint moves, with up to two fixed frames on it; `plain`: not turned, and at `xyz` exactly."""
         name, frame = f"{self.word}{len(self.joints)}", f"f{len(self.joints)}"
         lower, upper = limits or self._draw_limits(kind)
         home = float(self.rng.uniform(lower, upper)) if self.rng.random() < 0.5 or not lower <= 0.0 <= upper else 0.0
         self.joints[name] = {"kind": kind, "lower": lower, "upper": upper, "home": home}
         self.frames[frame] = {
-            "parent": str(self.rng.choice(self.bodies[parent])) if not plain else self.bodies[parent][0],
-            **({"xyz": [0, 0, 0] if xyz is None else xyz} if plain else self._draw_offset()),
+            "parent": parent if plain else str(self.rng.choice(self.bodies[parent])),
+            **({"xyz": xyz} if plain else self._draw_offset()),
             "joint": name,
             "axis": self._draw_axis() if axis is None else axis,
         }
@@ -102,7 +104,8 @@ class _Draft:
         if self.rng.random() < 0.08:  # frozen
             return (float(self.rng.uniform(-1.0, 1.0)),) * 2
         if kind == "prismatic":
-            return -float(self.rng.uniform(0.0, 0.8)), float(self.rng.uniform(0.1, 1.5))
+            far = 1.0 if self.rng.random() < 0.95 else 30.0
+            return -far * float(self.rng.uniform(0.0, 0.8)), far * float(self.rng.uniform(0.1, 1.5))
         if self.rng.random() < 0.6:
             half = float(self.rng.choice(WIDE))
             return -half, half
