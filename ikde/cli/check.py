@@ -53,8 +53,7 @@ def check(
     judge = read_detector(model, detector, pairs, safe_distance, unit)
     result = check_configuration(model, values, judge)
     check_drawable(plot)
-    if detector is None:
-        note_unchecked(model)
+    note_unchecked(model, detector)
     if as_json:
         print_json(check_json(model, result, convention))
     else:

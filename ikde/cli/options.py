@@ -102,11 +102,11 @@ def read_detector(
     return detector
 
 
-def note_unchecked(robot: "Robot") -> None:
-    """Say on stderr that self-collision is not checked, if the robot has no default detector."""
+def note_unchecked(robot: "Robot", asked: str | None = None) -> None:
+    """Say on stderr that self-collision is not checked, if the robot has no default detector and none was asked for."""
     from ikde.model.pairs import explain_no_detector
 
-    if robot.detector(None) is None:
+    if asked is None and robot.detector(None) is None:
         print_note(f"ikde: self-collision is not checked: {explain_no_detector(robot)}")
 
 

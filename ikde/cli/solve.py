@@ -159,8 +159,7 @@ def solve(
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = read_freeze(model, freeze, unit, angles, convention)
     check_drawable(plot)
-    if detector is None:
-        note_unchecked(model)
+    note_unchecked(model, detector)
     with working("searching ..."):
         results = solve_distinct(
             model,

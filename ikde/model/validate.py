@@ -126,9 +126,7 @@ def _check_frame(robot: Robot, frame: Frame, frames: Mapping[str, Frame]) -> Non
 def _check_tool(robot: Robot) -> None:
     names = [frame.name for frame in robot.frames]
     _check_name(robot.tool, names, ("tool",), "frame")
-    taken = (
-        f"{TOOL!r} stands for the tool, which is {robot.tool!r} here; name this frame otherwise, or let it be the tool"
-    )
+    taken = f"this name stands for the tool, which is {robot.tool!r}; name this frame otherwise, or let it be the tool"
     _require(robot.tool == TOOL or TOOL not in names, taken, "frames", TOOL)
 
 

@@ -52,6 +52,16 @@ def test_a_run_is_summarised_and_what_is_next_is_said(cli, spec, tmp_path):
     assert len(ikde.read_batch(out)) == 6
 
 
+@pytest.mark.parametrize("options", [("--dry-run",), ("--out", "run")])
+def test_a_robot_without_a_detector_is_told_once(cli, spec, tmp_path, monkeypatch, options):
+    monkeypatch.chdir(tmp_path)
+    spec.write_text(SPEC.replace("qiao2021", "qiao2021_dh").replace("grade: [typical]", ""))
+    outcome = cli("batch", spec, *options)
+    assert outcome.code == 0
+    assert outcome.err.startswith("ikde: self-collision is not checked: qiao2021_dh has no spheres\n")
+    assert outcome.err.count("not checked") == 1
+
+
 def test_the_same_command_goes_on(cli, spec, tmp_path):
     first = cli("batch", spec, "--out", tmp_path / "run", "--threads", "1")
     second = cli("batch", spec, "--out", tmp_path / "run")

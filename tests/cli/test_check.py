@@ -52,13 +52,15 @@ def test_without_a_detector_nothing_is_looked_at(cli):
     outcome = cli("check", "--q", FOLDED, "--angles", "deg", "--detector", "none", "--json")
     assert outcome.code == 0
     assert (outcome.data["clearance_m"], outcome.data["pairs"]) == (None, [])
-    assert "nothing was looked at" in cli("check", "--detector", "none").out
+    asked = cli("check", "--detector", "none")
+    assert asked.out == "no detector: self-collision is not checked\n"
+    assert asked.err == ""
 
 
 def test_a_robot_without_spheres_is_not_called_free(cli):
     outcome = cli("check", "--robot", "qiao2021_dh")
-    assert outcome.code == 0
-    assert "free" not in outcome.out
+    assert (outcome.code, outcome.out) == (0, "no detector: self-collision is not checked\n")
+    assert outcome.err == "ikde: self-collision is not checked: qiao2021_dh has no spheres\n"
 
 
 def test_the_safe_distance_is_in_the_unit_asked_for(cli):

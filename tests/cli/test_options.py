@@ -4,7 +4,17 @@ import json
 
 import pytest
 
-from ikde.cli.options import AngleUnit, LengthUnit, check_drawable, draw, read_detector, read_freeze, read_q
+import ikde
+from ikde.cli.options import (
+    AngleUnit,
+    LengthUnit,
+    check_drawable,
+    draw,
+    note_unchecked,
+    read_detector,
+    read_freeze,
+    read_q,
+)
 from ikde.errors import FileError, InputError
 
 SOLVE = ("solve", "--position", "0.8", "0.5", "1")
@@ -109,6 +119,14 @@ def test_a_detector_is_read_with_its_changes(qiao):
 
 def test_no_detector_is_called_none(qiao):
     assert read_detector(qiao, "none", None, None, LengthUnit.m) == "none"
+
+
+@pytest.mark.parametrize(("name", "err"), [("qiao2021_dh", "has no spheres\n"), ("qiao2021", "")])
+def test_a_robot_without_a_detector_is_told_once_on_stderr(name, err, capsys):
+    note_unchecked(ikde.load_robot(name))
+    captured = capsys.readouterr()
+    assert (captured.out, captured.err[-len(err) :] if err else captured.err) == ("", err)
+    assert captured.err.count("\n") == bool(err)
 
 
 def test_frozen_joints_are_read_in_the_users_units_and_convention(qiao):

@@ -3,6 +3,8 @@
 import pytest
 
 import ikde
+from ikde.io.robots import robot_path
+from tests.bare_robot import BARE
 from tests.io.test_robot_file import GOOD
 
 
@@ -48,8 +50,41 @@ def test_a_good_file_is_valid(cli, tmp_path):
     path.write_text(GOOD)
     outcome = cli("robots", "validate", path)
     assert (outcome.code, outcome.err) == (0, "")
-    assert outcome.out == f"{path}: valid, robot two with 2 joints and 3 frames\n"
-    assert cli("robots", "validate", path, "--json").data == {"valid": True, "name": "two", "joints": 2, "frames": 3}
+    first, second, *_ = outcome.out.splitlines()
+    assert first == f"{path}: valid, robot two with 2 joints and 3 frames"
+    assert second == "collision: detector coarse compares 1 pair, 0 left out"
+    data = cli("robots", "validate", path, "--json").data
+    assert {key: data[key] for key in ("valid", "name", "joints", "frames")} == {
+        "valid": True,
+        "name": "two",
+        "joints": 2,
+        "frames": 3,
+    }
+    assert data["collision"]["compared"] == [{"a": "box", "b": "bar", "clearance_at_home_m": pytest.approx(0.28)}]
+
+
+@pytest.mark.parametrize("command", ["show", "validate"])
+def test_pairs_are_those_of_the_detector_asked_for(cli, command):
+    path = robot_path("qiao2021")
+    for name in ("improved", "typical"):
+        asked = ("robots", command, path, *(("--detector", name) if name != "improved" else ()))
+        assert f"collision: detector {name} compares 35 pairs, 20 left out" in cli(*asked).out
+        assert cli(*asked, "--json").data["collision"]["detector"] == name
+    assert cli("robots", command, path, "--detector", "none", "--json").data["collision"] is None
+    assert "not checked" in cli("robots", command, path, "--detector", "none").out
+
+
+def test_pairs_that_always_touch_are_named_with_a_line_that_loads(cli, tmp_path):
+    path = tmp_path / "fat.yaml"
+    path.write_text(BARE.replace("radius: 0.35", "radius: 0.9"))
+    lines = cli("robots", "validate", path).out.splitlines()
+    assert "platform - upper_arm touches in each of 1,000 random configurations" in lines
+    (line,) = (line for line in lines if line.startswith("adjacent:"))
+    path.write_text(f"{path.read_text()}{line}\n")
+    mended = cli("robots", "validate", path)
+    assert mended.code == 0
+    assert "touches" not in mended.out
+    assert "platform - upper_arm   adjacent: why they may touch" in mended.out
 
 
 @pytest.mark.parametrize(

@@ -228,6 +228,17 @@ def test_no_detector_looks_at_nothing(cli):
     assert "not looked at" in cli(*SOLVE, "--detector", "none").out
 
 
+@pytest.mark.parametrize("options", [(), ("--json",), ("--count", 2)])
+def test_a_robot_without_a_detector_is_told_once(cli, options):
+    outcome = cli(*SOLVE, "--robot", "qiao2021_dh", *options)
+    assert (outcome.code, outcome.err) == (0, "ikde: self-collision is not checked: qiao2021_dh has no spheres\n")
+
+
+def test_who_asks_for_no_detector_is_not_told(cli):
+    assert cli(*SOLVE, "--detector", "none").err == ""
+    assert cli(*SOLVE, "--robot", "qiao2021_dh", "--detector", "none").err == ""
+
+
 def test_the_safe_distance_is_kept(cli):
     data = cli(*SOLVE_MM, "--safe-distance", 30, "--json").data
     assert data["reached"] is True

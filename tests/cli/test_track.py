@@ -31,6 +31,12 @@ def names(folder):
     return sorted(path.name for path in folder.iterdir())
 
 
+def test_a_robot_without_a_detector_is_told_once(cli, spec):
+    spec.write_text(SPEC.replace("qiao2021", "qiao2021_dh"))
+    outcome = cli("track", spec, "--no-plot")
+    assert (outcome.code, outcome.err) == (0, "ikde: self-collision is not checked: qiao2021_dh has no spheres\n")
+
+
 def test_a_path_is_followed_into_a_folder(cli, spec, tmp_path):
     out = tmp_path / "runs" / "a"
     outcome = cli("track", spec, "--out", out)

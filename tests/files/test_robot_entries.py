@@ -1,5 +1,7 @@
 """Joints and detectors as files name them. What is wrong with them: `tests/batch/test_arms.py`."""
 
+from dataclasses import replace
+
 import pytest
 
 from ikde.errors import InputError
@@ -14,6 +16,14 @@ def test_detectors_are_names_or_the_users_own(qiao):
     assert read_detector(qiao, "none", SI) is None
     own = read_detector(qiao, DetectorEntry(name="own", spheres="single"), SI)
     assert (own.name, own.spheres, own.pairs, own.safe_distance_m) == ("own", "single", "non_adjacent", 0.0)
+
+
+def test_a_detector_of_the_users_own_compares_something(qiao):
+    robot = replace(qiao, pair_lists={**qiao.pair_lists, "empty": ()})
+    with pytest.raises(
+        InputError, match=r"^pairs: this detector compares nothing: all 55 pairs are left out: M - G \("
+    ):
+        read_detector(robot, DetectorEntry(name="own", spheres="single", pairs="empty"), SI)
 
 
 def test_joint_values_become_metres_and_radians(qiao):

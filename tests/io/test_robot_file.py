@@ -13,6 +13,7 @@ import ikde
 from ikde.errors import FileError, InputError
 from ikde.io.robots import FOLDER, load_robot
 from ikde.io.yaml_file import Document
+from ikde.model.robot import AdjacentPair
 
 GOOD = """\
 name: two
@@ -168,6 +169,19 @@ def test_frames_may_stand_in_any_order(tmp_path):
         ("source: ours}\n  turn", "source: theirs}\n  turn", "joints.slide.source", "no source is called 'theirs'"),
         ("tool: tip\n", "", "robot.yaml:1 → tool", "missing"),
         ("default_detector: coarse", "default_detector: corse", "default_detector", "did you mean 'coarse'?"),
+        (
+            "pairs: {box: [bar]}",
+            "pairs: {}",
+            "robot.yaml:20 → detectors.coarse.pairs",
+            "the only pair is left out: box",
+        ),
+        ("pairs: all, ", "", "robot.yaml:20 → detectors.coarse.pairs", "box - bar (joined by joint turn)"),
+        (
+            "  tip: ",
+            "  tool: {parent: arm}\n  tip: ",
+            "robot.yaml:11 → frames.tool",
+            "stands for the tool, which is 'tip'",
+        ),
         ("name: two", "name: ''", "robot.yaml:1 → name", "not empty"),
     ],
 )
@@ -179,6 +193,56 @@ def test_what_is_wrong_is_said_with_its_place(old, new, place, words, tmp_path):
 
 def test_a_list_that_includes_itself_is_refused(tmp_path):
     assert "includes itself" in complaint("all: {pairs: {box: [bar]}}", "all: {include: [all]}", tmp_path)
+
+
+THREE = GOOD.replace(
+    "{component: bar, from: arm, to: tip,",
+    "{component: lid, from: rail, radius: 1}\n    - {component: bar, from: arm, to: tip,",
+)
+
+
+def test_adjacent_pairs_carry_their_reason(tmp_path):
+    robot = parse(f"{THREE}adjacent:\n  source: ours\n  pairs:\n    lid: {{bar: a cable runs along}}\n", tmp_path)
+    assert robot.adjacent == (AdjacentPair(a="lid", b="bar", reason="a cable runs along"),)
+    assert robot.provenance[("adjacent",)].text == "made up"
+
+
+@pytest.mark.parametrize(
+    "pairs", ["[bar]", "bar", "{bar: }", "{bar: ''}", "{bar: ' '}", "{bar: 3}", "{bar: [why]}", "[{bar: why}]", "null"]
+)
+def test_an_adjacent_pair_without_a_reason_is_refused_with_the_form(pairs, tmp_path):
+    with pytest.raises(FileError) as caught:
+        parse(f"{THREE}adjacent: {{pairs: {{lid: {pairs}}}}}\n", tmp_path)
+    message = str(caught.value)
+    assert message.startswith(f"{tmp_path / 'robot.yaml'}:23 → adjacent.pairs.lid: expected a reason for each pair")
+    assert message.endswith('{A: {B: "why A and B may touch"}}')
+
+
+def test_the_same_pair_the_other_way_round_counts_once(tmp_path):
+    robot = parse(GOOD.replace("{box: [bar]}", "{box: [bar], bar: [box, box]}"), tmp_path)
+    assert robot.pair_lists["all"] == (("box", "bar"),)
+
+
+def test_the_only_detector_is_the_default(tmp_path):
+    assert parse(GOOD.replace("default_detector: coarse\n", ""), tmp_path).default_detector == "coarse"
+
+
+TWO_DETECTORS = GOOD.replace("default_detector: coarse\n", "  tight: {spheres: coarse, pairs: all}\n")
+
+
+def test_of_several_detectors_the_default_is_named(tmp_path):
+    with pytest.raises(
+        FileError, match=r"default_detector: there are several detectors: name one of coarse, tight, none$"
+    ):
+        parse(TWO_DETECTORS, tmp_path)
+    assert parse(f"{TWO_DETECTORS}default_detector: tight\n", tmp_path).default_detector == "tight"
+
+
+def test_no_detector_may_be_the_default_and_none_need_be_there(tmp_path):
+    assert parse(f"{TWO_DETECTORS}default_detector: none\n", tmp_path).detector(None) is None
+    bare = GOOD[: GOOD.index("detectors:")]
+    assert parse(bare, tmp_path).detector(None) is None
+    assert parse(bare[: bare.index("spheres:")], tmp_path).detector(None) is None
 
 
 @pytest.mark.parametrize("text", ["", "[]", "3", "name: x", "null", "{name: x, joints: [], frames: {}, tool: t}"])

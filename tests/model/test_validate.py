@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError, nearest
-from ikde.model.robot import Detector, Frame, Joint, Robot, SphereRow, Wheels
+from ikde.model.robot import AdjacentPair, Detector, Frame, Joint, Robot, SphereRow, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.random_robots import make_frame
 
@@ -196,6 +196,12 @@ def test_an_unknown_tool():
     reject("no frame is called 'tip'", "tool", tool="tip")
 
 
+def test_a_frame_called_tool_is_the_tool():
+    assert check_robot(make_draft()).tool == "tool"
+    message = "this name stands for the tool, which is 'b'; name this frame otherwise, or let it be the tool"
+    reject(message, "frames", "tool", tool="b")
+
+
 # ---- spheres
 
 
@@ -240,7 +246,19 @@ def test_an_unknown_component_in_a_pair(pair):
 
 
 def test_an_unknown_component_among_adjacent_pairs():
-    reject("no component is called 'X'", "adjacent", "pairs", "X", adjacent=(("X", "G"),))
+    reject(
+        "no component is called 'X'", "adjacent", "pairs", "X", adjacent=(AdjacentPair(a="X", b="G", reason="glued"),)
+    )
+
+
+@pytest.mark.parametrize("reason", ["", "  "])
+def test_an_adjacent_pair_without_a_reason(reason):
+    reject("expected a reason", "adjacent", "pairs", "G", "B", adjacent=(AdjacentPair(a="G", b="B", reason=reason),))
+
+
+@pytest.mark.parametrize("again", [("G", "B"), ("B", "G")])
+def test_a_pair_that_is_given_twice(again):
+    reject("are paired twice", "pairs", "some", "pairs", again[0], pair_lists={"some": (("G", "B"), again)})
 
 
 def test_a_component_paired_with_itself():
@@ -248,6 +266,37 @@ def test_a_component_paired_with_itself():
 
 
 # ---- detectors
+
+
+def test_a_detector_whose_pairs_are_all_left_out():
+    message = (
+        "this detector compares nothing: all 3 pairs are left out: "
+        "G - A (joined by joint slide), G - B (adjacent: glued), A - B (joined by joint turn)"
+    )
+    glued = (AdjacentPair(a="B", b="G", reason="glued"),)
+    reject(message, "detectors", "d", "pairs", adjacent=glued, detectors=make_detector(pairs=NON_ADJACENT))
+
+
+def test_a_detector_with_an_empty_list():
+    message = "all 3 pairs are left out: G - A (joined by joint slide), G - B (not in the pair list some), A - B"
+    reject(message, "detectors", "d", "pairs", pair_lists={"some": ()})
+
+
+def test_a_detector_with_one_component():
+    one = {"approximations": {"fine": (make_row("G", "world", "world"),)}, "pair_lists": {}}
+    reject("'G' is the only component", "detectors", "d", "pairs", detectors=make_detector(pairs=NON_ADJACENT), **one)
+
+
+def test_a_detector_without_spheres():
+    none = {"approximations": {"fine": ()}, "pair_lists": {"some": ()}}
+    reject("this detector compares nothing: 'fine' has no spheres", "detectors", "d", "spheres", **none)
+
+
+def test_pairs_left_out_are_named_as_long_as_they_are_few():
+    rows = tuple(make_row(name, "world", "world") for name in "ABCDE")
+    changes = {"approximations": {"fine": rows}, "pair_lists": {}, "detectors": make_detector(pairs=NON_ADJACENT)}
+    message = "all 10 pairs are left out: A - B (one body), A - C (one body), A - D (one body) and 7 more"
+    reject(message, "detectors", "d", "pairs", **changes)
 
 
 def make_detector(**changes):
@@ -280,10 +329,11 @@ def test_every_approximation_describes_the_same_components():
 
 
 def test_a_detector_made_by_hand_is_checked_when_it_is_used():
-    robot = check_robot(make_draft())
+    robot = check_robot(make_draft(pair_lists={**make_draft().pair_lists, "none": ()}))
     good = Detector(name="mine", spheres="fine", pairs=NON_ADJACENT)
     assert robot.detector(good) is good
-    for bad in ({"spheres": "fin"}, {"pairs": "all"}, {"safe_distance_m": -1.0}, {"safe_distance_m": np.nan}):
+    wrong = ({"spheres": "fin"}, {"pairs": "all"}, {"pairs": "none"}, {"safe_distance_m": -1.0})
+    for bad in (*wrong, {"safe_distance_m": np.nan}):
         with pytest.raises(InputError, match="detector"):
             robot.detector(replace(good, **bad))
 

@@ -10,6 +10,7 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.reach import reach_excess_m
 from ikde.solver.engines.found import make_found
 from ikde.solver.search import Found
+from tests.bare_robot import BARE
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=6, generations=500)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
@@ -100,6 +101,24 @@ def test_a_detector_that_collides_everywhere_is_named_by_its_pairs(qiao):
     assert result.stop_reason == "self_collision"
     assert ("M", "LT") in result.blocking_pairs
     assert result.detector == "single"
+
+
+def test_a_pair_that_always_touches_is_named_with_the_line_to_add(tmp_path):
+    (tmp_path / "fat.yaml").write_text(BARE.replace("radius: 0.35", "radius: 0.9"))
+    result = ikde.solve(ikde.load_robot(tmp_path / "fat.yaml"), ikde.Target((0.5, 0.5, 0.9)), QUICK)
+    assert (result.reached, result.stop_reason) == (False, "self_collision")
+    assert result.reason == (
+        "platform - upper_arm touches in each of 1,000 random configurations; if that is meant, add to the robot file: "
+        'adjacent: {pairs: {platform: {upper_arm: "why they may touch"}}}'
+    )
+    assert result.hint == "leave out pairs that may touch, or give the others smaller spheres"
+    assert ("platform", "upper_arm") in result.blocking_pairs
+
+
+def test_what_is_reached_is_not_searched_for_pairs_that_touch(qiao, monkeypatch):
+    monkeypatch.setattr("ikde.solver.explain.find_always_touching", None)
+    assert ikde.solve(qiao, TARGET).reached
+    assert ikde.solve(qiao, ikde.Target((20.0, 0.0, 1.0)), QUICK).stop_reason == "out_of_reach"
 
 
 def test_a_target_just_outside_the_joint_ranges_names_the_joints_to_widen(qiao):

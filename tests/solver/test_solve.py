@@ -7,6 +7,7 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
+from tests.bare_robot import BARE, platform_to_upper_arm
 from tests.conftest import ROBOTS, random_q
 
 WITH_SPHERES = [name for name in ROBOTS if ikde.load_robot(name).detectors]
@@ -85,6 +86,16 @@ def test_a_robot_without_spheres_is_solved_and_nothing_is_looked_at():
         None,
         False,
     )
+
+
+def test_no_answer_lets_parts_overlap_that_a_bare_body_joins(tmp_path, rng):
+    """Platform and upper arm, with a shoulder in between that has no spheres, measured by hand."""
+    (tmp_path / "bare.yaml").write_text(BARE)
+    robot = ikde.load_robot(tmp_path / "bare.yaml")
+    p_world_tool = ikde.forward(robot, random_q(robot, rng, 40))["tool"][:, :3, 3]
+    rows = ikde.solve_many(robot, ikde.Targets(p_world_tool))
+    assert rows.reached.sum() > 35
+    assert platform_to_upper_arm(rows.q[rows.reached]).min() > 0.01
 
 
 def test_the_same_seed_gives_the_same_bits(qiao):

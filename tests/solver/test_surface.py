@@ -38,8 +38,8 @@ def test_equation_18_misses_a_contact_that_equation_20_finds(qiao):
     assert check_surface(qiao, q, rule="eq. 20", **COARSE).collision
 
 
-def test_a_detector_without_pairs_is_refused(qiao):
-    with pytest.raises(InputError, match="expected a detector with pairs"):
+def test_no_detector_is_refused(qiao):
+    with pytest.raises(InputError, match="expected a detector, got none"):
         check_surface(qiao, qiao.home, "none")
 
 
@@ -58,7 +58,7 @@ def test_many_are_told_apart_on_a_fine_grid(qiao, rng):
 
 
 def test_many_refuse_what_one_refuses(qiao):
-    with pytest.raises(InputError, match="expected a detector with pairs"):
+    with pytest.raises(InputError, match="expected a detector, got none"):
         check_surface_many(qiao, qiao.home[None], "none")
     with pytest.raises(InputError, match="expected one of eq"):
         check_surface_many(qiao, qiao.home[None], rule="eq. 21")

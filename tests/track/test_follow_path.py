@@ -37,9 +37,7 @@ frames:
   post: {parent: world, xyz: [3, 0, 0]}
 tool: mast
 spheres: {round: [{component: mast, from: mast, radius: 0.05}, {component: post, from: post, radius: 0.05}]}
-pairs: {none: {pairs: {}}, post: {pairs: {post: [mast]}}}
-detectors: {nothing: {spheres: round, pairs: none}}
-default_detector: nothing
+pairs: {post: {pairs: {post: [mast]}}}
 """
 
 

@@ -1,0 +1,98 @@
+"""Pairs that touch whatever the joints do are found, and the lines that leave them out load."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.solver.touching import TO_FILL_IN, find_always_touching
+from tests.bare_robot import BARE
+
+FAT = BARE.replace("radius: 0.35", "radius: 0.9")  # the platform reaches the shoulder, and the upper arm with it
+FATTER = BARE.replace("radius: 0.35", "radius: 2.0")
+DECLARED = 'adjacent:\n  pairs:\n    platform: {upper_arm: "made of one casting"}\n'
+
+
+def load(text, tmp_path):
+    path = tmp_path / "robot.yaml"
+    path.write_text(text, encoding="utf-8")
+    return ikde.load_robot(path)
+
+
+def find(robot):
+    return find_always_touching(robot, robot.detector(None))
+
+
+@pytest.mark.parametrize("name", ikde.robot_names())
+def test_no_shipped_robot_touches_itself_always(name):
+    robot = ikde.load_robot(name)
+    assert robot.detector(None) is None or find(robot) is None
+
+
+def test_one_sphere_a_component_is_known_to_touch_always(qiao):
+    """[Qiao2021, section 5.3.1]: even at home. Its pairs are a list of the file, so no line would help."""
+    touching = find_always_touching(qiao, qiao.detector("single"))
+    assert (touching.pairs, touching.lines) == ((("M", "L1"),), ())
+    assert touching.remedy == "take it out of the pair list formula_22"
+
+
+def test_a_pair_that_is_ever_apart_is_not_called_so(tmp_path):
+    assert find(load(BARE, tmp_path)) is None
+
+
+def test_the_safe_distance_counts(tmp_path):
+    robot = load(BARE, tmp_path)
+    far = replace(robot.detector(None), safe_distance_m=10.0)
+    assert find_always_touching(robot, far).pairs == robot.pairs(far)
+
+
+def test_a_pair_that_touches_always_stays_compared(tmp_path):
+    robot = load(FAT, tmp_path)
+    assert ("platform", "upper_arm") in robot.pairs(robot.detector(None))
+    assert str(find(robot)) == "platform - upper_arm touches in each of 1,000 random configurations"
+
+
+def test_the_line_to_add_loads_and_leaves_the_pairs_out(tmp_path):
+    touching = find(load(FATTER, tmp_path))
+    assert touching.remedy == "add to the robot file"
+    (line,) = touching.lines
+    assert line == f'adjacent: {{pairs: {{platform: {{upper_arm: "{TO_FILL_IN}", forearm: "{TO_FILL_IN}"}}}}}}'
+    with pytest.raises(ikde.InputError, match="all 3 pairs are left out"):
+        load(FATTER + line, tmp_path)
+    (line,) = find(load(FAT, tmp_path)).lines
+    assert find(load(FAT + line, tmp_path)) is None
+
+
+def test_what_is_declared_already_keeps_its_reason(tmp_path):
+    touching = find(load(FATTER + DECLARED, tmp_path))
+    assert (touching.pairs, touching.remedy) == (
+        (("platform", "forearm"),),
+        "write under adjacent: pairs: of the robot file",
+    )
+    (line,) = touching.lines
+    assert line == f'platform: {{upper_arm: "made of one casting", forearm: "{TO_FILL_IN}"}}'
+
+
+@pytest.mark.parametrize("name", ["left arm", "a: b", "#1", "é", "[x]", "no", "12", 'say "hi"', "back\\slash", "手腕"])
+def test_names_that_yaml_would_read_otherwise_are_quoted(name, tmp_path):
+    quoted = "'" + name + "'"
+    robot = load(FAT.replace("component: upper_arm", f"component: {quoted}"), tmp_path)
+    (line,) = find(robot).lines
+    again = load(FAT.replace("component: upper_arm", f"component: {quoted}") + line, tmp_path)
+    assert [(pair.a, pair.b) for pair in again.adjacent] == [("platform", name)]
+
+
+def test_configurations_lie_inside_the_limits(tmp_path, monkeypatch):
+    robot, seen = load(BARE, tmp_path), []
+
+    def record(robot, spheres, pairs, q):
+        seen.append(q)
+        return np.ones((len(q), len(pairs)))
+
+    monkeypatch.setattr("ikde.solver.touching.compute_gaps", record)
+    find(robot)
+    drawn = np.concatenate(seen)
+    assert len(drawn) == 1000
+    assert (drawn >= robot.lower).all()
+    assert (drawn <= robot.upper).all()
