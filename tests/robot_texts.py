@@ -159,45 +159,51 @@ class _Draft:
     def _make_detectors(self, file):
         """One detector or several, with spheres small enough for free configurations; none if nothing can touch."""
         safe = float(self.rng.choice([0.0, 0.0, 0.01, 0.05]))
-        extra = {"spheres": self.spheres, "detectors": {"own": {"spheres": "fine", "safe_distance": safe}}}
+        own = {"spheres": "fine", "safe_distance": safe}
+        extra = {"spheres": self.spheres, "detectors": {"own": own}}
         if not Grader(file | extra).compared():
-            if not (pairs := self._find_moving_pairs(file | extra)):
-                return {}
-            extra |= {"pairs": {"listed": {"pairs": _nest(pairs)}}}
-            extra["detectors"]["own"]["pairs"] = "listed"
+            own["pairs"] = "listed"
+            extra["pairs"] = {"listed": {"pairs": self._find_moving_pairs(file | extra)}}
+        wide = {**own, "spheres": "coarse"}
         if self.rng.random() < 0.95:
-            self._make_room(file | extra)
+            self._make_room(file | extra | {"detectors": {"own": own, "wide": wide}})
+        if not Grader(file | extra).compared():
+            return {}
         if "pairs" not in extra:
             extra |= self._list_adjacent(Grader(file | extra))
             extra |= self._add_detectors(file | extra) if self.rng.random() < 0.4 else {}
         return extra
 
-    @staticmethod
-    def _find_moving_pairs(file):
-        """Pairs that lie on two bodies."""
+    def _find_moving_pairs(self, file):
+        """Pairs that lie on two bodies, but those that touch everywhere."""
         bodies = Grader(file).components()
-        return [[a, b] for a, b in combinations(bodies, 2) if bodies[a] != bodies[b]]
+        pairs = [[a, b] for a, b in combinations(bodies, 2) if bodies[a] != bodies[b]]
+        listed = {"pairs": {"listed": {"pairs": _nest(pairs)}}}
+        hits = self._find_hits(Grader(file | listed), "own") if pairs else {}
+        return _nest(pair for pair in pairs if not hits[frozenset(pair)].all())
 
     def _make_room(self, file):
         """Shrink the spheres until enough configurations are free, or for as long as it makes sense."""
-        for _ in range(5):
-            hits = self._find_hits(Grader(file))
-            if 1.0 - np.any(list(hits.values()), axis=0).mean() >= LEAST_FREE:
+        grader = Grader(file)
+        for _ in range(8):
+            hits = [hit for name in ("own", "wide") for hit in self._find_hits(grader, name).values() if not hit.all()]
+            if not hits or 1.0 - np.any(hits, axis=0).mean() >= LEAST_FREE:
                 return
             for row in (*self.spheres["fine"], *self.spheres["coarse"]):
                 row["radius"] *= 0.6
 
     def _list_adjacent(self, grader):
         """What touches nearly everywhere, and now and then another pair; one is left to compare."""
-        hits = self._find_hits(grader)
+        hits = self._find_hits(grader, "own")
         listed = [sorted(pair) for pair, hit in hits.items() if hit.mean() > 0.9 or self.rng.random() < 0.03]
         if not 0 < len(listed) < len(hits):
             return {}
         return {"adjacent": {"pairs": {a: dict.fromkeys(b, "drawn: no harm") for a, b in _nest(listed).items()}}}
 
-    def _find_hits(self, grader):
+    def _find_hits(self, grader, detector):
         Q = np.random.default_rng(0).uniform(grader.lower, grader.upper, (SAMPLES, len(grader.joints)))
-        return {pair: gaps <= grader.safe_distance() for pair, gaps in grader.clearances(Q).items()}
+        safe = grader.safe_distance(detector)
+        return {pair: gaps <= safe for pair, gaps in grader.clearances(Q, detector).items()}
 
     def _add_detectors(self, file):
         """Lists of pairs, one of which includes the other, and a coarse approximation."""
