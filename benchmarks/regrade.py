@@ -17,7 +17,7 @@ import os
 import sys
 import time
 from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -68,9 +68,8 @@ def choose_written(grader: Grader, rng: np.random.Generator) -> dict[str, Any]:
 def run(seeds: range, targets: int) -> list[dict[str, Any]]:
     """All robots, on all cores, told one by one."""
     done = []
-    context, workers = get_context("spawn"), len(os.sched_getaffinity(0))
-    with ProcessPoolExecutor(workers, mp_context=context, max_tasks_per_child=ROBOTS_A_PROCESS) as pool:
-        for robot in pool.map(regrade_robot, seeds, [targets] * len(seeds)):
+    with get_context("spawn").Pool(len(os.sched_getaffinity(0)), maxtasksperchild=ROBOTS_A_PROCESS) as pool:
+        for robot in pool.imap(partial(regrade_robot, targets=targets), seeds):
             done.append(robot)
             show(robot)
     return done

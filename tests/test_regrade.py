@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.io import robot_file
@@ -15,7 +16,7 @@ from tests import regrade, robot_texts
 from tests.asking import account_for_pairs, ask, ask_and_regrade, draw_question, load_text
 from tests.asking import regrade as regrade_answers
 from tests.conftest import random_q
-from tests.regrade import Grader
+from tests.regrade import Grader, find_faults
 from tests.robot_texts import random_robot_text
 
 SHIPPED = [Path(ikde.__file__).parent / "robots" / f"{name}.yaml" for name in ikde.robot_names()]
@@ -195,12 +196,49 @@ WRITTEN = 30
 # ---- the law has teeth
 
 
+FREE, TOUCHING, OUTSIDE = (0.3, 0.2), (0.0, 1.5), (0.3, 1.6)
+
+
+@pytest.mark.parametrize(
+    ("q", "away_m", "turned_rad", "frozen", "fault"),
+    [
+        (FREE, 0.9e-3, 0.9e-2, {"slide": 0.3}, None),
+        (FREE, 1.1e-3, 0.0, {}, "out of position tolerance"),
+        (FREE, np.nan, 0.0, {}, "out of position tolerance"),
+        (FREE, 0.0, 1.1e-2, {}, "out of orientation tolerance"),
+        (FREE, 0.0, 0.0, {"turn": 0.2 + 1e-11}, "frozen joint moved"),
+        (OUTSIDE, 0.0, 0.0, {}, "outside the limits"),
+        (TOUCHING, 0.0, 0.0, {}, "in collision"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["axis", "pose"])
+def test_each_fault_is_told_by_its_name(kind, q, away_m, turned_rad, frozen, fault):
+    grader, Q = Grader.of_text(HAND_MADE.replace("radius: 200", "radius: 490")), np.array([q])
+    R, p = grader.place(Q)["tip"]
+    turned = R @ Rotation.from_rotvec([turned_rad, 0.0, 0.0]).as_matrix()
+    T = np.concatenate([turned, (p + away_m * np.eye(3)[1])[:, :, None]], axis=2)
+    figures = np.column_stack(grader.grade(Q, (np.array([kind]), T)))
+    faults = find_faults(grader, Q, figures, (1e-3, 1e-2), frozen=frozen)
+    assert [name for name, rows in faults.items() if rows.any()] == ([fault] if fault else [])
+
+
 def test_whatever_is_called_reached_and_is_not_is_found():
     grader, robot = grader_and_robot(1)
     question = draw_question(grader, np.random.default_rng(0), 100)
     answers = ask(robot, replace(question, how="many", method="lm", restarts=8))
     lied = regrade_answers(grader, question, replace(answers, reached=np.ones(len(answers.q), dtype=bool)))
     assert len({tuple(fault["q"]) for fault in lied.faults}) == (~answers.reached).sum() > 0
+
+
+@pytest.mark.parametrize("column", range(3))
+def test_a_figure_that_is_not_so_is_found(column):
+    grader, robot = grader_and_robot(0)
+    question = replace(draw_question(grader, np.random.default_rng(0), 9), method="lm", restarts=8, detector=None)
+    answers = ask(robot, question)
+    answers.figures[4, column] += 1e-8
+    assert [fault["fault"] for fault in regrade_answers(grader, question, answers).faults] == [
+        "other figures than told"
+    ]
 
 
 def turn_the_other_way_round(rpy_rad):
