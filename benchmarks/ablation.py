@@ -240,7 +240,7 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
     count, joints = len(targets), len(problem.lower)
     q, score = np.empty((count, joints)), np.empty((count, 2))
     counts, pairs = np.empty((count, COUNTS), dtype=np.int64), np.zeros((count, len(detector.pairs)), dtype=np.int64)
-    settings = (make_ranges(problem), make_descent(problem), seeds, np.uint64(3))
+    settings = (make_ranges(problem), make_descent(problem, "pose"), seeds, np.uint64(3))
     few = min(count, 1000) if is_table else count
     attempts = np.tile([0, 1000], (few, 1))
     lane = (np.arange(count), attempts, q, score, counts, pairs)

@@ -125,7 +125,7 @@ def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int
     problem = make_problem(robot, ikde.SolveSettings(method="lm"), detector=None, near=None, freeze=None)
     module, *tables = load_kernels(robot, problem.detector, kind)
     run = make_loop(module.solve_target)
-    block = flatten_question(make_ranges(problem), make_descent(problem), make_seeds(problem, kind))
+    block = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
     pairs = max(len(robot.pairs(problem.detector)), 1)
     times = np.empty((rounds, len(targets)))
     with np.errstate(over="ignore"):

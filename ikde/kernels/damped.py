@@ -47,10 +47,11 @@ def make_descent_workspace(robot, joints, rows):
 
 @inline_kernel
 def compute_turn(target, index, T_world_tool, out_v):
-    """Rotation from tool to target as axis * 2 sin(angle / 2) in the world, [3]; returns the size of the error in rad.
+    """Rotation from tool to target as axis * 2 sin(angle / 2) in the world, [3]; returns the size of the error.
 
     For a pose from S = R_target R_tool^T: (S - S^T) / 2 is axis * sin(angle), (trace S + 1) / 4 is cos(angle / 2)^2.
-    For an axis it is z_tool x z_target, axis * sin(angle). Both fade near half a turn; the size returned does not.
+    For an axis it is z_tool x z_target, axis * sin(angle). Both fade near half a turn; the size returned grows
+    with the angle from 0 to 2 (`engine.measure_turn` is its twin).
     """
     kind, R, T = target.kind[index], target.T_world_tool[index], T_world_tool
     out_v[0], out_v[1], out_v[2] = 0.0, 0.0, 0.0

@@ -20,6 +20,9 @@ from ikde.solver.plain import compute_gaps
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Bools, Verdicts
 
+Limits = tuple[tuple[float, ...], tuple[float, ...]]
+"""Lower and upper, m or rad."""
+
 AGREEMENT = 1e-11  # m, rad: kernels and plain numpy must agree to this; for a target beyond 1 m relative to it
 
 
@@ -37,6 +40,11 @@ class Figures:
         """The figures of these rows."""
         return Figures(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
+    def put(self, rows: Ints, figures: "Figures") -> None:
+        """Replace the figures of these rows."""
+        for field in fields(self):
+            getattr(self, field.name)[rows] = getattr(figures, field.name)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clearances:
@@ -53,13 +61,14 @@ def compute_figures(
     targets: Targets | Sequence[Target],
     Q: Floats,
     settings: SolveSettings | None = None,
+    limits: Limits | None = None,
 ) -> Figures:
     """Figures of configurations `Q` [T, N] in the robot's own convention, a target each.
 
-    Without `settings` there are no tolerances.
+    Without `settings` there are no tolerances; `limits` in place of the robot's own.
     """
     figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
-    (numbers, whole), asked = pack_grader(robot, detector, settings), pack_targets(targets)
+    (numbers, whole), asked = pack_grader(robot, detector, settings, limits), pack_targets(targets)
     out = (np.ascontiguousarray(Q), figures, pairs, accepted)
     kernels.compute_figures(numbers, whole, asked.kind, asked.T_world_tool, *out)
     return Figures(
@@ -71,11 +80,24 @@ def compute_figures(
     )
 
 
+def make_figures(count: int) -> Figures:
+    """Figures of so many rows, none of which has been graded."""
+    return Figures(
+        position_error_m=np.full(count, np.nan),
+        orientation_error_rad=np.full(count, np.nan),
+        clearance_m=np.full(count, np.nan),
+        closest_pair=np.full(count, -1),
+        accepted=np.zeros(count, dtype=np.bool_),
+    )
+
+
 @lru_cache(maxsize=64)
-def pack_grader(robot: Robot, detector: Detector | None, settings: SolveSettings | None) -> tuple[Floats, Ints]:
+def pack_grader(
+    robot: Robot, detector: Detector | None, settings: SolveSettings | None, limits: Limits | None = None
+) -> tuple[Floats, Ints]:
     """What the grader is told beside targets and configurations; without settings there are no tolerances."""
     terms = Terms(
-        limits=np.array([robot.lower, robot.upper]),
+        limits=np.array(limits or (robot.lower, robot.upper)),
         position_tolerance=float(settings.position_tolerance_m) if settings else np.inf,
         orientation_tolerance=float(settings.orientation_tolerance_rad) if settings else np.inf,
     )

@@ -15,7 +15,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.target import Targets
 from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, explain, stop_from_counts
-from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, compute_figures
+from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
 from ikde.solver.verify import Bools, verify_many
@@ -62,7 +62,7 @@ def grade(
         probe: look into failures by short searches. Plain numpy grades them first.
         verify: which rows plain numpy grades: `"all"`, one stream in 64, or those that are looked into.
     """
-    figures = compute_figures(problem.robot, problem.detector, targets, found.q, problem.settings)
+    figures = found.figures
     streams = np.arange(first_stream, first_stream + len(targets))
     rows = np.flatnonzero(_choose(verify, streams) | (~figures.accepted if probe else False))
     verified, reached = np.ones(len(targets), dtype=bool), figures.accepted

@@ -83,10 +83,9 @@ def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[s
     return {name: float(resolved[robot.joint_names.index(name)]) for name in values}
 
 
-def shrink_tolerances(settings: SolveSettings) -> tuple[float, float]:
-    """Tolerances in m and rad, a hair smaller, so that rounding cannot turn `verify`'s verdict."""
-    position, orientation = settings.position_tolerance_m, settings.orientation_tolerance_rad
-    return position - min(ROUNDING, 0.5 * position), orientation - min(ROUNDING, 0.5 * orientation)
+def shrink(tolerance: float) -> float:
+    """A tolerance a hair smaller, so that rounding cannot turn `verify`'s verdict."""
+    return tolerance - min(ROUNDING, 0.5 * tolerance)
 
 
 def pack_search(problem: Problem) -> SearchArrays:
@@ -94,13 +93,12 @@ def pack_search(problem: Problem) -> SearchArrays:
     settings, knob = problem.settings, problem.settings.knob
     rules = {"reject": REJECT, "feasibility": FEASIBILITY}
     near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
-    position, orientation = shrink_tolerances(settings)
     return SearchArrays(
         ranges=np.array([problem.lower, problem.upper, near]),
         first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
         start_share=float(knob("start_share")),
-        position_tolerance=position,
-        orientation_tolerance=orientation,
+        position_tolerance=shrink(settings.position_tolerance_m),
+        orientation_tolerance=shrink(settings.orientation_tolerance_rad),
         population=int(knob("population")),
         generations=int(knob("generations")),
         strategy=STRATEGIES.index(knob("strategy")),

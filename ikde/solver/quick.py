@@ -32,7 +32,7 @@ class Quick:
     def __init__(self, robot: Robot, settings: SolveSettings, detector: Detector | None, kind: str) -> None:
         problem = make_problem(robot, settings, detector=detector or "none", near=None, freeze=None)
         module, *tables = load_kernels(robot, detector, kind)
-        question = flatten_question(make_ranges(problem), make_descent(problem), make_seeds(problem, kind))
+        question = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
         self._search, self._question = module.solve_target, (*tables, self._kind)

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.kernels.arrays import REACHED, Floats, Ints
+from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
 from ikde.kernels.pose_error import POSE
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.reach import reach_excess_m
@@ -18,11 +18,13 @@ from ikde.model.target import Target, Targets
 from ikde.solver.engines.engine import Engine, Question
 from ikde.solver.engines.found import ENGINES, Found, make_found
 from ikde.solver.problem import Problem
+from ikde.solver.referee import Referee
 from ikde.solver.settings import SolveSettings
 from ikde.solver.stopping import get_brake
 
 FIRST_ATTEMPTS = 300  # of `lm` under `auto`, before `memetic` takes over
 FEW = {"de": 4, "lm": 64, "analytic": 64, "memetic": 1}  # attempts after which who is unreached is asked for proof
+REFUSALS = 16  # of one row by the grader, before the next engine takes over
 HASTY = {"de": 1, "lm": 64, "analytic": 64, "memetic": 1}  # attempts between two looks at the clock: milliseconds
 
 
@@ -39,6 +41,8 @@ def search(
 ) -> Found:
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
+    Reached is what an engine and the grader accept: a refused row goes on with its next attempt, then the next engine.
+
     `attempts` defaults to the settings' restarts, or to a few for a target that is proved out of reach. `spent_s`: what
     is gone of each target's time, if the settings have a timeout.
 
@@ -47,20 +51,23 @@ def search(
     """
     targets = Targets.of(targets)
     found = make_found(problem, len(targets))
+    referee = Referee(problem, targets, found)
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
     question = Question(problem, targets, found, seed=seed, streams=streams)
     for name, budget in _plan(problem, question, attempts):
         rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0) & (found.seconds < left_s))
         if not len(rows):
             break
-        before = found.score[rows].copy()
+        before, spent = found.score[rows].copy(), found.counts[:, ATTEMPTS] - first_attempt
         lanes = _Lanes(make_engine(name, question), found, threads or usable_cores(), left_s)
         few = min(FEW[name], budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         if attempts is None:
             _prove(problem, targets, found)
-        lanes.run(first_attempt + few, first_attempt + np.full(len(targets), budget))
+        lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
+        _go_on(lanes, referee, found, spent, first_attempt + budget)
         found.engine[rows[(found.score[rows] != before).any(axis=1)]] = ENGINES.index(name)
+    referee.refuse()  # also what no engine had time for has figures
     return found
 
 
@@ -154,6 +161,20 @@ class _Lanes:
                 seconds[searched] += (time.perf_counter() - started) / np.count_nonzero(searched)
 
         _on_threads(run, pieces, self._threads, stop)
+
+
+def _go_on(lanes: _Lanes, referee: Referee, found: Found, spent: Ints, last_attempt: int) -> None:
+    """Go on with rows that the grader refuses, each with its next attempt; `spent` [T]: those of other engines."""
+    refused = referee.refuse()
+    for _ in range(REFUSALS):
+        if not len(refused):
+            break
+        begin = found.counts[refused, ATTEMPTS] - spent[refused]
+        for first in np.unique(begin).tolist():
+            last = np.zeros(len(spent), dtype=np.int64)
+            last[refused[begin == first]] = last_attempt
+            lanes.run(first, last)
+        refused = referee.refuse()
 
 
 def _hurry(engine: Engine, count: int) -> None:

@@ -36,7 +36,9 @@ class SolveSettings:
     `memetic`, a DE that adapts itself and is polished; `de`, that of the papers. `auto` takes the fastest that fits and
     falls back on `memetic`; if a knob of the DE is set, it becomes `de`."""
     position_tolerance_m: float = 1e-5
+    """Above 0."""
     orientation_tolerance_rad: float = 1e-4
+    """At most pi: no two orientations are farther apart."""
     restarts: int | None = None
     """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`). Under `auto` it is
     that of the engine that comes last."""
@@ -65,9 +67,9 @@ class SolveSettings:
     `feasibility`: Deb's rules with the penetration depth, inside the selection [Deb2000]."""
 
     def __post_init__(self) -> None:
-        for name in ("position_tolerance_m", "orientation_tolerance_rad"):
+        for name, (is_good, expected) in TOLERANCES.items():
             value = getattr(self, name)
-            require(is_number(value) and bool(0.0 < value < np.inf), name, "a finite number above 0", value)
+            require(is_number(value) and bool(is_good(value)), name, expected, value)
         for name, (is_good, expected) in OPTIONAL.items():
             value = getattr(self, name)
             require(value is None or is_good(value), name, expected, value)
@@ -172,6 +174,10 @@ KNOBS: Mapping[str, Any] = {
 """Those of the DE, with their defaults."""
 HEEDED = {"memetic": ("bounds", "collision")}
 """Knobs that another engine heeds as well."""
+TOLERANCES: Mapping[str, tuple[Callable[[Any], bool], str]] = {
+    "position_tolerance_m": (lambda value: 0.0 < value < np.inf, "a finite number above 0"),
+    "orientation_tolerance_rad": (lambda value: 0.0 < value <= np.pi, "a number above 0, at most pi"),
+}
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "restarts": (is_count(1), "a whole number of at least 1"),
     "timeout_s": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),

@@ -53,6 +53,9 @@ class MotionLimits:
             value = getattr(self, name)
             if value is not None and not 0.0 < value < np.inf:
                 raise InputError(f"expected a finite number above 0, got {value!r}", ("limits", name))
+        if self.orientation_error_rad > np.pi:
+            message = f"expected at most pi, half a turn, got {self.orientation_error_rad!r}"
+            raise InputError(message, ("limits", "orientation_error_rad"))
         if self.farthest_m is not None and self.center is None:
             raise InputError("a largest distance needs the frame that it is measured from", ("limits", "center"))
 

@@ -8,8 +8,8 @@ import pytest
 import ikde
 from ikde.errors import VerificationError
 from ikde.kernels.arrays import COUNTS, REACHED
-from ikde.solver import grade as module
-from ikde.solver.figures import AGREEMENT
+from ikde.solver import referee as module
+from ikde.solver.figures import AGREEMENT, compute_figures
 from ikde.solver.grade import confirm
 from ikde.solver.search import Found
 from ikde.solver.verify import verify
@@ -22,8 +22,8 @@ def lie_about(monkeypatch, figure, by, only=None):
     """Let the kernels' figures be off; `only`: for this target alone."""
     honest = module.compute_figures
 
-    def lying(robot, detector, targets, Q, settings):
-        figures = honest(robot, detector, targets, Q, settings)
+    def lying(robot, detector, targets, Q, settings, limits):
+        figures = honest(robot, detector, targets, Q, settings, limits)
         points = [tuple(target.p_world_tool) for target in targets]
         guilty = np.array([only is None or point == tuple(only.p_world_tool) for point in points])
         return replace(figures, **{figure: getattr(figures, figure) + np.where(guilty, by, 0.0)})
@@ -68,6 +68,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
         engine = np.zeros(len(targets), dtype=np.int64)
         score = np.zeros((len(targets), 2))
         some = {"score": score, "excess_m": nothing, "seconds": nothing, "engine": engine}
+        some["figures"] = compute_figures(qiao, qiao.detector(None), targets, q, QUICK)
         return Found(q=q, counts=counts, pair_counts=pair_counts, **some)
 
     monkeypatch.setattr("ikde.solver.rows.search", boast)

@@ -24,11 +24,12 @@ GOOD = {
     "start_share": (1e-9, 0.5, 1, 1.0),
     "weight": (1e-9, 1, 2.5),
     "position_tolerance_m": (1e-300, 1, 0.5),
-    "orientation_tolerance_rad": (1e-300, 4.0),
+    "orientation_tolerance_rad": (1e-300, 3.0, np.pi),
 }
 NO_NUMBERS = (np.nan, np.inf, -np.inf, -1, "1", True)
 BAD = {
-    **dict.fromkeys(("position_tolerance_m", "orientation_tolerance_rad"), (None, 0, 0.0, *NO_NUMBERS)),
+    "position_tolerance_m": (None, 0, 0.0, *NO_NUMBERS),
+    "orientation_tolerance_rad": (3.15, None, 0, *NO_NUMBERS),
     "weight": (0, 0.0, *NO_NUMBERS),
     "crossover": (1.01, *NO_NUMBERS),
     "start_share": (0, 1.01, *NO_NUMBERS),

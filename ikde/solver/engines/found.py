@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ikde.kernels.arrays import COUNTS, Floats, Ints
+from ikde.solver.figures import Figures, make_figures
 from ikde.solver.problem import Problem
 
 ENGINES = ("de", "lm", "analytic", "memetic")  # in the order of their numbers in `Found.engine`
@@ -21,11 +22,14 @@ class Found:
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
     seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
     engine: Ints  # [T] who answered: index into `ENGINES`
+    figures: Figures  # of `q`, by the grader; what it refuses is not reached
 
     def row(self, index: int) -> "Found":
         """One target's share."""
-        rows = slice(index, index + 1)
-        return Found(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+        rows = np.array([index])
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        figures = columns.pop("figures").take(rows)
+        return Found(figures=figures, **{name: column[rows] for name, column in columns.items()})
 
 
 def make_found(problem: Problem, count: int) -> Found:
@@ -39,4 +43,5 @@ def make_found(problem: Problem, count: int) -> Found:
         excess_m=np.zeros(count),
         seconds=np.zeros(count),
         engine=np.zeros(count, dtype=np.int64),
+        figures=make_figures(count),
     )

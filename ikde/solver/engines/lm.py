@@ -20,11 +20,12 @@ class DampedLeastSquares:
 
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
-        self._settings = make_ranges(problem), make_descent(problem)
-        kinds = np.unique(question.targets.kind).tolist()
-        names = {kind: KINDS[kind] for kind in kinds}
-        self._kernels = {kind: load_kernels(problem.robot, problem.detector, names[kind]) for kind in kinds}
-        self._seeds = {kind: make_seeds(problem, names[kind]) for kind in kinds}
+        names = {kind: KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
+        self._kernels = {kind: load_kernels(problem.robot, problem.detector, name) for kind, name in names.items()}
+        self._settings = {
+            kind: (make_ranges(problem), make_descent(problem, name), make_seeds(problem, name))
+            for kind, name in names.items()
+        }
 
     def prepare(self) -> None:
         """Compile or load what solves one target, or many."""
@@ -37,7 +38,7 @@ class DampedLeastSquares:
         stop = np.minimum(last, first + self.attempts_per_call)
         for kind, (module, robot, detector) in self._kernels.items():
             attempts = asked.attempts(rows, first, stop, kind)
-            settings = (*self._settings, self._seeds[kind])
+            settings = self._settings[kind]
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
                 if len(asked.streams) > FEW:
                     where = (asked.targets, np.array([rows.start, rows.stop]))

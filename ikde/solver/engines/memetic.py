@@ -24,7 +24,7 @@ class Memetic:
             detector._replace(safe_distance=detector.safe_distance + ROUNDING),
         )
         search = pack_search(problem)
-        self._settings = (search, MemeticArrays(), make_descent(problem))
+        self._settings = (search, MemeticArrays(), make_descent(problem, "pose"))  # no step of it looks at a tolerance
 
     def prepare(self) -> None:
         """Compile or load the kernel."""

@@ -1,9 +1,13 @@
 """What engines share: rows that are open, ranges, and settings of damped least squares."""
 
 import numpy as np
+import pytest
 
 import ikde
-from ikde.solver.engines.engine import make_descent, make_ranges
+from ikde.kernels.damped import compute_turn
+from ikde.model.pack import pack_targets
+from ikde.model.rotation import rotation_from_rpy
+from ikde.solver.engines.engine import make_descent, make_ranges, measure_turn
 from ikde.solver.problem import make_problem
 from tests.solver.engines.questions import make_question
 
@@ -28,6 +32,26 @@ def test_ranges_hold_limits_and_the_middle_or_near(qiao):
 
 def test_tolerances_are_a_hair_smaller_than_asked(qiao):
     asked = ikde.SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-3)
-    descent = make_descent(make_problem(qiao, asked, detector=None, near=None, freeze=None))
+    descent = make_descent(make_problem(qiao, asked, detector=None, near=None, freeze=None), "pose")
     assert 0.99e-9 < descent.position_tolerance < 1e-9
-    assert 1e-3 - 2e-12 < descent.orientation_tolerance < 1e-3
+    assert descent.orientation_tolerance == pytest.approx(2.0 * np.sin(0.5e-3) - 1e-12, rel=1e-15)
+
+
+@pytest.mark.parametrize("kind", ["axis", "pose"])
+def test_a_turn_is_measured_as_the_kernel_measures_it(kind, rng):
+    angles = [*rng.uniform(0.0, np.pi, 50), 1e-12, 1e-9, 1e-4, 0.5 * np.pi, 0.5 * np.pi + 1e-9, 3.12]
+    for angle in angles:
+        T = np.eye(4)
+        T[:3, :3] = rotation_from_rpy(np.array([angle, 0.0, 0.0]))
+        extra = {"axis_world_tool": T[:3, 2]} if kind == "axis" else {"R_world_tool": T[:3, :3]}
+        target = pack_targets([ikde.Target(np.zeros(3), **extra)])
+        measured = compute_turn(target, 0, np.eye(4)[:3].copy(), np.empty(3))
+        assert measured == pytest.approx(measure_turn(angle, kind), abs=1e-15, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["axis", "pose"])
+def test_the_measure_of_a_turn_grows_with_its_angle(kind):
+    sizes = [measure_turn(angle, kind) for angle in np.linspace(0.0, np.pi, 10_001)]
+    assert (np.diff(sizes) > 0.0).all()
+    assert sizes[0] == 0.0
+    assert sizes[-1] == pytest.approx(2.0)

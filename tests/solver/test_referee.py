@@ -1,0 +1,111 @@
+"""Reached has one meaning: what an engine calls reached the grader accepts, or the search goes on."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.kernels.arrays import ATTEMPTS, REACHED
+from ikde.model.target import KINDS, Targets
+from ikde.solver import referee as module
+from ikde.solver.plain import compute_frames
+from ikde.solver.problem import make_problem
+from ikde.solver.search import REFUSALS, search
+from ikde.solver.verify import verify_many
+from tests.conftest import random_q
+
+
+def make_targets(robot, kind, count, rng):
+    """What random configurations reach."""
+    Ts = compute_frames(robot, random_q(robot, rng, count))[robot.tool]
+    extra = {"position": {}, "axis": {"axis_world_tool": Ts[:, :3, 2]}, "pose": {"R_world_tool": Ts[:, :3, :3]}}
+    return Targets(Ts[:, :3, 3], **extra[kind])
+
+
+def make(robot, **settings):
+    return make_problem(robot, ikde.SolveSettings(**settings), detector="none", near=None, freeze=None)
+
+
+@pytest.mark.parametrize("method", ["lm", "memetic"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_for_any_tolerance_what_an_engine_calls_reached_is_accepted(kind, method, rng, monkeypatch):
+    monkeypatch.setattr(module.Referee, "refuse", lambda self: np.empty(0, dtype=np.int64))
+    robot = ikde.load_robot("panda")
+    corners = [0.5 * np.pi, 0.5 * np.pi - 1e-9, 0.5 * np.pi + 1e-9, 3.12, np.pi]
+    turns = [*10.0 ** rng.uniform(-9.0, 0.0, 5), *rng.uniform(1.0, np.pi, 6), *corners]
+    for turn in turns:
+        size = float(10.0 ** rng.uniform(-9.0, -0.5))
+        problem = make(robot, method=method, position_tolerance_m=size, orientation_tolerance_rad=float(turn))
+        targets = make_targets(robot, kind, 40 if method == "lm" else 4, rng)
+        found = search(problem, targets, seed=1, streams=range(len(targets)))
+        accepted = verify_many(robot, targets, found.q, problem.settings, None).accepted
+        reached = found.counts[:, REACHED] == 1
+        assert reached.any()
+        assert accepted[reached].all()
+
+
+def test_loose_tolerances_lose_no_target(rng):
+    robot = ikde.load_robot("panda")
+    settings = ikde.SolveSettings(position_tolerance_m=0.1, orientation_tolerance_rad=1.0)
+    rows = ikde.solve_many(robot, make_targets(robot, "pose", 400, rng), settings, detector="none", method="lm")
+    assert rows.reached.all()
+
+
+@pytest.mark.parametrize("turn", [np.pi + 1e-9, 4.0, np.inf, np.nan])
+def test_no_orientation_is_farther_away_than_half_a_turn(turn):
+    with pytest.raises(ikde.InputError, match="at most pi"):
+        ikde.SolveSettings(orientation_tolerance_rad=turn)
+
+
+def refuse(monkeypatch, *rounds):
+    """Let the grader refuse these rows, round after round."""
+    honest, left = module.compute_figures, [set(rows) for rows in rounds]
+
+    def strict(robot, detector, targets, Q, settings, limits):
+        figures = honest(robot, detector, targets, Q, settings, limits)
+        rows = left.pop(0) if left else set()
+        for place, target in enumerate(targets):
+            if round(10.0 * target.p_world_tool[1]) in rows:
+                figures.accepted[place] = False
+        return figures
+
+    monkeypatch.setattr(module, "compute_figures", strict)
+
+
+TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
+
+
+def test_a_refused_row_goes_on_with_its_next_attempt(qiao, monkeypatch):
+    problem = make_problem(qiao, ikde.SolveSettings(method="lm"), detector=None, near=None, freeze=None)
+    plain = search(problem, TARGETS, seed=7, streams=range(5))
+    refuse(monkeypatch, {1, 3}, {3})
+    found = search(problem, TARGETS, seed=7, streams=range(5))
+    assert found.counts[:, REACHED].all()
+    assert (found.counts[:, ATTEMPTS] - plain.counts[:, ATTEMPTS] > 0).tolist() == [False, True, False, True, False]
+    assert (found.q == plain.q).all(axis=1).tolist() == [True, False, True, False, True]
+    after = search(problem, TARGETS[1:2], seed=7, streams=[1], first_attempt=int(plain.counts[1, ATTEMPTS]))
+    assert found.q[1].tobytes() == after.q[0].tobytes()
+
+
+def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, monkeypatch):
+    honest, tried = module.compute_figures, []
+
+    def strict(robot, detector, targets, Q, settings, limits):
+        figures = honest(robot, detector, targets, Q, settings, limits)
+        figures.accepted[:] = False
+        tried.append(len(Q))
+        return figures
+
+    monkeypatch.setattr(module, "compute_figures", strict)
+    found = search(make(qiao, restarts=2), TARGETS[:1], seed=7, streams=[0])
+    assert found.counts[0, REACHED] == 0
+    assert found.counts[0, ATTEMPTS] > REFUSALS
+    assert np.isfinite(found.figures.position_error_m).all()
+
+
+def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(rng):
+    robot = ikde.load_robot("panda")
+    settings = ikde.SolveSettings(position_tolerance_m=1e-16, orientation_tolerance_rad=1e-16, restarts=40, method="lm")
+    rows = ikde.solve_many(robot, make_targets(robot, "pose", 30, rng), settings, detector="none", verify="all")
+    assert 0 < rows.reached.sum() < 30
+    plain = verify_many(robot, rows.targets, rows.q, settings, None)
+    assert plain.accepted[rows.reached].all()
