@@ -39,8 +39,6 @@ def check(
 ) -> None:
     """Print the clearance of every pair of components, worst first. Exits with 1 on self-collision.
 
-    Without a detector nothing is compared: it says so, and exits with 0.
-
     Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
     """
     from ikde.io.robots import load_robot

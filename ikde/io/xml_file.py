@@ -68,7 +68,7 @@ def describe_detector(robot: Robot, detector: Detector | None) -> str:
         return "No collision shapes."
     return (
         f"Collision shapes: the spheres {detector.spheres!r} of the detector {detector.name!r}, a link a component; it "
-        f"looks at {len(robot.pairs(detector))} pairs of components, safe distance {detector.safe_distance_m!r} m."
+        f"compares {len(robot.pairs(detector))} pairs of components, safe distance {detector.safe_distance_m!r} m."
     )
 
 

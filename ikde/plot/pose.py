@@ -104,6 +104,8 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
         for centre, radius in zip(centres, radii, strict=True):
             _draw_sphere(axes, centre, radius, color, label=None if label in labelled else f"{label} spheres")
             labelled.add(label)
+    if not pairs:
+        return f"  ·  detector {detector.name}: no pairs"
     closest = pairs[0]
     a, b = components[closest.a], components[closest.b]
     gaps = compute_sphere_gaps(a, b)

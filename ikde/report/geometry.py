@@ -67,7 +67,9 @@ def check_json(robot: Robot, result: CheckResult, convention: str | None = None)
 def format_check(result: CheckResult, units: Units, *, color: bool = False) -> str:
     """A check for the terminal: the verdict and every pair, worst first."""
     if result.clearance_m is None:
-        return render("no detector: self-collision is not checked", *_outside_line(result.outside_limits), color=color)
+        return render(
+            "no detector, no pairs: nothing was looked at", *_outside_line(result.outside_limits), color=color
+        )
     verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
     head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {plain(result.detector)}"
     if result.safe_distance_m:

@@ -33,8 +33,8 @@ def pair_parts(robot: Robot, detector: Detector | None, units: Units) -> list[An
     told = plain(_describe(robot, detector))
     if detector is None:
         return [told]
-    tables = [_compared_table(robot, detector, units), _left_out_table(robot, detector)]
-    return [told, *_touching_lines(robot, detector), "", *tables]
+    left_out = [_left_out_table(robot, detector)] if robot.left_out_pairs(detector) else []
+    return [told, *_touching_lines(robot, detector), "", _compared_table(robot, detector, units), *left_out]
 
 
 def _describe(robot: Robot, detector: Detector | None) -> str:

@@ -80,28 +80,26 @@ def explain(problem: Problem, target: Target, found: Found, graded: Verification
     if colliding > 0 and not problem.settings.evolves and timeout_s is None:
         counted = _count_pairs(problem, target, seed)
         colliding, blocking = counted if counted[0] else (colliding, blocking)
-    touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
-    if touching is not None:
-        return _never_free(touching, blocking)
-    return _explain_by_probes(problem, target, found, graded, seed, colliding, blocking)
-
-
-def _explain_by_probes(
-    problem: Problem,
-    target: Target,
-    found: Found,
-    graded: Verification,
-    seed: int,
-    colliding: int,
-    blocking: Mapping[tuple[str, str], int],
-) -> Explanation:
-    pairs = problem.robot.pairs(problem.detector)
     probe = _Probe(target, seed, float(found.seconds[0]))
     if colliding == 0 and problem.detector is not None and problem.settings.evolves:
         tested = probe.run(problem.with_settings(collision="reject"))
         colliding, blocking = int(tested.counts[0, COLLIDING]), count_blocking_pairs(pairs, tested.pair_counts[0])
         if tested.counts[0, REACHED]:
             return _spent(found, graded, "more restarts: a search that only tests the best (reject) found a solution")
+    touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
+    if touching is not None:
+        return _never_free(touching, blocking)
+    return _explain_by_remedies(problem, probe, found, graded, colliding, blocking)
+
+
+def _explain_by_remedies(
+    problem: Problem,
+    probe: "_Probe",
+    found: Found,
+    graded: Verification,
+    colliding: int,
+    blocking: Mapping[tuple[str, str], int],
+) -> Explanation:
     remedy = _try_remedies(problem, probe)
     if colliding > 0:
         worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])

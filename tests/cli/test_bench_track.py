@@ -5,6 +5,7 @@ import json
 import pytest
 
 from ikde.bench import tracks
+from ikde.errors import InputError
 from tests.cli.test_track import SPEC
 
 
@@ -28,6 +29,17 @@ def test_methods_are_compared_on_a_page(cli, spec, tmp_path, monkeypatch):
     assert (run["reached_points"], run["drive"]) == (6, "omnidirectional")
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "--methods continuation --drive omnidirectional --quick --out FOLDER" in page
+
+
+def test_a_robot_without_a_detector_is_told_once(cli, spec, tmp_path, monkeypatch):
+    def stop(*_):
+        raise InputError("enough")
+
+    monkeypatch.setattr(tracks, "compare_methods", stop)
+    spec.write_text(SPEC.replace("qiao2021", "qiao2021_dh"))
+    outcome = cli("bench", "track", spec, spec, "--out", tmp_path / "page")
+    assert outcome.err.splitlines()[0] == "ikde: self-collision is not checked: qiao2021_dh has no spheres"
+    assert outcome.err.count("not checked") == 1
 
 
 @pytest.mark.parametrize("methods", ["magic", "", "continuation,magic"])

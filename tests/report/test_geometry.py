@@ -109,4 +109,4 @@ def test_a_safe_distance_is_named(qiao):
 
 def test_no_detector_is_not_called_free(qiao):
     text = format_check(ikde.check(qiao, qiao.home, "none"), M_RAD)
-    assert text == "no detector: self-collision is not checked"
+    assert text == "no detector, no pairs: nothing was looked at"
