@@ -60,6 +60,17 @@ def test_plain_data_is_json(qiao, plan):
         assert json.loads(json.dumps(data, allow_nan=False))["reached_points"] == 20
 
 
+def test_without_a_detector_self_collision_is_not_checked(qiao, plan):
+    motion = make_measured(qiao, detector="none")
+    assert rows_of(motion)["self-collision"] == ("not checked", "")
+    assert "not checked" in format_track(plan, motion)
+    data = track_json(plan, motion)
+    for name in ("detector", "clearance_m", "closest_pair", "certified_clearance_m"):
+        assert data[name] is None
+    assert (data["breaches"]["collision"], data["reached"]) == (None, True)
+    assert "self-collision" not in rows_of(make_measured(qiao))
+
+
 def test_what_does_not_apply_has_no_row(qiao):
     names = [row[0] for row in list_figures(make_measured(qiao, detector="none", orientation="free", speed=None))]
     assert not any(word in name for name in names for word in ("clearance", "orientation", "speed,"))

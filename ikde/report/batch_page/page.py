@@ -10,7 +10,7 @@ from ikde.report.batch_page.cost import make_cost
 from ikde.report.batch_page.graders import make_graders
 from ikde.report.batch_page.missed import make_missed
 from ikde.report.batch_page.recipe import make_again, make_recipe
-from ikde.report.batch_page.success import make_success
+from ikde.report.batch_page.success import CHECKED, make_success
 from ikde.report.markup import code, verbatim
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Block, Notice, Number, Numbers, Page
@@ -86,6 +86,8 @@ def _cost(arm: ArmAnswers) -> list[Number]:
     if attempts:
         numbers.append(Number(fixed(attempts.median, 0), "attempts, median", f"95 % within {fixed(attempts.p95, 0)}"))
     clearance_m = arm.of_reached("clearance_m")
+    if arm.collision_checked is False:
+        numbers.append(Number(CHECKED[False], "self-collision", f"detector {arm.facts.detector}"))
     if clearance_m.size:
         least = f"{significant(1e3 * float(clearance_m.min()))} mm"
         numbers.append(Number(least, "least clearance", f"of the reached, detector {arm.facts.detector}"))

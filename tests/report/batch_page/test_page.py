@@ -61,6 +61,10 @@ def test_one_arm_is_shown_with_its_cost(answers, bare):
     careful = make_batch_page(replace(answers, arms=answers.arms[1:]))
     assert labels(careful) == ["reached", "a solve, median", "attempts, median", "least clearance"]
     assert labels(make_batch_page(bare)) == ["reached", "a solve, median"]
+    free = make_batch_page(replace(answers, arms=answers.arms[:1]))
+    assert labels(free) == ["reached", "a solve, median", "attempts, median", "self-collision"]
+    assert free.lead[-1].items[-1].value == "not checked"
+    assert "not checked" in render_html(free)
 
 
 def test_a_run_without_graders_and_reasons_has_fewer_sections(bare):
