@@ -94,7 +94,8 @@ def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
         told = ", ".join(f"{name} {count} times" for name, count in broken.items() if count)
         return f"[bold red]followed {of}, against its limits[/]: {told}"
     base = trajectory.drive if trajectory.base_joints else FIXED
-    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {base}"
+    unchecked = "" if graded.breaches.collision is not None else ", [yellow]self-collision not checked[/]"
+    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {base}{unchecked}"
 
 
 def list_figures(motion: TrackSummary) -> Iterator[Row]:

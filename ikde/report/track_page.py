@@ -134,7 +134,8 @@ def _headline(motion: TrackSummary) -> list[Block]:
         Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
     ]
     items.append(_make_clearance(motion))
-    items.append(Number(f"{graded.breaches.total}", "limits broken", "of all kinds, at all samples"))
+    kinds = "all kinds" if graded.breaches.collision is not None else "all other kinds"
+    items.append(Number(f"{graded.breaches.total}", "limits broken", f"of {kinds}, at all samples"))
     if len(trajectory.seconds):
         most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
         items.append(

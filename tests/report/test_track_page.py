@@ -73,6 +73,7 @@ def test_without_a_detector_the_page_says_not_checked(qiao, plan):
     page = make_track_page(plan, make_measured(qiao, detector="none"))
     numbers = {item.label: item.value for item in page.lead[-1].items}
     assert numbers["self-collision"] == "not checked"
+    assert page.lead[-1].items[3].note == "of all other kinds, at all samples"
     assert not any("clearance" in label for label in numbers)
     text = render_html(page)
     assert "What collides is black" not in text

@@ -1,4 +1,4 @@
-"""The verdict is the independent check's: a kernel that lies is found out."""
+"""The verdict is the graders': a kernel that lies is found out where plain numpy is asked, and `verified` says where."""
 
 from dataclasses import replace
 

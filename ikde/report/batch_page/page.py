@@ -1,6 +1,7 @@
 """The whole page of a run."""
 
 import shlex
+from collections.abc import Sequence
 
 from ikde.batch.manifest import Manifest
 from ikde.batch.statistics import Rate, compute_spread
@@ -10,7 +11,7 @@ from ikde.report.batch_page.cost import make_cost
 from ikde.report.batch_page.graders import make_graders
 from ikde.report.batch_page.missed import make_missed
 from ikde.report.batch_page.recipe import make_again, make_recipe
-from ikde.report.batch_page.success import CHECKED, make_success
+from ikde.report.batch_page.success import make_success
 from ikde.report.markup import code, verbatim
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Block, Notice, Number, Numbers, Page
@@ -66,14 +67,17 @@ def _headline(run: RunAnswers) -> list[Block]:
     if not run.parts_done:
         return []
     if len(run.arms) == 1:
-        return [Numbers((_reached("reached", run.rate), *_cost(run.arms[0])))]
+        return [Numbers((_reached("reached", run.rate, run.arms), *_cost(run.arms[0])))]
     if len(run.arms) > MOST_NUMBERS:
-        return [Numbers((_reached("reached, over all arms", run.rate),))]
-    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate) for arm in run.arms))]
+        return [Numbers((_reached("reached, over all arms", run.rate, run.arms),))]
+    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate, [arm]) for arm in run.arms))]
 
 
-def _reached(label: str, rate: Rate) -> Number:
-    return Number(format_share(rate), label, f"{rate.count:,} of {rate.total:,} solves")
+def _reached(label: str, rate: Rate, arms: Sequence[ArmAnswers]) -> Number:
+    note, unchecked = f"{rate.count:,} of {rate.total:,} solves", sum(arm.collision_checked is False for arm in arms)
+    if unchecked:
+        note += f", self-collision not checked{f' in {unchecked} of {len(arms)} arms' if unchecked < len(arms) else ''}"
+    return Number(format_share(rate), label, note)
 
 
 def _cost(arm: ArmAnswers) -> list[Number]:
@@ -86,8 +90,6 @@ def _cost(arm: ArmAnswers) -> list[Number]:
     if attempts:
         numbers.append(Number(fixed(attempts.median, 0), "attempts, median", f"95 % within {fixed(attempts.p95, 0)}"))
     clearance_m = arm.of_reached("clearance_m")
-    if arm.collision_checked is False:
-        numbers.append(Number(CHECKED[False], "self-collision", f"detector {arm.facts.detector}"))
     if clearance_m.size:
         least = f"{significant(1e3 * float(clearance_m.min()))} mm"
         numbers.append(Number(least, "least clearance", f"of the reached, detector {arm.facts.detector}"))

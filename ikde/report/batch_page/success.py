@@ -68,7 +68,7 @@ def _make_table(run: RunAnswers) -> Table:
         caption="How many solves reached their target",
         note="Reached: within tolerance, inside the limits and, where that was checked, free of self-collision by the "
         "arm's detector. The kernels' grader decides: code of its own on the same tables as the search. Plain numpy "
-        "grades one stream in 64 and what is explained; where it disagrees, nothing counts as reached. Rates with "
+        "grades one stream in 64 and what is explained; a solve with which it disagrees is not reached. Rates with "
         "Wilson's 95 % interval.",
     )
 
