@@ -176,7 +176,7 @@ def test_a_base_whose_wheels_are_not_known_still_drives_on_arcs(qiao, plan):
 
 def test_a_robot_that_stands_still_has_a_fixed_base(plan):
     motion = make_still(ikde.load_robot("ur5"), detector="none", speed=None)
-    assert format_track(plan, motion).startswith("followed: 20 of 20 points of wave [1], 0.4 s, fixed base\n")
+    assert format_track(plan, motion).startswith("followed: 20 of 20 points of wave [1], 0.4 s, fixed base, self")
 
 
 @pytest.mark.parametrize(("value", "told"), [(0.1749, "0.175"), (2e-12, "2.00e-12"), (1.8e-18, "0"), (0.0, "0")])

@@ -1,4 +1,4 @@
-"""The verdict is the graders': a kernel that lies is found out where plain numpy is asked, and `verified` says where."""
+"""The verdict is the graders': a kernel that lies is found out where plain numpy is asked; `verified` says where."""
 
 from dataclasses import replace
 
