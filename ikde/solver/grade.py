@@ -21,6 +21,7 @@ from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
 from ikde.solver.verify import Bools, MaskedBools, verify_many
 
 Verify = Literal["all", "sample", "none"]
+SPLIT = "met by the last digit: rounding takes it across a tolerance or the safe distance for one of the two graders"
 SAMPLE = 64  # one stream in so many, wherever a batch is cut
 
 
@@ -98,9 +99,10 @@ def confirm(result: SolveResult) -> SolveResult:
     plain, farthest = result.verification, max(1.0, float(np.abs(result.target.p_world_tool).max()))
     names = ["position_error_m", "orientation_error_rad", *(["clearance_m"] if result.clearance_m is not None else [])]
     gap = float(np.max([abs(getattr(result, name) - getattr(plain, name)) for name in names])) / farthest  # keeps NaN
-    if not (gap <= AGREEMENT and (plain.accepted or not result.reached)):
+    if not gap <= AGREEMENT or (result.reached and plain.outside_limits):
         raise _disagreement(gap, result.q)
-    confirmed = replace(result, verified=True)
+    split = {"reached": False, "stop_reason": StopReason.BUDGET, "reason": SPLIT, "hint": None}
+    confirmed = replace(result, verified=True, **(split if result.reached and not plain.accepted else {}))
     confirmed.__dict__["verification"] = plain  # else it would be computed once more
     return confirmed
 

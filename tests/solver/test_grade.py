@@ -1,6 +1,7 @@
 """The verdict is the graders': a kernel that lies is found out where plain numpy is asked; `verified` says where."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -104,3 +105,12 @@ def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
             confirm(replace(result, **{name: getattr(result, name) + 1e-9}))
     with pytest.raises(VerificationError, match="disagree by"):
         confirm(replace(result, q=result.q + 1e-3))
+
+
+def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no_bug(qiao):
+    result = ikde.solve_many(qiao, TARGETS[:1], seed=7, verify="none")[0]
+    tolerance = np.nextafter(result.verification.position_error_m, 0.0)
+    strict = partial(verify, qiao, settings=replace(result.settings, position_tolerance_m=tolerance))
+    confirmed = confirm(replace(result, verify=strict))
+    assert (confirmed.reached, confirmed.verified, confirmed.stop_reason) == (False, True, "budget")
+    assert "rounding" in confirmed.reason
