@@ -38,8 +38,8 @@ class SolveResult:
     """One configuration and everything known about it. The figures are graded on exactly this `q`."""
 
     reached: bool
-    """Within tolerance, inside the limits, and free of self-collision if that was checked (`self_collision`). The
-    kernels' grader decides; where plain numpy graded as well (`verified`) both must accept."""
+    """Within tolerance, inside the limits, and free of self-collision if that was checked: with the detector `"none"`
+    it is not. The kernels' grader decides; where plain numpy graded as well (`verified`) both must accept."""
     stop_reason: StopReason
     reason: str
     """One line: what happened."""

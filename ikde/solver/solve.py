@@ -36,7 +36,7 @@ def solve(
         seed: same seed, same bits. 0 <= seed < 2^64.
         stream: which random stream of the seed; `solve_many` gives its target k stream k.
         method: the engine (`SolveSettings.method`); `"auto"` is ikde's choice.
-        detector: a name, a `Detector`, `"none"`, or None for the robot's default.
+        detector: a name, a `Detector`, `"none"` (self-collision is not checked), or None for the robot's default.
         near: joint values to stay close to: the joint ranges are searched in growing boxes around them.
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
         announce_compile: called once if kernels must be compiled first.

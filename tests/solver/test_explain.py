@@ -9,6 +9,7 @@ import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.reach import reach_excess_m
 from ikde.solver.engines.found import make_found
+from ikde.solver.figures import compute_figures
 from ikde.solver.search import Found
 from tests.bare_robot import BARE
 
@@ -169,6 +170,7 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monk
             "excess_m": nothing,
             "seconds": nothing,
             "engine": np.zeros(1, dtype=np.int64),
+            "figures": compute_figures(qiao, qiao.detector(None), targets, qiao.home[None]),
         }
         return Found(q=qiao.home[None], counts=counts, pair_counts=pair_counts, **some)
 
