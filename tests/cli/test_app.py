@@ -1,6 +1,5 @@
 """The command as a whole: help, version, exit codes, and a process that starts light and ends quietly."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -11,7 +10,6 @@ import typer
 from ikde import __version__
 from ikde.cli.app import UsageError, explain_error
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.output import page_width
 from ikde.errors import FileError, InputError, VerificationError
 from tests.cli.conftest import Outcome
 
@@ -156,11 +154,3 @@ def test_a_reader_that_leaves_early_is_no_error(command):
         process.stdout.close()
         process.wait(timeout=120)
         assert (process.returncode, process.stderr.read()) == (0, "")
-
-
-@pytest.mark.parametrize(("columns", "width"), [(20, 60), (80, 80), (300, 120)])
-def test_a_page_is_as_wide_as_the_terminal_within_reason(monkeypatch, columns, width):
-    monkeypatch.setattr("ikde.cli.output.get_terminal_size", lambda: os.terminal_size((columns, 24)))
-    assert page_width() == 100
-    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    assert page_width() == width
