@@ -33,7 +33,7 @@ class FileError(InputError):
 
 
 class VerificationError(IkdeError):
-    """A kernel and the independent check disagree: a bug in ikde, never a property of the target."""
+    """A kernel and plain numpy disagree: a bug in ikde, never a property of the target."""
 
 
 def format_path(where: tuple[str | int, ...]) -> str:

@@ -53,7 +53,7 @@ def test_a_function_says_what_it_takes(name):
     function = getattr(ikde, name)
     text = inspect.getdoc(function)
     parameters = inspect.signature(function).parameters
-    shared = "Arguments as for `solve`" in text or "Other arguments\nas for `solve`" in text
+    shared = "rguments as for `solve`" in " ".join(text.split())
     if not parameters:
         return
     assert "Args:" in text or shared or all(f"`{parameter}`" in text for parameter in parameters)

@@ -1,6 +1,6 @@
 """What came of one arm of a run, counted part by part."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from ikde.batch.manifest import ArmFacts, Manifest
+from ikde.batch.read import read_verdicts
 from ikde.batch.statistics import Rate, Spread, compute_spread
 
 MOST_LISTED = 1000  # unreached targets of an arm that are kept with name and reason
@@ -37,7 +38,7 @@ class TargetSummary:
     name: str | None
     reached: Rate
     collisions: Mapping[str, Rate]
-    """By grader: how many of the reached solutions it sees in collision."""
+    """By grader: how many of the reached solutions that it checked it sees in collision."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,13 +49,17 @@ class ArmSummary:
     method: str
     detector: str
     reached: Rate
+    collision_checked: int
+    """Solves whose self-collision was checked: all, or none without a detector."""
+    verified: Rate
+    """Of the solves that plain numpy graded as well, those that it agrees with."""
     stop_reasons: Mapping[str, int]
     attempts: Spread | None
     """Of all solves; None if the run keeps no cost."""
     milliseconds: Spread | None
     """Of all solves; None before the first part is finished."""
     collisions: Mapping[str, Rate]
-    """By grader: how many of the reached solutions it sees in collision."""
+    """By grader: how many of the reached solutions that it checked it sees in collision."""
     by_target: tuple[TargetSummary, ...]
     """Each target by itself, if a few were solved repeatedly: then the rates of all together are of these targets
     only."""
@@ -70,17 +75,14 @@ class _Counts:
     name: str | None = None
     solves: int = 0
     reached: int = 0
-    colliding: Counter[str] = field(default_factory=Counter)
+    collisions: dict[str, Rate] = field(default_factory=lambda: defaultdict(lambda: Rate(0, 0)))
 
     def add(self, solutions: pa.Table, graders: tuple[str, ...]) -> None:
         reached = solutions["reached"].to_numpy()
         self.solves += len(solutions)
         self.reached += int(reached.sum())
         for grader in graders:
-            self.colliding[grader] += int((reached & solutions[f"{grader}_collides"].to_numpy()).sum())
-
-    def collisions(self, graders: tuple[str, ...]) -> dict[str, Rate]:
-        return {grader: Rate(self.colliding[grader], self.reached) for grader in graders}
+            self.collisions[grader] += Rate.of(read_verdicts(solutions[f"{grader}_collides"])[reached])
 
 
 class ArmTally:
@@ -92,6 +94,8 @@ class ArmTally:
         self._one_by_one = manifest.repeats > 1 and 2 <= manifest.targets <= MOST_COMPARED
         self._all = _Counts()
         self._of_target: dict[int, _Counts] = {}
+        self._collision_checked = 0
+        self._verified = Rate(0, 0)
         self._stop_reasons: Counter[str] = Counter()
         self._attempts: list[np.ndarray] = []
         self._seconds: list[np.ndarray] = []
@@ -101,6 +105,8 @@ class ArmTally:
     def add(self, solutions: pa.Table, seconds: np.ndarray) -> None:
         """Count one part in."""
         self._all.add(solutions, self._graders)
+        self._collision_checked += len(solutions) - solutions["self_collision"].null_count
+        self._verified += Rate.of(read_verdicts(solutions["verified"]))
         for entry in solutions["stop_reason"].value_counts().to_pylist():
             self._stop_reasons[entry["values"]] += entry["counts"]
         if "attempts" in solutions.column_names:
@@ -117,10 +123,12 @@ class ArmTally:
             method=self._facts.method,
             detector=self._facts.detector,
             reached=Rate(self._all.reached, self._all.solves),
+            collision_checked=self._collision_checked,
+            verified=self._verified,
             stop_reasons=dict(self._stop_reasons.most_common()),
             attempts=compute_spread(_join(self._attempts)),
             milliseconds=compute_spread(_join(self._seconds) * 1e3),
-            collisions=self._all.collisions(self._graders),
+            collisions={grader: self._all.collisions[grader] for grader in self._graders},
             by_target=tuple(self._targets()),
             unreached_targets=len(np.unique(_join(self._missed))),
             listed=tuple(self._listed.values()),
@@ -135,8 +143,8 @@ class ArmTally:
 
     def _targets(self) -> Iterator[TargetSummary]:
         for target, counts in self._of_target.items():
-            reached, collisions = Rate(counts.reached, counts.solves), counts.collisions(self._graders)
-            yield TargetSummary(target=target, name=counts.name, reached=reached, collisions=collisions)
+            reached, collisions = Rate(counts.reached, counts.solves), counts.collisions
+            yield TargetSummary(target=target, name=counts.name, reached=reached, collisions=dict(collisions))
 
     def _list_unreached(self, solutions: pa.Table) -> None:
         """Each target once: the first repeat that missed it, and how many did; it may go on in the next part."""

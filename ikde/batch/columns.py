@@ -14,6 +14,7 @@ from ikde.model.target import KINDS, POSITION
 from ikde.solver.figures import Clearances, Figures, compute_clearances
 from ikde.solver.result import STOP_REASONS
 from ikde.solver.rows import Rows
+from ikde.solver.verify import MaskedBools
 
 Columns = dict[str, Any]
 WORDS = [str(reason) for reason in STOP_REASONS]
@@ -68,7 +69,8 @@ def _identity(arm: str, numbers: Ints, repeats: int, names: pa.Array | Sequence[
 def _verdict(rows: Rows) -> Columns:
     return {
         "reached": pa.array(rows.reached),
-        "verified": pa.array(rows.verified),
+        "self_collision": _verdicts(rows.self_collision),
+        "verified": _verdicts(rows.verified),
         "stop_reason": _coded(rows.stop_reasons, WORDS),
     }
 
@@ -138,7 +140,7 @@ def _target(rows: Rows) -> Columns:
 def _graded(rows: Rows, grader: Detector) -> Columns:
     seen = compute_clearances(rows.problem.robot, grader, rows.q)
     columns = _closest(rows, seen, grader)
-    columns["collides"] = pa.array(seen.collides)
+    columns["collides"] = _verdicts(seen.collides)
     return {f"{grader.name}_{name}": columns[name] for name in ("clearance_m", "collides", "closest_pair")}
 
 
@@ -159,6 +161,11 @@ GROUPS: Mapping[str, Callable[[Rows], Columns]] = {
     "reason": _reason,
     "target": _target,
 }
+
+
+def _verdicts(column: MaskedBools) -> pa.Array:
+    """True, false, or null where nothing was checked."""
+    return pa.array(column.data, mask=np.ma.getmaskarray(column))
 
 
 def _integers(values: Ints) -> pa.Array:

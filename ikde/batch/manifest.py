@@ -16,7 +16,8 @@ from ikde.files.atomic import write_atomically
 MANIFEST = "manifest.json"
 REPORT = "report"  # where `ikde report` puts its page
 REPORT_FILES = ("report.html", "report.md")
-FORMAT = "ikde batch 1"
+FORMAT = "ikde batch 2"
+EARLIER = ("ikde batch 1",)  # `verified` was true where nothing had graded, and there was no `self_collision`
 SHOWN = 3  # differences that are spelt out
 LONGEST = 60  # characters of a value in a message
 
@@ -105,17 +106,24 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run; raises `FileError` for a folder that holds none of ours."""
+    """Read the manifest of a run; raises `FileError` for a folder that holds none of this format."""
     try:
         data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
         if data["format"] != FORMAT:
-            raise ValueError(data["format"])
+            raise _refuse_format(folder, data["format"])
         arms = tuple(ArmFacts(**arm) for arm in data.pop("arms"))
         return Manifest(arms=arms, graders=tuple(data.pop("graders")), **data)
     except OSError as error:
         raise FileError(folder, f"holds no run of ikde: {MANIFEST}: {error.strerror}") from None
     except (ValueError, KeyError, TypeError):
         raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours") from None
+
+
+def _refuse_format(folder: Path, found: Any) -> Exception:
+    """Columns of another format mean something else: parts of both must not be mixed."""
+    if found not in EARLIER:
+        return ValueError(found)
+    return FileError(folder, f"holds a run of an earlier ikde ({found!r}, expected {FORMAT!r}); name another folder")
 
 
 def describe_difference(there: Any, now: Any) -> str:

@@ -4,11 +4,13 @@ from collections.abc import Iterator, Sequence
 from os import PathLike
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 
 from ikde.batch.manifest import Manifest, read_manifest
 from ikde.batch.parts import DAMAGED, SOLUTIONS, TIMING, Part, read_table
 from ikde.errors import FileError
+from ikde.solver.verify import MaskedBools
 
 
 def read_batch(folder: str | PathLike[str], timing: bool = False) -> pa.Table:
@@ -27,6 +29,11 @@ def read_batch(folder: str | PathLike[str], timing: bool = False) -> pa.Table:
     if not tables:
         raise FileError(folder, "no part of this run is finished yet")
     return pa.concat_tables(tables).unify_dictionaries()
+
+
+def read_verdicts(column: pa.ChunkedArray) -> MaskedBools:
+    """A column of verdicts [n], masked where it is null: nothing was checked."""
+    return np.ma.masked_array(column.fill_null(False).to_numpy(), mask=column.is_null().to_numpy())
 
 
 def list_finished(folder: Path, manifest: Manifest) -> Iterator[Part]:

@@ -148,7 +148,7 @@ class OutputEntry(Entry):
     """What the results hold."""
 
     columns: list[ColumnGroup] = list(COLUMN_GROUPS)
-    """Groups of columns besides arm, target, repeat, reached, verified and stop_reason."""
+    """Groups of columns besides arm, target, repeat, reached, self_collision, verified and stop_reason."""
 
 
 class BatchSpec(Entry):

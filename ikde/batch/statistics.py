@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ikde.solver.verify import MaskedBools
+
 Z_95 = 1.959963984540054  # of the standard normal distribution, 95 % lie within +-Z
 
 
@@ -36,6 +38,16 @@ class Rate:
     def interval(self) -> tuple[float, float]:
         """Wilson's 95 % interval."""
         return wilson(self.count, self.total)
+
+    @classmethod
+    def of(cls, verdicts: MaskedBools) -> "Rate":
+        """How many are true of those that were checked; masked ones do not count."""
+        checked = verdicts.compressed()
+        return cls(int(checked.sum()), len(checked))
+
+    def __add__(self, other: "Rate") -> "Rate":
+        """Both counted together."""
+        return Rate(self.count + other.count, self.total + other.total)
 
 
 @dataclass(frozen=True, slots=True)

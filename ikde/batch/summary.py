@@ -63,5 +63,6 @@ def summarise(folder: str | PathLike[str]) -> RunSummary:
 
 
 def _columns(manifest: Manifest) -> list[str]:
-    identity = ["arm", "target", "target_name", "repeat", "reached", "stop_reason", "reason", "attempts"]
-    return [*identity, *(f"{grader}_collides" for grader in manifest.graders)]
+    identity = ["arm", "target", "target_name", "repeat", "stop_reason", "reason", "attempts"]
+    verdicts = ["reached", "self_collision", "verified"]
+    return [*identity, *verdicts, *(f"{grader}_collides" for grader in manifest.graders)]

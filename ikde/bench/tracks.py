@@ -108,7 +108,7 @@ def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item]) -> Itera
 
 
 def measure(motion: TrackSummary) -> dict[str, Any]:
-    """A motion's row of the table; None where there is nothing to measure."""
+    """A motion's row of the table; None where there is nothing to measure or nothing was checked."""
     graded, trajectory = motion.verification, motion.trajectory
     broken, seconds = asdict(graded.breaches), trajectory.seconds
     return {
@@ -120,9 +120,9 @@ def measure(motion: TrackSummary) -> dict[str, Any]:
         "broken": broken,
         "limit_violations": sum(count for name, count in broken.items() if name not in ("error", "collision")),
         "colliding_samples": broken["collision"],
-        "smallest_clearance_mm": _finite(1e3 * graded.clearance_m),
-        "certified_clearance_mm": _finite(1e3 * motion.certificate.clearance_m),
-        "largest_deviation_mm": 1e3 * float(motion.certificate.deviation_m.max(initial=0.0)),
+        "smallest_clearance_mm": _in_mm(graded.clearance_m),
+        "certified_clearance_mm": _in_mm(motion.certificate.clearance_m if motion.certificate else None),
+        "largest_deviation_mm": 1e3 * float(trajectory.deviation_m.max(initial=0.0)),
         "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)),
         "largest_jump_m": motion.largest_step("prismatic"),
         "largest_jump_rad": motion.largest_step("revolute"),
@@ -176,6 +176,10 @@ def _follow_from(plan: TrackPlan, method: TrackMethod, starts: Floats, progress:
 def tell_shortly(stop: TrackStop) -> str:
     """The reason, and the pair or the limit that it names."""
     return f"{stop.reason.value} {'-'.join(stop.pair or (stop.limit or '',))}".strip()
+
+
+def _in_mm(length_m: float | None) -> float | None:
+    return None if length_m is None else 1e3 * length_m
 
 
 def _finite(value: float) -> float | None:

@@ -37,7 +37,9 @@ def check(
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Print the clearance of every pair of components, worst first. Exits with 1 on self-collision.
+    """Print the clearance of every pair of components, worst first.
+
+    Exits with 1 on self-collision, and with 0 where there is none or, as the output says, it was not checked.
 
     Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
     """

@@ -35,7 +35,7 @@ def plot_errors(motion: TrackSummary) -> Any:
         limit = DEG * motion.limits.orientation_error_rad
         y = Axis(label="turned by", unit="deg", log=True)
         panels.append(Panel(y=y, lines=[Line(label="", x=times, y=turn)], bounds=[limit], bound="tolerance"))
-    between = Line(label="", x=_middles(motion), y=MM * motion.certificate.deviation_m)
+    between = Line(label="", x=_middles(motion), y=MM * motion.trajectory.deviation_m)
     panels.append(Panel(y=Axis(label="off path", unit="mm", limits=(0.0, None)), lines=[between]))
     return plot_panels(panels, x=TIME)
 
@@ -90,14 +90,13 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
 
 def plot_clearance(motion: TrackSummary) -> Any:
     """Clearance at the samples, and what it is certain not to fall below between them; None without a detector."""
-    detector, gaps = motion.detector, motion.verification.gaps_m
+    detector, gaps, proof = motion.detector, motion.verification.gaps_m, motion.certificate
     if detector is None or not gaps.size:
         return None
-    times, between = _in_steps(motion, motion.certificate.segment_m[:, None])
-    lines = [
-        Line(label="at samples", x=motion.trajectory.times_s, y=MM * gaps.min(axis=1)),
-        Line(label="certified between them", x=times, y=MM * between[:, 0]),
-    ]
+    lines = [Line(label="at samples", x=motion.trajectory.times_s, y=MM * gaps.min(axis=1))]
+    if proof is not None:
+        times, between = _in_steps(motion, proof.segment_m[:, None])
+        lines.append(Line(label="certified between them", x=times, y=MM * between[:, 0]))
     wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
     y = Axis(label="clearance", unit="mm")
     safe = [MM * detector.safe_distance_m]

@@ -19,6 +19,7 @@ AXES = ("#c00000", "#008000", "#0000c0")
 MESH = 24  # facets around a sphere
 MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
 AXIS_LENGTH_M = 0.15
+NOT_CHECKED = "self-collision not checked"
 
 
 def plot_pose(
@@ -40,12 +41,10 @@ def plot_pose(
     axes: Any = figure.add_axes(MARGINS, projection="3d", computed_zorder=False)
     _set_view(axes, robot, q)
     _draw_skeleton(axes, robot, q)
-    title = f"{robot.name}"
-    if detector is not None:
-        title += _draw_spheres(axes, robot, detector, q)
+    told = NOT_CHECKED if detector is None else _draw_spheres(axes, robot, detector, q)
     if target is not None:
         axes.scatter(*target.p_world_tool, marker="*", s=160, color=TARGET, label="target", depthshade=False, zorder=11)
-    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=title)
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=f"{robot.name}  ·  {told}")
     _set_equal(axes, robot, detector, q, target)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
@@ -105,7 +104,7 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
             _draw_sphere(axes, centre, radius, color, label=None if label in labelled else f"{label} spheres")
             labelled.add(label)
     if not pairs:
-        return f"  ·  detector {detector.name}: no pairs"
+        return f"detector {detector.name}: {NOT_CHECKED}"
     closest = pairs[0]
     a, b = components[closest.a], components[closest.b]
     gaps = compute_sphere_gaps(a, b)
@@ -121,7 +120,7 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
         label=f"closest pair, {text}",
     )
     state = "self-collision" if colliding else "free of self-collision"
-    return f"  ·  detector {detector.name}: {state}"
+    return f"detector {detector.name}: {state}"
 
 
 def base_components(robot: Robot, detector: Detector) -> set[str]:

@@ -15,6 +15,7 @@ from ikde.report.render import make_table, plain, render
 WIDTH = 160
 MOST_NAMED = 20  # unreached targets of an arm
 MOST_TARGETS = 5  # that have rows of their own
+MOST_ARMS = 10  # that are named in a line
 TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
 BYTES = ("B", "kB", "MB", "GB", "TB")
 
@@ -74,6 +75,8 @@ def _arm_json(arm: ArmSummary) -> dict[str, Any]:
         "method": arm.method,
         "detector": arm.detector,
         "reached": _rate_json(arm.reached),
+        "collision_checked": arm.collision_checked,
+        "verified": asdict(arm.verified) if arm.verified.total else None,
         "stop_reasons": dict(arm.stop_reasons),
         "attempts": asdict(arm.attempts) if arm.attempts else None,
         "milliseconds": asdict(arm.milliseconds) if arm.milliseconds else None,
@@ -102,6 +105,9 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
         verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/]"
     else:
         verdict = f"[bold green]all reached[/]: {_count(solves, 'solve')}"
+    unchecked = [plain(arm.name) for arm in summary.arms if arm.collision_checked < arm.reached.total]
+    if unchecked:
+        verdict += f"\n[yellow]self-collision not checked[/]: {_name_arms(unchecked)}"
     tables: list[Any] = [_arm_table(summary.arms)]
     if any(arm.collisions for arm in summary.arms):
         tables.append(_collision_table(summary.arms))
@@ -115,14 +121,20 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
     return render(verdict, *tables, *_list_unreached(summary), *tail, color=color, width=WIDTH)
 
 
+def _name_arms(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_ARMS} more" if len(names) > MOST_ARMS else ""
+    return f"arm{'s' if len(names) > 1 else ''} {', '.join(names[:MOST_ARMS])}{more}"
+
+
 def _arm_table(arms: Iterable[ArmSummary]) -> Any:
     spreads = (">attempts median / p95 / max", ">ms median / p95 / max")
-    table = make_table("arm", "method", "detector", ">reached", ">rate (95 %)", *spreads)
+    table = make_table("arm", "method", "detector", ">reached", ">rate (95 %)", ">plain numpy agrees", *spreads)
     for arm in arms:
         table.add_row(
             *map(plain, (arm.name, arm.method, arm.detector)),
             f"{arm.reached.count:,} / {arm.reached.total:,}",
             format_rate(arm.reached),
+            f"{arm.verified.count:,} / {arm.verified.total:,}" if arm.verified.total else "not checked",
             _format_spread(arm.attempts, "{:,.0f}".format),
             _format_spread(arm.milliseconds, significant),
         )

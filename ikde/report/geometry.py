@@ -47,7 +47,7 @@ def _outside_line(outside: tuple[str, ...]) -> list[str]:
 
 
 def check_json(robot: Robot, result: CheckResult, convention: str | None = None) -> dict[str, Any]:
-    """A check as plain data; pairs worst first, lengths in m, q in the convention asked for."""
+    """A check as plain data; pairs worst first, lengths in m, q in the convention asked for; None: not checked."""
     return {
         "robot": robot.name,
         "detector": result.detector,
@@ -67,9 +67,8 @@ def check_json(robot: Robot, result: CheckResult, convention: str | None = None)
 def format_check(result: CheckResult, units: Units, *, color: bool = False) -> str:
     """A check for the terminal: the verdict and every pair, worst first."""
     if result.clearance_m is None:
-        return render(
-            "no detector, no pairs: nothing was looked at", *_outside_line(result.outside_limits), color=color
-        )
+        verdict = f"[bold yellow]self-collision not checked[/]: detector {plain(result.detector)}"
+        return render(verdict, *_outside_line(result.outside_limits), color=color)
     verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
     head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {plain(result.detector)}"
     if result.safe_distance_m:

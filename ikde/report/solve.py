@@ -94,17 +94,25 @@ def describe_engine(result: SolveResult) -> str:
     return ENGINE_TEXTS.get(result.method, own)
 
 
+GRADERS = {
+    True: "by kernels, confirmed by plain numpy",
+    False: "by kernels; plain numpy disagrees",
+    None: "by kernels alone",
+}
+COLLISIONS = {True: "yes", False: "no", None: "not checked"}
+
+
 def _figure_table(robot: Robot, result: SolveResult, units: Units) -> Any:
-    table = make_table("graded by separate code", "")
+    table = make_table("graded", GRADERS[result.verified])
     table.add_row("position error", units.format_error(result.position_error_m))
     asked = result.target.kind != "position"
     table.add_row("orientation error", units.format_angle(result.orientation_error_rad) if asked else "not asked for")
     if result.clearance_m is None or result.closest_pair is None:
-        table.add_row("clearance", "not looked at (detector none)")
+        table.add_row("clearance", plain(f"not checked (detector {result.detector})"))
     else:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
         table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
-    table.add_row("self-collision", "yes" if result.self_collision else "no")
+    table.add_row("self-collision", COLLISIONS[result.self_collision])
     table.add_row("outside limits", plain(", ".join(result.verification.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
     table.add_row(

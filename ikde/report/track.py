@@ -24,10 +24,9 @@ Row = tuple[str, str, str]
 
 
 def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
-    """A motion's figures as plain data: m, rad, s; None where there is nothing to measure."""
+    """A motion's figures as plain data: m, rad, s; None where there is nothing to measure or nothing was checked."""
     trajectory, graded, certificate = motion.trajectory, motion.verification, motion.certificate
     stop, steps_s = trajectory.stop, trajectory.seconds
-    detected = motion.detector is not None and motion.started
     turned, wheeled = trajectory.path.orientation != "free", trajectory.drive == "differential"
     return {
         "ikde": __version__,
@@ -59,11 +58,11 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "least_range_left": _worst_json(motion.range_left),
         "largest_slide_m": motion.largest_step("prismatic"),
         "largest_turn_rad": motion.largest_step("revolute"),
-        "clearance_m": _finite(graded.clearance_m) if detected else None,
+        "clearance_m": graded.clearance_m,
         "closest_pair": list(motion.closest_pair) if motion.closest_pair else None,
-        "certified_clearance_m": _finite(certificate.clearance_m) if detected else None,
-        "largest_deviation_m": float(certificate.deviation_m.max(initial=0.0)),
-        "largest_deviation_rad": float(certificate.deviation_rad.max(initial=0.0)) if turned else None,
+        "certified_clearance_m": None if certificate is None else certificate.clearance_m,
+        "largest_deviation_m": float(trajectory.deviation_m.max(initial=0.0)),
+        "largest_deviation_rad": float(trajectory.deviation_rad.max(initial=0.0)) if turned else None,
         "largest_distance_m": motion.farthest_m,
         "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)) if wheeled else None,
         "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
@@ -95,7 +94,8 @@ def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
         told = ", ".join(f"{name} {count} times" for name, count in broken.items() if count)
         return f"[bold red]followed {of}, against its limits[/]: {told}"
     base = trajectory.drive if trajectory.base_joints else FIXED
-    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {base}"
+    unchecked = "" if graded.breaches.collision is not None else ", [yellow]self-collision not checked[/]"
+    return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {base}{unchecked}"
 
 
 def list_figures(motion: TrackSummary) -> Iterator[Row]:
@@ -111,11 +111,10 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
         yield "largest orientation error", f"{_tiny(turn)} rad", f"{limits.orientation_error_rad:g} rad"
     yield from _list_limits(motion)
     yield from _list_clearance(motion)
-    certificate = motion.certificate
-    if len(certificate.deviation_m):
-        off = f"{significant(MM * float(certificate.deviation_m.max()))} mm"
+    if len(trajectory.deviation_m):
+        off = f"{significant(MM * float(trajectory.deviation_m.max()))} mm"
         if trajectory.path.orientation != "free":
-            off += f", {_tiny(float(certificate.deviation_rad.max()))} rad"
+            off += f", {_tiny(float(trajectory.deviation_rad.max()))} rad"
         yield "tool off the path half-way between samples, at most", off, ""
     if trajectory.drive == "differential":
         yield "base sliding sideways, at most", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
@@ -158,16 +157,16 @@ def _list_limits(motion: TrackSummary) -> Iterator[Row]:
 
 def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     """At the samples and between them."""
-    detector, pair = motion.detector, motion.closest_pair
-    if detector is None or pair is None:
+    detector, pair, clearance_m = motion.detector, motion.closest_pair, motion.verification.clearance_m
+    if detector is None or pair is None or clearance_m is None:
+        yield "self-collision", "not checked", ""
         return
-    graded, count = motion.verification, motion.verification.breaches.collision
+    count = motion.verification.breaches.collision
     hits = f", {count} collide" if count else ""
     safe = f"above {MM * detector.safe_distance_m:g} mm"
-    yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(graded.clearance_m)} mm", safe
-    certified = motion.certificate.clearance_m
-    if np.isfinite(certified):
-        yield "clearance between samples, certified", f"{gap_mm(certified)} mm", "above 0 mm"
+    yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe
+    if motion.certificate is not None:
+        yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", "above 0 mm"
 
 
 def _list_files(files: tuple[Path, ...]) -> list[str]:

@@ -123,7 +123,10 @@ def _worst(runs: Sequence[Row], key: str, pick: Callable[..., float], write: Cal
 
 
 def _span(runs: Sequence[Row], key: str) -> str:
-    low, high = min(run[key] for run in runs), max(run[key] for run in runs)
+    values = [run[key] for run in runs if run[key] is not None]
+    if not values:
+        return "not checked"
+    low, high = min(values), max(values)
     return f"{low:,}" if low == high else f"{low:,}–{high:,}"
 
 

@@ -79,7 +79,7 @@ def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | N
 def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
     """The robot at eight moments, as a picture."""
     image = to_png(plot_moments(motion), dpi=dpi)
-    caption = "Arm red, base blue, what collides black; the path grey, what was run of it orange."
+    caption = f"Arm red, base blue; the path grey, what was run of it orange. {_tell_black(motion)}"
     return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
 
 
@@ -133,10 +133,9 @@ def _headline(motion: TrackSummary) -> list[Block]:
         Number(f"{motion.met_points} of {trajectory.path.samples}", "points reached"),
         Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
     ]
-    if motion.detector is not None and np.isfinite(graded.clearance_m):
-        certain = f"{gap_mm(motion.certificate.clearance_m, 1)} mm certified between"
-        items.append(Number(f"{gap_mm(graded.clearance_m, 1)} mm", "least clearance at samples", certain))
-    items.append(Number(f"{graded.breaches.total}", "limits broken", "of all kinds, at all samples"))
+    items.append(_make_clearance(motion))
+    kinds = "all kinds" if graded.breaches.collision is not None else "all other kinds"
+    items.append(Number(f"{graded.breaches.total}", "limits broken", f"of {kinds}, at all samples"))
     if len(trajectory.seconds):
         most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
         items.append(
@@ -145,8 +144,21 @@ def _headline(motion: TrackSummary) -> list[Block]:
     return [Numbers(tuple(items))]
 
 
+def _make_clearance(motion: TrackSummary) -> Number:
+    """The least clearance, and what is certain between samples."""
+    clearance_m, proof = motion.verification.clearance_m, motion.certificate
+    if clearance_m is None:
+        return Number("not checked", "self-collision", "no detector")
+    certain = f"{gap_mm(proof.clearance_m, 1)} mm certified between" if proof else ""
+    return Number(f"{gap_mm(clearance_m, 1)} mm", "least clearance at samples", certain)
+
+
+def _tell_black(motion: TrackSummary) -> str:
+    return "What collides is black." if motion.detector else "Self-collision was not checked."
+
+
 def _list_sections(motion: TrackSummary) -> list[Section]:
-    moving = animate(motion, caption="Play it, or drag the slider. What collides is black.")
+    moving = animate(motion, caption=f"Play it, or drag the slider. {_tell_black(motion)}")
     path = PATH if motion.trajectory.base_joints else PATH_ALONE
     groups = [
         ("Motion", [moving, draw_moments(motion)]),

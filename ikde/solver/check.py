@@ -20,11 +20,12 @@ class PairClearance:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CheckResult:
-    """What a detector sees. Without a detector there are no pairs and the clearance is None."""
+    """What a detector sees. Without a detector there are no pairs; collision and clearance are None."""
 
     q: Floats
     """[N] in the robot's own convention, m and rad."""
-    collision: bool
+    collision: bool | None
+    """None: not checked, no pair was compared."""
     clearance_m: float | None
     pairs: tuple[PairClearance, ...]
     """Every pair of the detector, worst first."""
@@ -53,7 +54,7 @@ def check(
     pairs = compute_pairs(robot, chosen, values) if chosen else ()
     return CheckResult(
         q=values,
-        collision=any(pair.collides for pair in pairs),
+        collision=any(pair.collides for pair in pairs) if pairs else None,
         clearance_m=pairs[0].clearance_m if pairs else None,
         pairs=pairs,
         detector=chosen.name if chosen else "none",

@@ -18,7 +18,7 @@ from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_gaps
 from ikde.solver.settings import SolveSettings
-from ikde.solver.verify import Bools, Verdicts
+from ikde.solver.verify import Bools, MaskedBools, Verdicts
 
 Limits = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper, m or rad."""
@@ -34,7 +34,7 @@ class Figures:
     orientation_error_rad: Floats  # [T]
     clearance_m: Floats  # [T]; inf without pairs
     closest_pair: Ints  # [T] index into the detector's pairs; -1 without
-    accepted: Bools  # [T] within both tolerances, inside all limits, free of self-collision
+    accepted: Bools  # [T] within both tolerances, inside all limits, and above the safe distance
 
     def take(self, rows: Ints) -> "Figures":
         """The figures of these rows."""
@@ -52,7 +52,7 @@ class Clearances:
 
     clearance_m: Floats  # [K]
     closest_pair: Ints  # [K] index into the detector's pairs
-    collides: np.ndarray  # [K]
+    collides: MaskedBools  # [K]; masked without pairs
 
 
 def compute_figures(
@@ -118,8 +118,14 @@ def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearance
     return Clearances(
         clearance_m=figures.clearance_m,
         closest_pair=figures.closest_pair,
-        collides=figures.clearance_m <= detector.safe_distance_m,
+        collides=judge_clearances(figures, detector),
     )
+
+
+def judge_clearances(figures: Figures, detector: Detector | None) -> MaskedBools:
+    """Whether configurations collide [T], by their clearance; masked where no pair was compared: not checked."""
+    collides = ~(figures.clearance_m > (detector.safe_distance_m if detector else 0.0))
+    return np.ma.masked_array(collides, mask=figures.closest_pair < 0)
 
 
 def compute_disagreement(targets: Targets | Sequence[Target], figures: Figures, verdicts: Verdicts) -> Floats:

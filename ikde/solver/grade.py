@@ -1,11 +1,11 @@
 """Grade and explain what the kernels found, on exactly the returned q.
 
-The figures and the verdict of every row are those of a grader that shares no code with what searches; plain numpy
-grades again, every row or a sample, and must agree to 1e-11.
+The figures and the verdict of every row are the kernels' grader's (`kernels/figures.py`); plain numpy grades again,
+every row or a sample, and must agree to 1e-11. What each shares with the search stands in docs/design.md.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -15,10 +15,10 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.target import Targets
 from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, explain, stop_from_counts
-from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement
+from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, judge_clearances
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
-from ikde.solver.verify import Bools, verify_many
+from ikde.solver.verify import Bools, MaskedBools, verify_many
 
 Verify = Literal["all", "sample", "none"]
 SAMPLE = 64  # one stream in so many, wherever a batch is cut
@@ -29,10 +29,12 @@ class Graded:
     """The grades of T rows, whether they agree, and why rows ended."""
 
     figures: Figures
-    verified: Bools
-    """[T] False where plain numpy disagrees."""
+    self_collision: MaskedBools
+    """[T] masked where it was not checked."""
+    verified: MaskedBools
+    """[T] whether plain numpy agrees; masked where it was not asked."""
     reached: Bools
-    """[T] accepted by all who graded it, and verified."""
+    """[T] accepted by all who graded it, and nobody disagrees."""
     stop_reasons: Ints
     """[T] index into `STOP_REASONS`."""
     explanations: Mapping[int, Explanation]
@@ -65,7 +67,8 @@ def grade(
     figures = found.figures
     streams = np.arange(first_stream, first_stream + len(targets))
     rows = np.flatnonzero(_choose(verify, streams) | (~figures.accepted if probe else False))
-    verified, reached = np.ones(len(targets), dtype=bool), figures.accepted
+    verified = np.ma.masked_array(np.zeros(len(targets), dtype=bool), mask=True)
+    reached = figures.accepted.copy()
     explanations: dict[int, Explanation] = {}
     if rows.size:
         asked, Q = targets.take(rows), found.q[rows]
@@ -73,17 +76,16 @@ def grade(
         gaps = compute_disagreement(asked, figures.take(rows), verdicts)
         if strict:
             _refuse(gaps, Q)
-        verified[rows] = gaps <= AGREEMENT  # False for NaN
-        reached = figures.accepted & verified
-        reached[rows] &= verdicts.accepted
-        told = zip(rows.tolist(), gaps.tolist(), strict=True)
-        explanations = {row: _unverified(gap) for row, gap in told if not verified[row]}
+        verified[rows] = agrees = gaps <= AGREEMENT  # False for NaN
+        reached[rows] &= agrees & verdicts.accepted
+        explanations = {int(rows[place]): _unverified(gaps[place]) for place in np.flatnonzero(~agrees)}
         if probe:
-            for place in np.flatnonzero((verified & ~reached)[rows]).tolist():
+            for place in np.flatnonzero(agrees & ~reached[rows]).tolist():
                 row, graded = int(rows[place]), verdicts.row(place)
                 explanations[row] = explain(problem, targets[row], found.row(row), graded, seed)
     return Graded(
         figures=figures,
+        self_collision=judge_clearances(figures, problem.detector),
         verified=verified,
         reached=reached,
         stop_reasons=_stop_reasons(problem, found, reached, explanations),
@@ -92,13 +94,15 @@ def grade(
 
 
 def confirm(result: SolveResult) -> SolveResult:
-    """The result itself; raises `VerificationError` if plain numpy does not see on its `q` what it says."""
+    """The result, verified; raises `VerificationError` if plain numpy does not see on its `q` what it says."""
     plain, farthest = result.verification, max(1.0, float(np.abs(result.target.p_world_tool).max()))
     names = ["position_error_m", "orientation_error_rad", *(["clearance_m"] if result.clearance_m is not None else [])]
     gap = float(np.max([abs(getattr(result, name) - getattr(plain, name)) for name in names])) / farthest  # keeps NaN
     if not (gap <= AGREEMENT and (plain.accepted or not result.reached)):
         raise _disagreement(gap, result.q)
-    return result
+    confirmed = replace(result, verified=True)
+    confirmed.__dict__["verification"] = plain  # else it would be computed once more
+    return confirmed
 
 
 def _choose(verify: Verify, streams: Ints) -> Bools:

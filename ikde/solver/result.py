@@ -38,6 +38,8 @@ class SolveResult:
     """One configuration and everything known about it. The figures are graded on exactly this `q`."""
 
     reached: bool
+    """Within tolerance, inside the limits, and free of self-collision if that was checked (`self_collision`). The
+    kernels' grader decides; where plain numpy graded as well (`verified`) both must accept."""
     stop_reason: StopReason
     reason: str
     """One line: what happened."""
@@ -55,11 +57,11 @@ class SolveResult:
     """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
     closest_pair: tuple[str, str] | None
     """The two components that the clearance lies between."""
-    self_collision: bool
-    """True if the clearance is not above the safe distance."""
-    verified: bool
-    """False if `verify` was asked about this `q` and does not agree with the figures to 1e-11: a bug, which raises, or
-    in bulk is recorded here."""
+    self_collision: bool | None
+    """True if the clearance is not above the safe distance; None: not checked, there is no detector."""
+    verified: bool | None
+    """True: plain numpy graded exactly this `q` and agrees with the figures to 1e-11. False: it does not, a bug, which
+    raises, or in bulk is recorded here. None: it was not asked; asking for `verification` later does not change it."""
     method: str
     """The engine that answered."""
     settings: SolveSettings
@@ -94,5 +96,5 @@ class SolveResult:
 
 def reached_reason(detector: Detector | None) -> str:
     """One line for a target that was reached."""
-    free = "free of self-collision" if detector else "self-collision not looked at"
+    free = "free of self-collision" if detector else "self-collision not checked"
     return f"within tolerance, inside the limits, {free}"

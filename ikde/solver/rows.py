@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
@@ -13,7 +15,7 @@ from ikde.solver.grade import Graded, Verify, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason, reached_reason
 from ikde.solver.search import search
-from ikde.solver.verify import Bools, verify
+from ikde.solver.verify import Bools, MaskedBools, verify
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,12 +37,20 @@ class Rows:
 
     @property
     def reached(self) -> Bools:
-        """Within tolerance, inside the limits, free of collision, and nobody disagrees [T]."""
+        """Within tolerance, inside the limits, and free of self-collision where that was checked [T].
+
+        The kernels' grader decides; where plain numpy graded as well (`verified`) both must accept.
+        """
         return self.graded.reached
 
     @property
-    def verified(self) -> Bools:
-        """False where plain numpy was asked and does not agree to 1e-11 [T]."""
+    def self_collision(self) -> MaskedBools:
+        """True where the clearance is not above the safe distance [T]; masked without a detector: not checked."""
+        return self.graded.self_collision
+
+    @property
+    def verified(self) -> MaskedBools:
+        """True where plain numpy agrees to 1e-11, False where it does not [T]; masked where it was not asked."""
         return self.graded.verified
 
     @property
@@ -128,7 +138,6 @@ class Rows:
         """One row with everything known about it."""
         problem, story, figures = self.problem, self.explanation(index), self.graded.figures
         pairs, closest = problem.robot.pairs(problem.detector), int(figures.closest_pair[index])
-        clearance_m = float(figures.clearance_m[index])
         q = self.q[index].copy()
         q.setflags(write=False)
         return SolveResult(
@@ -141,10 +150,10 @@ class Rows:
             target=self.targets[index],
             position_error_m=float(figures.position_error_m[index]),
             orientation_error_rad=float(figures.orientation_error_rad[index]),
-            clearance_m=clearance_m if closest >= 0 else None,
+            clearance_m=float(figures.clearance_m[index]) if closest >= 0 else None,
             closest_pair=pairs[closest] if closest >= 0 else None,
-            self_collision=problem.detector is not None and clearance_m <= problem.detector.safe_distance_m,
-            verified=bool(self.verified[index]),
+            self_collision=_verdict(self.self_collision, index),
+            verified=_verdict(self.verified, index),
             method=ENGINES[self.engines[index]],
             settings=problem.settings,
             detector=problem.detector.name if problem.detector else "none",
@@ -158,6 +167,12 @@ class Rows:
             compile_seconds=self.compile_seconds,
             verify=partial(verify, problem.robot, settings=problem.settings, detector=problem.detector or "none"),
         )
+
+
+def _verdict(column: MaskedBools, index: int) -> bool | None:
+    """One of a column; None where it is masked."""
+    value = column[index]
+    return None if value is np.ma.masked else bool(value)
 
 
 def solve_rows(

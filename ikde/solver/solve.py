@@ -42,8 +42,9 @@ def solve(
         announce_compile: called once if kernels must be compiled first.
 
     Returns:
-        The solution, or the best configuration found with the reason; graded by code that shares nothing with the
-        search, and by plain numpy where it is not reached or `result.verification` is asked for.
+        The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
+        where plain numpy was not asked: of what `lm` reaches by kernels written for the robot. `result.verification`
+        asks it. docs/design.md tells what each grader shares with the search.
 
     Raises:
         InputError: for what does not fit the robot.
@@ -78,9 +79,9 @@ def solve_many(
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
     `verify` says whose answers plain numpy grades as well: `"all"`, `"sample"` (one in 64, and every unreached one that
-    is explained), or `"none"`. A disagreement does not raise: that result is not reached and not `verified`. Without
-    `explain_failures` an unreached target is told from its counts alone, which costs nothing. Other arguments
-    as for `solve`.
+    is explained), or `"none"`; `verified` is masked where it was not asked. A disagreement does not raise: that result
+    is not reached, and `verified` is False. Without `explain_failures` an unreached target is told from its counts
+    alone, which costs nothing. Other arguments as for `solve`.
 
     Returns:
         A sequence of `SolveResult` whose columns are arrays: `q` [T, N], `reached` [T], `clearance_m` [T] and so on.

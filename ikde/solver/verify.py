@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,8 @@ from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.settings import SolveSettings
 
 Bools = NDArray[np.bool_]
+MaskedBools = np.ma.MaskedArray[Any, np.dtype[np.bool_]]
+"""A column of verdicts, masked where nothing was checked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,13 +31,14 @@ class Verification:
     clearance_m: float | None
     """None without a detector."""
     closest_pair: tuple[str, str] | None
-    self_collision: bool
+    self_collision: bool | None
+    """None: not checked, no pair was compared."""
     colliding_pairs: tuple[tuple[str, str], ...]
     """Worst first."""
     outside_limits: tuple[str, ...]
     within_tolerance: bool
     accepted: bool
-    """Within both tolerances, inside all limits, free of self-collision."""
+    """Within both tolerances, inside all limits, and free of self-collision if that was checked."""
     family: str | None
     """How a UR-type arm holds itself: shoulder/elbow/wrist, such as `left/up/no flip`; None for other arms."""
 
@@ -71,7 +75,7 @@ class Verdicts:
             orientation_error_rad=float(self.orientation_error_rad[index]),
             clearance_m=float(gaps[worst_first[0]]) if pairs else None,
             closest_pair=pairs[worst_first[0]] if pairs else None,
-            self_collision=bool(colliding),
+            self_collision=bool(colliding) if pairs else None,
             colliding_pairs=colliding,
             outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
             within_tolerance=bool(self.within_tolerance[index]),

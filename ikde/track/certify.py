@@ -28,13 +28,9 @@ class Certificate:
     """What is certain about the motion between its samples."""
 
     clearance_m: float
-    """No gap of the motion is smaller, at any moment; inf without a pair."""
+    """No gap of the motion is smaller, at any moment."""
     segment_m: Floats
     """[M] the same, of each segment."""
-    deviation_m: Floats
-    """[M] distance of the tool from the path half-way between samples."""
-    deviation_rad: Floats
-    """[M] the same of its orientation, of what the path asks for."""
 
     @property
     def is_free(self) -> bool:
@@ -42,16 +38,12 @@ class Certificate:
         return bool(self.clearance_m > 0.0)
 
 
-def certify(robot: Robot, path: ToolPath, q: Floats, *, drive: str, detector: Detector | None) -> Certificate:
-    """Bound the clearance of the motion through `q` [M + 1, N], and measure the tool at its mid-points."""
+def certify(robot: Robot, q: Floats, detector: Detector | None) -> Certificate | None:
+    """Bound the clearance of the motion through `q` [M + 1, N]; None without a pair or a segment: not checked."""
+    if len(q) < 2 or not robot.pairs(detector):
+        return None
     segments = bound_segments(robot, detector, q)
-    position, turn = measure_deviation(robot, path, q, drive)
-    return Certificate(
-        clearance_m=float(segments.min(initial=np.inf)),
-        segment_m=segments,
-        deviation_m=position,
-        deviation_rad=turn,
-    )
+    return Certificate(clearance_m=float(segments.min()), segment_m=segments)
 
 
 def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> Floats:

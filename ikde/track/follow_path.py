@@ -11,7 +11,7 @@ from ikde.model.robot import Detector, Robot
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
-from ikde.track.certify import certify
+from ikde.track.certify import certify, measure_deviation
 from ikde.track.continuation import Continuation
 from ikde.track.courses import ContinuationSettings
 from ikde.track.drive import choose_drive
@@ -39,7 +39,7 @@ def follow_path(
     settings: TrackSettings | None = None,
     announce_compile: Callable[[], None] | None = None,
 ) -> Trajectory:
-    """Follow the path inside all limits, free of self-collision at the samples and between them.
+    """Follow the path inside all limits, free of self-collision at the samples and between them if there is a detector.
 
     Args:
         robot: the robot.
@@ -95,6 +95,7 @@ def grade_motion(
     """The motion with what the judge and the certificate say about it."""
     q = followed.q
     graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
+    deviation_m, deviation_rad = measure_deviation(robot, path, q, drive)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
         path=path,
@@ -111,7 +112,9 @@ def grade_motion(
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,
         verification=graded,
-        certificate=certify(robot, path, q, drive=drive, detector=detector),
+        certificate=certify(robot, q, detector),
+        deviation_m=deviation_m,
+        deviation_rad=deviation_rad,
     )
 
 

@@ -34,8 +34,8 @@ class TrackSummary:
         return self.trajectory.verification
 
     @property
-    def certificate(self) -> Certificate:
-        """What is certain between them."""
+    def certificate(self) -> Certificate | None:
+        """What is certain about self-collision between them; None where it was not checked."""
         return self.trajectory.certificate
 
     @property
@@ -68,7 +68,7 @@ class TrackSummary:
 
     @cached_property
     def colliding(self) -> list[set[str]]:
-        """Components within the safe distance of another, for each sample."""
+        """Components seen within the safe distance of another, for each sample; none without a detector."""
         safe = self.detector.safe_distance_m if self.detector else 0.0
         pairs = self.robot.pairs(self.detector)
         touching = self.verification.gaps_m <= safe

@@ -83,8 +83,12 @@ class Trajectory:
     methods it holds `continuation`'s search for a start, if none was given."""
     verification: TrackVerification
     """What plain numpy says about the samples."""
-    certificate: Certificate
-    """What is certain between them."""
+    certificate: Certificate | None
+    """What is certain about self-collision between them; None: not checked, without a detector or a motion."""
+    deviation_m: Floats
+    """[M] distance of the tool from the path half-way between samples."""
+    deviation_rad: Floats
+    """[M] the same of its orientation, of what the path asks for."""
 
     def __repr__(self) -> str:
         told = f"{self.method}, {self.drive}, {self.reached_points} of {self.path.samples} points"
@@ -102,26 +106,15 @@ class Trajectory:
 
     @property
     def clearance_m(self) -> Floats | None:
-        """[M + 1] smallest over the detector's pairs; None without any."""
+        """[M + 1] smallest over the detector's pairs; None without any: not checked."""
         gaps = self.verification.gaps_m
         return gaps.min(axis=1) if gaps.shape[1] else None
 
     @property
     def certified_clearance_m(self) -> float | None:
         """What no pair falls below at any moment, samples or between; None without pairs, or a motion."""
-        if not self.verification.gaps_m.size:
-            return None
-        return min(self.certificate.clearance_m, self.verification.clearance_m)
-
-    @property
-    def deviation_m(self) -> Floats:
-        """[M] distance of the tool from the path half-way between samples."""
-        return self.certificate.deviation_m
-
-    @property
-    def deviation_rad(self) -> Floats:
-        """[M] the same of its orientation, of what the path asks for."""
-        return self.certificate.deviation_rad
+        sampled, proof = self.verification.clearance_m, self.certificate
+        return sampled if sampled is None or proof is None else min(proof.clearance_m, sampled)
 
     @property
     def breaches(self) -> Breaches:
@@ -135,7 +128,7 @@ class Trajectory:
 
     @property
     def reached(self) -> bool:
-        """True if the whole path was followed and no limit is broken."""
+        """True if the whole path was followed and no limit is broken, self-collision among them if it was checked."""
         return self.stop is None and self.reached_points == self.path.samples and self.verification.accepted
 
     @property

@@ -23,7 +23,7 @@ ROUNDING = 1e-9  # share of a limit, and m or rad of a range, that rounding may 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Breaches:
-    """How often each limit is broken; all 0 for a motion that keeps them."""
+    """How often each limit is broken; 0 where it is kept, or off."""
 
     error: int
     """Samples beyond the error per axis, or the orientation error."""
@@ -35,15 +35,15 @@ class Breaches:
     wheel: int
     distance: int
     """Samples with the tool too far from the platform's centre."""
-    collision: int
-    """Samples within the safe distance."""
+    collision: int | None
+    """Samples within the safe distance; None without a detector: not checked."""
     sideways: int
     """Segments in which a base with wheels would slide, by more than 1e-9 m/s."""
 
     @property
     def total(self) -> int:
-        """All of them."""
-        return sum(getattr(self, name) for name in type(self).__slots__)
+        """All of them, of what was checked."""
+        return sum(getattr(self, name) or 0 for name in type(self).__slots__)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,13 +88,13 @@ class TrackVerification:
         return float(self.orientation_error_rad.max(initial=0.0))
 
     @cached_property
-    def clearance_m(self) -> float:
-        """Smallest at any sample; inf without a pair."""
-        return float(self.gaps_m.min(initial=np.inf))
+    def clearance_m(self) -> float | None:
+        """Smallest at any sample; None without a pair or a sample: not checked."""
+        return float(self.gaps_m.min()) if self.gaps_m.size else None
 
     @property
     def accepted(self) -> bool:
-        """True if no limit is broken."""
+        """True if no limit is broken, self-collision among them if it was checked."""
         return self.breaches.total == 0
 
 
@@ -122,7 +122,6 @@ def verify_track(
     gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), q) if detector else np.empty((len(q), 0))
     centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
-    safe = detector.safe_distance_m if detector else 0.0
     driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)
     wrong = (np.abs(error) > limits.position_error_m).any(axis=1) | (turn > limits.orientation_error_rad)
     return TrackVerification(
@@ -143,10 +142,17 @@ def verify_track(
             acceleration=_count_above(np.diff(driven, axis=0) / dt_s, limits.acceleration),
             wheel=_count_above(wheels, limits.wheel_speed_rad_s),
             distance=_count_above(distance, limits.farthest_m),
-            collision=int((gaps <= safe).any(axis=1).sum()),
+            collision=_count_collisions(gaps, detector),
             sideways=int((np.abs(across) > ROUNDING).sum()),
         ),
     )
+
+
+def _count_collisions(gaps_m: Floats, detector: Detector | None) -> int | None:
+    """Samples of `gaps_m` [M + 1, P] in collision; None if no pair was compared."""
+    if detector is None or not gaps_m.shape[1]:
+        return None
+    return int((gaps_m <= detector.safe_distance_m).any(axis=1).sum())
 
 
 def _count_above(values: Floats, limit: Floats | float | None) -> int:

@@ -1,17 +1,22 @@
 """What stands in the columns of a part."""
 
+from dataclasses import replace
+
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import ikde
 from ikde.batch.columns import GROUPS, WORDS, make_solutions, make_timing
+from ikde.batch.parts import serialize
 from ikde.model.rotation import rotation_from_quat_wxyz
 from ikde.solver.rows import solve_rows
 from tests.batch.small import FAR, ROBOT, make_arm
 
 NUMBERS = np.arange(5, 9)  # targets 2, 3, 3, 4 of two repeats each
 POSE = rotation_from_quat_wxyz(np.array([0.5, 0.5, -0.5, 0.5]))
-ALWAYS = ["arm", "target", "target_name", "repeat", "reached", "verified", "stop_reason"]
+ALWAYS = ["arm", "target", "target_name", "repeat", "reached", "self_collision", "verified", "stop_reason"]
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +42,7 @@ def test_a_solve_is_known_by_arm_target_and_repeat(rows):
 def test_the_verdict_is_that_of_the_rows(rows):
     table = tabulate(rows).to_pydict()
     assert table["reached"] == [True, True, True, False]
+    assert table["self_collision"] == [False] * 3 + [rows.row(3).self_collision]
     assert table["verified"] == [True] * 4
     assert table["stop_reason"] == ["reached"] * 3 + ["out_of_reach"]
     assert set(table["stop_reason"]) <= set(WORDS)
@@ -82,10 +88,32 @@ def test_each_grader_adds_its_columns(rows):
         assert row["typical_closest_pair"] in [f"{pair.a}-{pair.b}" for pair in nearest]
 
 
-def test_without_a_detector_there_is_no_clearance():
+def read_back(table):
+    """A table as its Parquet file holds it."""
+    return pq.read_table(pa.BufferReader(serialize(table))).to_pydict()
+
+
+def test_without_a_detector_clearance_and_self_collision_are_null():
     rows = solve_rows(make_arm(detector="none").problem, [ikde.Target((0.5, 0.2, 0.8))], seed=1)
-    table = tabulate(rows, numbers=NUMBERS[:1], names=None)
-    assert (table["clearance_m"].to_pylist(), table["closest_pair"].to_pylist()) == ([None], [None])
+    table = read_back(tabulate(rows, numbers=NUMBERS[:1], names=None))
+    assert (table["clearance_m"], table["closest_pair"], table["self_collision"]) == ([None], [None], [None])
+    assert table["reached"] == [True]
+
+
+def test_what_plain_numpy_did_not_grade_is_null():
+    targets = [ikde.Target((0.5, 0.2, 0.8))] * 3
+    rows = solve_rows(make_arm().problem, targets, seed=1, first_stream=63, verify="sample")
+    table = read_back(tabulate(rows, numbers=np.arange(63, 66), names=None))
+    assert table["verified"] == [None, True, None]
+    assert table["self_collision"] == [False] * 3
+
+
+def test_a_grader_that_compares_nothing_gives_nulls(rows):
+    robot = replace(ROBOT, pair_lists={**ROBOT.pair_lists, "nothing": ()})
+    nothing = ikde.Detector(name="it", spheres="typical", pairs="nothing")
+    blind = replace(rows, problem=replace(rows.problem, robot=robot))
+    table = tabulate(blind, graders=(nothing,)).to_pydict()
+    assert table["it_collides"] == table["it_clearance_m"] == [None] * 4
 
 
 def test_only_the_groups_asked_for_are_there(rows):

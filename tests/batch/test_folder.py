@@ -55,6 +55,16 @@ def test_a_run_of_the_same_recipe_is_kept_as_it_is(run):
     assert not leftover.exists()
 
 
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_parts_whose_columns_mean_something_else_are_not_mixed_in(run, overwrite):
+    manifest = run / MANIFEST
+    manifest.write_text(manifest.read_text().replace("ikde batch 2", "ikde batch 1"))
+    before = {path: path.read_bytes() for path in run.rglob("*") if path.is_file()}
+    with pytest.raises(FileError, match="holds a run of an earlier ikde"):
+        claim(run, overwrite=overwrite)
+    assert {path: path.read_bytes() for path in run.rglob("*") if path.is_file()} == before
+
+
 def test_a_run_of_another_recipe_is_refused_with_the_difference(run):
     with pytest.raises(FileError, match=r"holds another run: seed: 7 there, 8 now \(--overwrite replaces it\)$"):
         claim(run, seed=8)

@@ -1,6 +1,7 @@
 """The manifest: what it holds, whose it is, and how two recipes differ."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -33,10 +34,18 @@ def test_it_says_what_runs(manifest):
     assert manifest.started.endswith("+00:00")
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": "other"}', '{"format": "ikde batch 1"}', "\x00"])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", '{"format": "other"}', '{"format": 1}', '{"format": "ikde batch 2"}', "\x00"]
+)
 def test_a_file_of_somebody_else_is_refused(tmp_path, text):
     (tmp_path / MANIFEST).write_text(text)
     with pytest.raises(FileError, match=r"holds no run of ikde: its manifest.json is none of ours"):
+        read_manifest(tmp_path)
+
+
+def test_a_run_whose_columns_mean_something_else_is_refused(tmp_path, manifest):
+    write_manifest(tmp_path, replace(manifest, format="ikde batch 1"))
+    with pytest.raises(FileError, match=r"earlier ikde \('ikde batch 1', expected 'ikde batch 2'\); name another"):
         read_manifest(tmp_path)
 
 

@@ -1,8 +1,11 @@
 """A run's answers as one table."""
 
+import numpy as np
+import pyarrow as pa
 import pytest
 
 import ikde
+from ikde.batch.read import read_verdicts
 from ikde.errors import FileError
 from tests.batch.small import BLINK, make_arm, make_batch
 
@@ -21,6 +24,14 @@ def test_rows_stand_by_arm_target_and_repeat(folder):
         table = ikde.read_batch(folder, timing)
         assert list(zip(*(table[name].to_pylist() for name in ("arm", "target", "repeat")), strict=True)) == order
     assert table["solve_seconds"].null_count == 0
+
+
+def test_verdicts_that_are_null_are_masked(folder):
+    read = read_verdicts(pa.chunked_array([[True, None], [False]]))
+    assert (read.tolist(), read.data.tolist()) == ([True, None, False], [True, False, False])
+    table = ikde.read_batch(folder)
+    checked = np.array([row["arm"] == "z" for row in table.to_pylist()])
+    assert (~np.ma.getmaskarray(read_verdicts(table["self_collision"])) == checked).all()
 
 
 def test_only_finished_parts_are_read(folder):

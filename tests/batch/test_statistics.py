@@ -31,6 +31,13 @@ def test_a_rate():
     assert math.isnan(Rate(0, 0).share)
 
 
+def test_a_rate_counts_only_what_was_checked():
+    verdicts = np.ma.masked_array([True, True, False, True], mask=[False, True, False, False])
+    assert Rate.of(verdicts) == Rate(2, 3)
+    assert Rate.of(np.ma.masked_array([True], mask=True)) == Rate(0, 0)
+    assert Rate(2, 3) + Rate(1, 1) == Rate(3, 4)
+
+
 def test_a_spread():
     assert compute_spread(np.arange(101)) == Spread(50.0, 95.0, 100.0)
     assert compute_spread([]) is None

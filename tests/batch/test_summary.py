@@ -56,6 +56,17 @@ def test_each_arm_is_counted(run):
     assert summary.arms[1].collisions["improved"].count == 0  # what the search looked at is free
 
 
+def test_only_what_was_checked_is_counted(run):
+    _, summary, rows = run
+    for arm, checked in zip(summary.arms, (0, 32), strict=True):
+        verdicts = [row["verified"] for row in of_arm(rows, arm.name) if row["verified"] is not None]
+        assert arm.verified == Rate(len(verdicts), len(verdicts))
+        assert 0 < len(verdicts) < 32
+        assert (
+            arm.collision_checked == checked == sum(row["self_collision"] is not None for row in of_arm(rows, arm.name))
+        )
+
+
 def test_cost_is_spread_over_all_solves(run):
     folder, summary, rows = run
     seconds = ikde.read_batch(folder, timing=True)["solve_seconds"].to_numpy()

@@ -48,11 +48,12 @@ def test_a_collision_exits_with_1_and_names_the_pairs(cli):
     assert "collides" in text.out
 
 
-def test_without_a_detector_nothing_is_looked_at(cli):
+def test_without_a_detector_the_output_says_not_checked(cli):
     outcome = cli("check", "--q", FOLDED, "--angles", "deg", "--detector", "none", "--json")
     assert outcome.code == 0
-    assert (outcome.data["clearance_m"], outcome.data["pairs"]) == (None, [])
-    assert "nothing was looked at" in cli("check", "--detector", "none").out
+    assert (outcome.data["collision"], outcome.data["clearance_m"], outcome.data["pairs"]) == (None, None, [])
+    text = cli("check", "--detector", "none")
+    assert (text.code, text.out) == (0, "self-collision not checked: detector none\n")
 
 
 def test_a_robot_without_spheres_is_not_called_free(cli):

@@ -222,10 +222,11 @@ def test_the_same_command_with_the_seed_that_the_text_names_repeats_the_answer(c
     assert again == first
 
 
-def test_no_detector_looks_at_nothing(cli):
+def test_without_a_detector_self_collision_is_not_checked(cli):
     data = cli(*SOLVE, "--detector", "none", "--json").data
     assert (data["detector"], data["clearance_m"], data["closest_pair"]) == ("none", None, None)
-    assert "not looked at" in cli(*SOLVE, "--detector", "none").out
+    assert (data["self_collision"], data["verified"]) == (None, True)
+    assert "self-collision not checked" in cli(*SOLVE, "--detector", "none").out
 
 
 @pytest.mark.parametrize("options", [(), ("--json",), ("--count", 2)])

@@ -174,6 +174,12 @@ def test_clearance_is_above_what_is_certain(motion):
     assert certain.min() <= samples.min()
 
 
+def test_a_start_alone_has_nothing_certified_between(qiao):
+    (axes,) = plot_clearance(make_measured(qiao, steps=0, further=5)).axes
+    assert [line.get_label() for line in axes.lines][:1] == ["at samples"]
+    assert "certified between them" not in [line.get_label() for line in axes.lines]
+
+
 def test_collisions_are_marked(qiao):
     motion = make_measured(qiao, amplitude=2.6)
     legend = [text.get_text() for text in plot_clearance(motion).legends[0].get_texts()]

@@ -1,6 +1,7 @@
 """The figure of a pose: the paper's colours, the closest pair, the target, and a file."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,6 +93,14 @@ def test_the_title_says_the_verdict(qiao, folded):
     title = axes_of(qiao, folded, detector=detector).get_title()
     assert title.endswith("self-collision")
     assert "free" not in title
+
+
+def test_an_unchecked_pose_is_not_called_free(qiao, folded):
+    assert axes_of(qiao, folded).get_title() == "qiao2021  ·  self-collision not checked"
+    blind = replace(qiao, pair_lists={"nothing": ()})
+    detector = replace(qiao.detectors["improved"], pairs="nothing")
+    title = axes_of(blind, folded, detector=detector).get_title()
+    assert title == "qiao2021  ·  detector improved: self-collision not checked"
 
 
 def test_a_target_is_marked(qiao):

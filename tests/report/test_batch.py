@@ -28,6 +28,8 @@ ARM = ArmSummary(
     method="de",
     detector="none",
     reached=Rate(1999, 2000),
+    collision_checked=2000,
+    verified=Rate(31, 32),
     stop_reasons={"reached": 1999, "out_of_reach": 1},
     attempts=Spread(1.0, 3.0, 12.0),
     milliseconds=Spread(20.0, 30.5, 1234.5),
@@ -74,6 +76,20 @@ def test_each_arm_has_its_figures():
     for words in ("1,999 / 2,000", "100.0 % (99.7 to 100.0)", "1 / 3 / 12", "20.0 / 30.5 / 1,230"):
         assert words in row
     assert "30 / 1,999" in text
+    assert "31 / 32" in row
+
+
+def test_what_was_not_checked_is_said():
+    blind = replace(ARM, name="blind", collision_checked=0, verified=Rate(0, 0))
+    text = format_run(replace(SUMMARY, arms=(ARM, blind)))
+    assert text.splitlines()[1] == "self-collision not checked: arm blind"
+    assert "not checked" in next(line for line in text.splitlines() if line.strip().startswith("blind"))
+    assert "self-collision not checked" not in format_run(SUMMARY)
+    many = replace(SUMMARY, arms=tuple(replace(blind, name=f"a{k}") for k in range(12)))
+    assert "not checked: arms a0, a1, a2, a3, a4, a5, a6, a7, a8, a9 and 2 more\n" in format_run(many)
+    checked, unchecked = run_json(replace(SUMMARY, arms=(ARM, blind)))["arms"]
+    assert (checked["collision_checked"], checked["verified"]) == (2000, {"count": 31, "total": 32})
+    assert (unchecked["collision_checked"], unchecked["verified"]) == (0, None)
 
 
 def test_who_was_not_reached_is_named_with_the_reason():

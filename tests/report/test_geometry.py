@@ -79,7 +79,7 @@ def test_a_check_as_json_is_exact(qiao):
 
 def test_a_check_without_a_detector_has_nulls(qiao):
     data = check_json(qiao, ikde.check(qiao, qiao.home, "none"))
-    assert (data["clearance_m"], data["pairs"], data["detector"]) == (None, [], "none")
+    assert (data["clearance_m"], data["pairs"], data["detector"], data["collision"]) == (None, [], "none", None)
 
 
 def test_every_pair_is_a_line_worst_first(qiao):
@@ -109,4 +109,4 @@ def test_a_safe_distance_is_named(qiao):
 
 def test_no_detector_is_not_called_free(qiao):
     text = format_check(ikde.check(qiao, qiao.home, "none"), M_RAD)
-    assert text == "no detector, no pairs: nothing was looked at"
+    assert text == "self-collision not checked: detector none"

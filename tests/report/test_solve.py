@@ -57,7 +57,31 @@ def test_json_of_a_failure_names_reason_hint_and_pairs(qiao, blocked):
 
 def test_json_without_a_detector_has_nulls(qiao):
     data = solve_json(qiao, ikde.solve(qiao, TARGET, detector="none"))
-    assert (data["clearance_m"], data["closest_pair"], data["self_collision"]) == (None, None, False)
+    assert (data["clearance_m"], data["closest_pair"], data["self_collision"]) == (None, None, None)
+    assert '"self_collision": null' in json.dumps(data)
+
+
+def test_without_a_detector_the_text_says_that_nothing_was_checked(qiao):
+    text = format_solve(qiao, ikde.solve(qiao, TARGET, detector="none"), Units())
+    assert text.splitlines()[0].endswith("inside the limits, self-collision not checked")
+    for name in ("clearance", "self-collision"):
+        assert "not checked" in next(line for line in text.splitlines() if line.strip().startswith(name))
+    assert "free of" not in text
+
+
+@pytest.mark.parametrize(
+    ("verified", "words"),
+    [
+        (True, "by kernels, confirmed by plain numpy"),
+        (False, "by kernels; plain numpy disagrees"),
+        (None, "by kernels alone"),
+    ],
+)
+def test_who_graded_is_said_as_it_was(qiao, result, verified, words):
+    shown = replace(result, verified=verified)
+    lines = [line.split() for line in format_solve(qiao, shown, Units()).splitlines()]
+    assert ["graded", *words.split()] in lines
+    assert solve_json(qiao, shown)["verified"] is verified
 
 
 def test_text_says_the_verdict_first(qiao, result, blocked):

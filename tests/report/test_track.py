@@ -60,6 +60,17 @@ def test_plain_data_is_json(qiao, plan):
         assert json.loads(json.dumps(data, allow_nan=False))["reached_points"] == 20
 
 
+def test_without_a_detector_self_collision_is_not_checked(qiao, plan):
+    motion = make_measured(qiao, detector="none")
+    assert rows_of(motion)["self-collision"] == ("not checked", "")
+    assert format_track(plan, motion).splitlines()[0].endswith(", 0.4 s, differential, self-collision not checked")
+    data = track_json(plan, motion)
+    for name in ("detector", "clearance_m", "closest_pair", "certified_clearance_m"):
+        assert data[name] is None
+    assert (data["breaches"]["collision"], data["reached"]) == (None, True)
+    assert "self-collision" not in rows_of(make_measured(qiao))
+
+
 def test_what_does_not_apply_has_no_row(qiao):
     names = [row[0] for row in list_figures(make_measured(qiao, detector="none", orientation="free", speed=None))]
     assert not any(word in name for name in names for word in ("clearance", "orientation", "speed,"))
@@ -165,7 +176,7 @@ def test_a_base_whose_wheels_are_not_known_still_drives_on_arcs(qiao, plan):
 
 def test_a_robot_that_stands_still_has_a_fixed_base(plan):
     motion = make_still(ikde.load_robot("ur5"), detector="none", speed=None)
-    assert format_track(plan, motion).startswith("followed: 20 of 20 points of wave [1], 0.4 s, fixed base\n")
+    assert format_track(plan, motion).startswith("followed: 20 of 20 points of wave [1], 0.4 s, fixed base, self")
 
 
 @pytest.mark.parametrize(("value", "told"), [(0.1749, "0.175"), (2e-12, "2.00e-12"), (1.8e-18, "0"), (0.0, "0")])

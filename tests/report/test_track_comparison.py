@@ -8,7 +8,13 @@ import ikde
 from ikde.bench.tracks import Compared, TrackBudget, measure
 from ikde.report import track_comparison
 from ikde.report.html import render_html
-from ikde.report.track_comparison import compare_json, make_comparison_page, make_ends_table, make_runs_table
+from ikde.report.track_comparison import (
+    compare_json,
+    list_cells,
+    make_comparison_page,
+    make_ends_table,
+    make_runs_table,
+)
 from ikde.report.track_page import BASE, CLEARANCE, PATH
 from tests.track.measured import make_measured, make_still
 
@@ -41,6 +47,15 @@ def test_a_row_is_the_worst_of_the_seeds(compared):
     assert typical["clearance [mm]"] == "-99.0"
     assert (ours["broken: limits"].text, ours["broken: limits"].mark) == ("0", "ours")
     assert ours["whole path [s]"].text == "0.25"
+
+
+def test_what_was_not_checked_is_not_counted_as_kept(qiao):
+    run = measure(make_measured(qiao, detector="none"))
+    for name in ("colliding_samples", "smallest_clearance_mm", "certified_clearance_mm"):
+        assert run[name] is None
+    cells = list_cells([run, run])
+    assert cells[4] == "not checked"
+    assert cells[8] == "–"
 
 
 def test_dead_ends_are_of_all_starts(compared):

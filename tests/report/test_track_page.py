@@ -69,6 +69,18 @@ def test_a_robot_that_stands_still_has_a_fixed_base(plan):
     assert not any(word in text for word in ("omnidirectional", "differential", "drove", "platform"))
 
 
+def test_without_a_detector_the_page_says_not_checked(qiao, plan):
+    page = make_track_page(plan, make_measured(qiao, detector="none"))
+    numbers = {item.label: item.value for item in page.lead[-1].items}
+    assert numbers["self-collision"] == "not checked"
+    assert page.lead[-1].items[3].note == "of all other kinds, at all samples"
+    assert not any("clearance" in label for label in numbers)
+    text = render_html(page)
+    assert "What collides is black" not in text
+    assert text.count("Self-collision was not checked.") == 2
+    assert "certified" not in text
+
+
 def test_it_says_who_measured(page):
     assert page.sections[0].blocks[0].caption == "Measured by plain numpy, not by the kernels that search"
     assert "differential drive" in page.subtitle
@@ -95,7 +107,8 @@ def test_nothing_followed_is_a_short_page(qiao, plan):
 def test_a_start_alone_is_shown(qiao, plan):
     page = make_track_page(plan, make_measured(qiao, steps=0, further=5))
     assert "Motion" in [section.title for section in page.sections]
-    assert render_html(page)
+    assert "least clearance at samples" in [item.label for item in page.lead[-1].items]
+    assert "certified" not in render_html(page)  # there is nothing between
 
 
 def test_the_same_again_is_the_same_run(qiao, plan, tmp_path):

@@ -1,4 +1,4 @@
-"""The verdict is the independent check's: a kernel that lies is found out."""
+"""The verdict is the graders': a kernel that lies is found out where plain numpy is asked; `verified` says where."""
 
 from dataclasses import replace
 
@@ -48,8 +48,21 @@ def test_in_bulk_a_lie_is_recorded_and_the_run_goes_on(qiao, monkeypatch):
     lie_about(monkeypatch, "position_error_m", 1e-6, only=TARGETS[1])
     results = ikde.solve_many(qiao, TARGETS, QUICK, verify="all")
     assert [result.verified for result in results] == [True, False, True]
-    assert [result.reached for result in results] == [True, False, True]
+    assert [result.reached for result in results] == results.reached.tolist() == [True, False, True]
     assert results[1].stop_reason != "reached"
+
+
+def test_what_plain_numpy_did_not_grade_is_not_called_verified(qiao, monkeypatch):
+    lie_about(monkeypatch, "position_error_m", 1e-6, only=TARGETS[1])
+    rows = ikde.solve_many(qiao, TARGETS, QUICK, verify="none")
+    assert rows.reached.all()  # nobody was asked who could see the lie
+    assert [result.verified for result in rows] == rows.verified.tolist() == [None, None, None]
+    assert rows.verified.count() == 0
+
+
+def test_of_a_sample_the_rest_is_not_checked(qiao):
+    rows = ikde.solve_many(qiao, TARGETS[:1] * 130, QUICK, verify="sample", explain_failures=False)
+    assert rows.verified.tolist() == [True if k % 64 == 0 else None for k in range(130)]
 
 
 def test_a_lie_in_bulk_never_claims_that_the_target_is_to_blame(qiao, monkeypatch):
@@ -84,8 +97,8 @@ def test_the_figures_are_of_exactly_the_returned_q(qiao):
 
 
 def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
-    result = ikde.solve(qiao, TARGETS[0], seed=7)
-    assert confirm(result) is result
+    result = ikde.solve_many(qiao, TARGETS[:1], seed=7, verify="none")[0]
+    assert (result.verified, confirm(result).verified) == (None, True)
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         with pytest.raises(VerificationError, match="disagree by"):
             confirm(replace(result, **{name: getattr(result, name) + 1e-9}))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.solver.grade import confirm
 from ikde.solver.problem import make_problem
 from ikde.solver.quick import Quick, find_quick
 from ikde.solver.rows import solve_rows
@@ -18,9 +19,9 @@ from tests.solver.test_solve import KINDS, free_q, make_target
 AUTO = SolveSettings.for_method("auto")
 
 
-def solve_quick(robot, target, seed, stream):
+def solve_quick(robot, target, seed, stream, detector=None):
     """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
-    quick = Quick(robot, AUTO, robot.detector(None), target.kind)
+    quick = Quick(robot, AUTO, robot.detector(detector), target.kind)
     quick.solve(target, seed, stream, None)
     return quick.solve(target, seed, stream, None)
 
@@ -39,9 +40,35 @@ def test_quick_and_long_give_the_same_result(qiao, rng, kind):
         assert quick.verification == long.verification
         told = [vars(result) for result in (quick, long)]
         assert told[0].keys() == told[1].keys()
-        for name in told[0].keys() - {"q", "target", "solve_seconds", "compile_seconds", "verify", "verification"}:
+        own = {"q", "target", "solve_seconds", "compile_seconds", "verify", "verification", "verified"}
+        for name in told[0].keys() - own:
             assert told[0][name] == told[1][name], name
         assert (quick.target.p_world_tool == long.target.p_world_tool).all()
+
+
+def test_a_quick_result_is_verified_once_plain_numpy_has_confirmed_it_and_not_before(qiao):
+    result = solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0)
+    assert (result.reached, result.self_collision, result.verified) == (True, False, None)
+    assert result.verification.accepted
+    assert result.verified is None
+    confirmed = confirm(result)
+    assert (confirmed.verified, result.verified) == (True, None)
+    assert confirmed.q.tobytes() == result.q.tobytes()
+
+
+def test_each_distinct_solution_is_verified_however_the_first_was_found(qiao, monkeypatch):
+    monkeypatch.setattr("ikde.solver.quick.runs_on_tables", lambda: False)
+    target, settings = ikde.Target((0.8, 0.5, 1.0)), SolveSettings(restarts=9)  # not those of another test: it is kept
+    assert ikde.solve(qiao, target, settings).verified is None
+    for count in (1, 2):
+        assert [found.verified for found in ikde.solve_distinct(qiao, target, count, settings)] == [True] * count
+
+
+def test_without_a_detector_a_quick_result_is_neither_free_nor_colliding(qiao):
+    result = solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0, detector="none")
+    assert (result.reached, result.self_collision, result.clearance_m) == (True, None, None)
+    assert result.reason == "within tolerance, inside the limits, self-collision not checked"
+    assert result.verification.self_collision is None
 
 
 def test_a_result_of_the_quick_way_cannot_be_changed(qiao):

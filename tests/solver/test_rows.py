@@ -34,7 +34,7 @@ def test_a_row_is_the_solve_of_its_stream(qiao, problem):
 def test_columns_and_rows_tell_the_same(problem):
     rows = solve_rows(problem, TARGETS, seed=7)
     results, pairs = list(rows), problem.robot.pairs(problem.detector)
-    for name in ("reached", "verified", "attempts", "evaluations", "rejected"):
+    for name in ("reached", "verified", "self_collision", "attempts", "evaluations", "rejected"):
         assert getattr(rows, name).tolist() == [getattr(result, name) for result in results]
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         assert getattr(rows, name).tolist() == [getattr(result, name) for result in results]
@@ -90,7 +90,8 @@ def test_plain_numpy_grades_what_is_asked(qiao, monkeypatch, verify, first_strea
         problem, TARGETS[:1] * 130, seed=7, first_stream=first_stream, probe=False, verify=verify, threads=1
     )
     assert calls == [graded] * (graded > 0)
-    assert rows.verified.all()
+    assert rows.verified.count() == graded
+    assert rows.verified.compressed().all()
 
 
 def test_a_row_that_is_looked_into_is_graded_whatever_is_asked(problem, monkeypatch):
@@ -107,6 +108,23 @@ def test_the_grade_of_plain_numpy_is_made_when_it_is_looked_at(qiao, problem):
     expected = ikde.verify(qiao, TARGETS[1], result.q, settings=QUICK)
     assert result.verification.closest_pair == expected.closest_pair
     assert result.verification.clearance_m == pytest.approx(expected.clearance_m, abs=1e-14)
+
+
+def test_self_collision_is_judged_by_the_safe_distance(qiao):
+    rows = solve_rows(make_problem(qiao, QUICK, detector=None, near=None, freeze=None), TARGETS, seed=7)
+    assert (rows.self_collision == (rows.clearance_m <= 0.0)).all()
+    far = ikde.Detector(name="far", spheres="improved", pairs="formula_22", safe_distance_m=1.0)
+    near = solve_rows(make_problem(qiao, SWIFT, detector=far, near=None, freeze=None), TARGETS, seed=7, probe=False)
+    assert near.self_collision.tolist() == [True] * 6
+    assert not near.reached.any()
+
+
+def test_without_a_detector_self_collision_is_not_checked(qiao):
+    problem = make_problem(qiao, QUICK, detector="none", near=None, freeze=None)
+    rows = solve_rows(problem, TARGETS, seed=7)
+    assert rows.self_collision.tolist() == [result.self_collision for result in rows] == [None] * 6
+    assert rows.reached.all()
+    assert {result.reason.split(", ")[-1] for result in rows} == {"self-collision not checked"}
 
 
 def test_another_way_to_verify_is_refused(problem):

@@ -77,15 +77,16 @@ def test_a_method_is_a_set_of_defaults(qiao):
     assert implied.q.tobytes() == stated.q.tobytes()
 
 
-def test_a_robot_without_spheres_is_solved_and_nothing_is_looked_at():
+def test_a_robot_without_spheres_is_solved_and_self_collision_is_not_checked():
     result = ikde.solve(ikde.load_robot("qiao2021_dh"), TARGET)
     assert result.reached
     assert (result.detector, result.clearance_m, result.closest_pair, result.self_collision) == (
         "none",
         None,
         None,
-        False,
+        None,
     )
+    assert result.reason.endswith("self-collision not checked")
 
 
 def test_no_answer_lets_parts_overlap_that_a_bare_body_joins(tmp_path, rng):
@@ -198,7 +199,7 @@ def test_the_cost_is_counted(qiao):
 
 def test_many_targets_come_back_in_order(qiao, rng):
     targets = [make_target(qiao, free_q(qiao, rng), kind) for kind in KINDS * 2]
-    results = ikde.solve_many(qiao, targets, seed=4)
+    results = ikde.solve_many(qiao, targets, seed=4, verify="all")
     assert [result.stream for result in results] == list(range(6))
     for target, result in zip(targets, results, strict=True):
         assert_true_to_its_figures(qiao, target, result, ikde.SolveSettings.for_method("auto"))

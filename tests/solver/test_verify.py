@@ -120,9 +120,9 @@ def test_touching_at_the_safe_distance_collides(qiao):
     assert not graded.accepted
 
 
-def test_without_a_detector_nothing_is_looked_at(qiao):
+def test_without_a_detector_self_collision_is_not_checked(qiao):
     graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, detector="none")
-    assert (graded.clearance_m, graded.closest_pair, graded.self_collision) == (None, None, False)
+    assert (graded.clearance_m, graded.closest_pair, graded.self_collision) == (None, None, None)
     assert graded.accepted
 
 

@@ -41,8 +41,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         distance_m=np.full(len(q), np.nan),
         breaches=changes.pop("breaches", KEPT),
     )
-    deviation, segment = np.full(steps, 1e-5), np.full(steps, 0.04)
-    proof = Certificate(clearance_m=0.04, segment_m=segment, deviation_m=deviation, deviation_rad=deviation)
+    proof = Certificate(clearance_m=0.04, segment_m=np.full(steps, 0.04)) if pairs and steps else None
     given = {
         "path": path,
         "joint_names": NAMES,
@@ -59,5 +58,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         "search_seconds": 0.25,
         "verification": graded,
         "certificate": proof,
+        "deviation_m": np.full(steps, 1e-5),
+        "deviation_rad": np.full(steps, 1e-5),
     }
     return Trajectory(**{**given, **changes})

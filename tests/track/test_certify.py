@@ -1,5 +1,6 @@
 """The certificate between samples: never above what dense sampling sees, and near it."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import ikde
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
-from ikde.track.certify import bound_segments, certify, halfway, travel_radii
+from ikde.track.certify import bound_segments, certify, halfway, measure_deviation, travel_radii
 from ikde.track.drive import step_base
 from ikde.track.path import ToolPath
 from tests.conftest import random_q
@@ -114,10 +115,26 @@ def test_without_a_detector_nothing_can_touch(qiao, rng):
 
 
 @pytest.mark.parametrize("samples", [0, 1])
-def test_no_segment_no_doubt(qiao, samples):
+def test_without_a_segment_there_is_no_certificate(qiao, samples):
     path = ToolPath.through([[0, 0, 1], [0, 0.1, 1]], dt_s=0.02)
-    proof = certify(qiao, path, np.zeros((samples, 9)), drive="differential", detector=qiao.detector(None))
-    assert (proof.clearance_m, proof.is_free, len(proof.deviation_m)) == (np.inf, True, 0)
+    q = np.zeros((samples, 9))
+    assert certify(qiao, q, qiao.detector(None)) is None
+    assert [len(values) for values in measure_deviation(qiao, path, q, "differential")] == [0, 0]
+
+
+def test_without_a_detector_or_pairs_there_is_no_certificate(qiao, rng):
+    q = walk(qiao, rng, 3, 0.1)
+    assert certify(qiao, q, None) is None
+    nothing = replace(qiao.detectors["improved"], pairs="nothing")
+    assert certify(replace(qiao, pair_lists={"nothing": ()}), q, nothing) is None
+
+
+def test_a_certificate_is_the_least_of_its_segments(qiao, rng):
+    q = walk(qiao, rng, 4, 0.1)
+    proof = certify(qiao, q, qiao.detector(None))
+    np.testing.assert_array_equal(proof.segment_m, bound_segments(qiao, qiao.detector(None), q))
+    assert proof.clearance_m == proof.segment_m.min()
+    assert proof.is_free is bool(proof.clearance_m > 0.0)
 
 
 def test_halfway_a_base_is_on_its_arc(qiao):
@@ -135,12 +152,11 @@ def test_deviation_is_from_where_the_path_is_halfway(qiao):
     q[:, 5] = [0.0, 0.1, 0.2]
     p = forward(qiao, q)["tool"][:, :3, 3]
     middle = forward(qiao, 0.5 * (q[:-1] + q[1:]))["tool"]
-    told = {"drive": "differential", "detector": None}
     on_it = ToolPath(dt_s=0.02, p_world_tool=p, p_half=middle[:, :3, 3])
-    assert certify(qiao, on_it, q, **told).deviation_m.max() < 1e-12
+    assert measure_deviation(qiao, on_it, q, "differential")[0].max() < 1e-12
     chords = ToolPath(dt_s=0.02, p_world_tool=p)
     expected = np.linalg.norm(middle[:, :3, 3] - 0.5 * (p[:-1] + p[1:]), axis=1)
-    np.testing.assert_allclose(certify(qiao, chords, q, **told).deviation_m, expected)
+    np.testing.assert_allclose(measure_deviation(qiao, chords, q, "differential")[0], expected)
 
 
 @pytest.mark.parametrize("room", [1e-4, 1e-6])

@@ -138,7 +138,7 @@ def test_what_collides_is_named(qiao):
     assert set(folded.closest_pair) <= folded.colliding[worst]
 
 
-def test_without_a_detector_nothing_collides(qiao):
+def test_without_a_detector_nothing_is_said_of_collisions(qiao):
     motion = make_measured(qiao, detector="none")
-    assert motion.closest_pair is None
+    assert (motion.closest_pair, motion.certificate, motion.verification.breaches.collision) == (None, None, None)
     assert not any(motion.colliding)

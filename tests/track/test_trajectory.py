@@ -38,8 +38,18 @@ def test_what_was_found_about_it_is_told_in_short():
 
 def test_without_pairs_there_is_no_clearance():
     motion = make_motion(pairs=0)
-    assert (motion.clearance_m, motion.certified_clearance_m) == (None, None)
+    assert (motion.clearance_m, motion.certified_clearance_m, motion.certificate) == (None, None, None)
     assert make_motion(reached=-1).certified_clearance_m is None
+
+
+def test_a_start_alone_has_the_clearance_of_its_sample():
+    assert make_motion(reached=0).certified_clearance_m == 0.05
+
+
+def test_what_was_not_checked_is_no_breach():
+    motion = make_motion(pairs=0, breaches=replace(KEPT, collision=None))
+    assert (motion.reached, motion.breaches.total) == (True, 0)
+    assert make_motion(breaches=replace(KEPT, collision=None, speed=2)).breaches.total == 2
 
 
 def test_a_broken_limit_is_no_success():

@@ -129,7 +129,14 @@ def test_collisions_are_counted_by_sample(qiao):
     q[2:5, 4] = 2.5
     found = judge(qiao, q, speed=None)
     assert found.breaches.collision == 3
-    assert judge(qiao, q, speed=None, detector="none").breaches.collision == 0
+
+
+def test_without_a_detector_self_collision_is_not_checked(qiao):
+    q = make_q(qiao)
+    q[2:5, 4] = 2.5
+    found = judge(qiao, q, speed=None, detector="none")
+    assert (found.breaches.collision, found.clearance_m) == (None, None)
+    assert (found.breaches.total, found.accepted) == (0, True)
 
 
 @pytest.mark.parametrize("samples", [0, 1])
@@ -141,3 +148,4 @@ def test_nothing_is_no_motion(qiao, samples):
     found = verify_track(qiao, path, q[:samples], drive="differential", **told)
     assert found.accepted
     assert (found.speeds.shape, found.wheel_speeds.shape, len(found.error_m)) == ((0, 9), (0, 2), samples)
+    assert (found.clearance_m is None) is (samples == 0)

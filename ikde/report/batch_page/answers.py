@@ -1,7 +1,7 @@
 """What a page shows of a run, gathered part by part: numbers as arrays, words as counts."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -12,14 +12,20 @@ import pyarrow as pa
 
 from ikde.batch.manifest import ArmFacts, Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part
-from ikde.batch.read import list_finished, read_part
+from ikde.batch.read import list_finished, read_part, read_verdicts
 from ikde.batch.statistics import Rate
+from ikde.solver.verify import MaskedBools
 
 MOST_MISSED = 50  # targets that are listed with a reason
 MOST_NAMED = 10_000  # targets whose names are kept
 ALWAYS = ("target", "reached")
 NUMBERS = (*ALWAYS, "attempts", "position_error_m", "orientation_error_rad", "clearance_m")
 WORDS = ("stop_reason", "closest_pair")
+NOTHING = {  # the numbers of an arm of which no part is finished
+    "target": np.empty(0, dtype=np.int64),
+    "reached": np.empty(0, dtype=bool),
+    "solve_seconds": np.empty(0),
+}
 MISSED = ("target_x_m", "target_y_m", "target_z_m", "reason", "hint")
 
 
@@ -31,6 +37,8 @@ class ArmAnswers:
     numbers: Mapping[str, np.ndarray]
     """By column, [solves] each, NaN where there is none; with `solve_seconds`. Columns that the run does not keep are
     missing."""
+    verdicts: Mapping[str, MaskedBools]
+    """`self_collision`, `verified` and what each grader sees, [solves] each, masked where nothing was checked."""
     stop_reasons: Mapping[str, int]
     closest_pairs: Mapping[str, int]
     """Of the reached solutions."""
@@ -64,9 +72,19 @@ class ArmAnswers:
         values = self.numbers[column][self.reached]
         return values[np.isfinite(values)]
 
-    def collides(self, grader: str) -> np.ndarray:
-        """[reached solutions] True where a grader sees a collision."""
-        return self.numbers[f"{grader}_collides"][self.reached]
+    @property
+    def collision_checked(self) -> bool | None:
+        """Whether the arm's detector checked its solves for self-collision; None before there is one."""
+        return bool(self.verdicts["self_collision"].count()) if self.solves else None
+
+    @property
+    def verified(self) -> Rate:
+        """Of the solves that plain numpy graded as well, those that it agrees with."""
+        return Rate.of(self.verdicts["verified"])
+
+    def collides(self, grader: str) -> MaskedBools:
+        """[reached solutions] True where a grader sees a collision, masked where it compares nothing."""
+        return self.verdicts[f"{grader}_collides"][self.reached]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,19 +133,22 @@ class _Pile:
     """One arm's answers, so far."""
 
     numbers: dict[str, list[np.ndarray]] = field(default_factory=dict)
+    verdicts: dict[str, list[MaskedBools]] = field(default_factory=dict)
     words: dict[str, Counter[str]] = field(default_factory=lambda: {name: Counter() for name in WORDS})
     missed: dict[int, dict[str, Any]] = field(default_factory=dict)
 
     def add(self, folder: Path, part: Part, graders: tuple[str, ...]) -> pa.Table:
         """Put one part on the pile; returns what was read of its solutions."""
         listing = MISSED if len(self.missed) < MOST_MISSED else ()
-        wanted = [*_numbers(graders), *WORDS, "target_name", *listing]
+        wanted = [*NUMBERS, *_verdicts(graders), *WORDS, "target_name", *listing]
         solutions = read_part(folder, part, SOLUTIONS, wanted)
         timing = read_part(folder, part, TIMING, ["solve_seconds"])
-        for table, names in ((solutions, _numbers(graders)), (timing, ["solve_seconds"])):
+        for table, names in ((solutions, NUMBERS), (timing, ("solve_seconds",))):
             for name in names:
                 if name in table.column_names:
                     self.numbers.setdefault(name, []).append(table[name].to_numpy())
+        for name in _verdicts(graders):
+            self.verdicts.setdefault(name, []).append(read_verdicts(solutions[name]))
         self._count_words(solutions)
         if listing:
             self._list_missed(solutions)
@@ -149,27 +170,20 @@ class _Pile:
     def answers(self, facts: ArmFacts, graders: tuple[str, ...]) -> ArmAnswers:
         """The pile as arrays."""
         numbers = {name: np.concatenate(pieces) for name, pieces in self.numbers.items()}
-        if not numbers:
-            numbers = dict(_nothing(graders))
+        nothing = np.ma.masked_array(np.empty(0, dtype=bool))
+        verdicts = {name: np.ma.concatenate(self.verdicts.get(name, [nothing])) for name in _verdicts(graders)}
         return ArmAnswers(
             facts=facts,
-            numbers=numbers,
+            numbers=numbers or NOTHING,
+            verdicts=verdicts,
             stop_reasons=dict(self.words["stop_reason"].most_common()),
             closest_pairs=dict(self.words["closest_pair"].most_common()),
             missed=self.missed,
         )
 
 
-def _numbers(graders: tuple[str, ...]) -> list[str]:
-    return [*NUMBERS, *(f"{grader}_collides" for grader in graders)]
-
-
-def _nothing(graders: tuple[str, ...]) -> Iterator[tuple[str, np.ndarray]]:
-    """The columns of an arm of which no part is finished."""
-    yield "target", np.empty(0, dtype=np.int64)
-    yield "solve_seconds", np.empty(0)
-    for name in ("reached", *(f"{grader}_collides" for grader in graders)):
-        yield name, np.empty(0, dtype=bool)
+def _verdicts(graders: tuple[str, ...]) -> list[str]:
+    return ["self_collision", "verified", *(f"{grader}_collides" for grader in graders)]
 
 
 def _find_names(solutions: pa.Table) -> dict[int, str]:

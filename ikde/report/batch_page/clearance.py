@@ -10,6 +10,7 @@ from ikde.plot.images import to_svg
 from ikde.plot.style import Axis
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
 from ikde.report.batch_page.cost import choose_curves, is_wide
+from ikde.report.batch_page.success import CHECKED
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Column, Figure, Gallery, Section, Table
 
@@ -70,7 +71,8 @@ def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
 def _format(arm: ArmAnswers, measure: Measure) -> tuple[str, str]:
     values = measure.factor * arm.of_reached(measure.column)
     if not values.size:
-        return "–", "–"
+        text = CHECKED[False] if measure is CLEARANCE and arm.collision_checked is False else "–"
+        return text, text
     middle = significant(float(np.median(values)))
     if measure is CLEARANCE:
         return significant(float(values.min())), middle

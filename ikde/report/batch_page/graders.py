@@ -27,7 +27,7 @@ def _make_rates(run: RunAnswers) -> Table:
     return Table(
         columns=(
             Column("arm", align="left"),
-            Column("reached"),
+            Column("checked"),
             Column("graded by", align="left"),
             Column("in collision"),
             Column("rate", "%"),
@@ -35,22 +35,18 @@ def _make_rates(run: RunAnswers) -> Table:
         rows=tuple(
             (arm.name, f"{rate.total:,}", grader, f"{rate.count:,}", format_rate(rate))
             for arm in run.arms
-            for grader, rate in ((grader, _rate(arm.collides(grader))) for grader in run.manifest.graders)
+            for grader, rate in ((grader, Rate.of(arm.collides(grader))) for grader in run.manifest.graders)
         ),
         caption="Reached solutions that a detector sees in collision",
-        note="Every solution is looked at by every detector, whatever the search took into account. Rates with "
-        "Wilson's 95 % interval.",
+        note="Every solution is checked with every detector, whatever the search took into account: by the kernels' "
+        "grader and by plain numpy, which must agree. Rates with Wilson's 95 % interval.",
     )
-
-
-def _rate(collides: np.ndarray) -> Rate:
-    return Rate(int(collides.sum()), len(collides))
 
 
 def _draw(run: RunAnswers) -> list[Figure]:
     several = len(run.arms) > 1
     rates = [
-        (f"{arm.name}: {grader}" if several else grader, _rate(arm.collides(grader)))
+        (f"{arm.name}: {grader}" if several else grader, Rate.of(arm.collides(grader)))
         for arm in run.arms
         for grader in run.manifest.graders
     ]
@@ -68,7 +64,7 @@ def _make_targets(run: RunAnswers) -> Table:
         targets = arm.numbers["target"][arm.reached]
         for target in np.unique(targets).tolist():
             mine = targets == target
-            rates = (_rate(arm.collides(grader)[mine]) for grader in graders)
+            rates = (Rate.of(arm.collides(grader)[mine]) for grader in graders)
             name = run.names.get(target, str(target))
             rows.append((arm.name, name, f"{int(mine.sum()):,}", *map(format_rate, rates)))
     return Table(
@@ -103,6 +99,8 @@ def _make_paired(run: RunAnswers) -> Table:
 
 
 def _pair(arm: ArmAnswers, a: str, b: str) -> tuple[str, ...]:
-    hit_a, hit_b = arm.collides(a), arm.collides(b)
+    verdicts = arm.collides(a), arm.collides(b)
+    checked = ~np.ma.getmaskarray(verdicts[0]) & ~np.ma.getmaskarray(verdicts[1])
+    hit_a, hit_b = (verdict.data[checked] for verdict in verdicts)
     cases = (~hit_a & ~hit_b, ~hit_a & hit_b, hit_a & ~hit_b, hit_a & hit_b)
     return tuple(f"{int(case.sum()):,}" for case in cases)

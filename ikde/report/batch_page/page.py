@@ -1,6 +1,7 @@
 """The whole page of a run."""
 
 import shlex
+from collections.abc import Sequence
 
 from ikde.batch.manifest import Manifest
 from ikde.batch.statistics import Rate, compute_spread
@@ -66,14 +67,17 @@ def _headline(run: RunAnswers) -> list[Block]:
     if not run.parts_done:
         return []
     if len(run.arms) == 1:
-        return [Numbers((_reached("reached", run.rate), *_cost(run.arms[0])))]
+        return [Numbers((_reached("reached", run.rate, run.arms), *_cost(run.arms[0])))]
     if len(run.arms) > MOST_NUMBERS:
-        return [Numbers((_reached("reached, over all arms", run.rate),))]
-    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate) for arm in run.arms))]
+        return [Numbers((_reached("reached, over all arms", run.rate, run.arms),))]
+    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate, [arm]) for arm in run.arms))]
 
 
-def _reached(label: str, rate: Rate) -> Number:
-    return Number(format_share(rate), label, f"{rate.count:,} of {rate.total:,} solves")
+def _reached(label: str, rate: Rate, arms: Sequence[ArmAnswers]) -> Number:
+    note, unchecked = f"{rate.count:,} of {rate.total:,} solves", sum(arm.collision_checked is False for arm in arms)
+    if unchecked:
+        note += f", self-collision not checked{f' in {unchecked} of {len(arms)} arms' if unchecked < len(arms) else ''}"
+    return Number(format_share(rate), label, note)
 
 
 def _cost(arm: ArmAnswers) -> list[Number]:

@@ -22,10 +22,26 @@ def first_misses(rows):
     return {row["target"]: row for row in reversed(rows) if not row["reached"]}
 
 
-@pytest.mark.parametrize("name", ["target", "reached", "attempts", "position_error_m", "improved_collides"])
+@pytest.mark.parametrize("name", ["target", "reached", "attempts", "position_error_m"])
 def test_numbers_are_those_of_the_table(answers, rows, name):
     for arm in answers.arms:
         assert arm.numbers[name].tolist() == [row[name] for row in of_arm(rows, arm)]
+
+
+@pytest.mark.parametrize("name", ["self_collision", "verified", "typical_collides", "improved_collides"])
+def test_verdicts_are_those_of_the_table(answers, rows, name):
+    for arm in answers.arms:
+        assert arm.verdicts[name].tolist() == [row[name] for row in of_arm(rows, arm)]
+
+
+def test_what_was_checked_is_known(answers, rows, unfinished):
+    free, careful = answers.arms
+    assert (free.collision_checked, careful.collision_checked) == (False, True)
+    for arm in answers.arms:
+        graded = [row for row in of_arm(rows, arm) if row["verified"] is not None]
+        assert arm.verified == Rate(len(graded), len(graded))
+        assert 0 < len(graded) < 32
+    assert (unfinished.arms[1].collision_checked, unfinished.arms[1].verified) == (None, Rate(0, 0))
 
 
 def test_seconds_are_those_of_the_timing(answers, folder):

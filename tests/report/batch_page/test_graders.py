@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from ikde.batch.statistics import Rate
@@ -28,6 +29,20 @@ def test_collisions_are_counted_by_arm_and_grader(section, rows):
         assert (total, count) == (str(len(verdicts)), str(sum(hit for (hit,) in verdicts)))
         assert rate == format_rate(Rate(int(count), int(total)))
     assert table.rows[3][2:4] == ("improved", "0")  # what the search looked at is free
+
+
+def test_what_a_grader_did_not_check_counts_nowhere(answers):
+    arm = answers.arms[0]
+    typical = arm.verdicts["typical_collides"].copy()
+    typical[np.flatnonzero(arm.reached)[:3]] = np.ma.masked
+    blind = replace(arm, verdicts={**arm.verdicts, "typical_collides": typical})
+    rates, _, pairs = tables(make_graders(replace(answers, arms=(blind,))))
+    left = arm.rate.count - 3
+    assert rates.rows[0][1] == str(left)
+    assert sum(map(int, pairs.rows[0][3:])) == left
+    nothing = replace(arm, verdicts={**arm.verdicts, "typical_collides": np.ma.masked_all(32, dtype=bool)})
+    rates = tables(make_graders(replace(answers, arms=(nothing,))))[0]
+    assert rates.rows[0][3:] == ("0", "–")
 
 
 def test_targets_have_a_rate_a_grader(section, answers):

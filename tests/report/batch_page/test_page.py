@@ -63,6 +63,14 @@ def test_one_arm_is_shown_with_its_cost(answers, bare):
     assert labels(make_batch_page(bare)) == ["reached", "a solve, median"]
 
 
+def test_an_arm_without_a_detector_is_said_not_to_be_checked(answers):
+    first, second = (item.note for item in make_batch_page(answers).lead[-1].items)
+    assert first.endswith("of 32 solves, self-collision not checked")
+    assert second.endswith("of 32 solves")
+    many = replace(answers, arms=(*answers.arms[:1], *answers.arms[1:] * MOST_NUMBERS))
+    assert make_batch_page(many).lead[-1].items[0].note.endswith("solves, self-collision not checked in 1 of 5 arms")
+
+
 def test_a_run_without_graders_and_reasons_has_fewer_sections(bare):
     page = make_batch_page(bare)
     assert page.anchors() == ["reached", "cost", "not-reached", "recipe", "again"]

@@ -1,5 +1,8 @@
 """Rates of what was reached, by arm and by target."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from ikde.batch.statistics import Rate
@@ -34,8 +37,18 @@ def test_every_arm_has_a_row_and_every_reason_a_column(section, answers):
     assert column(table, "rate [%]") == [format_rate(arm.rate) for arm in answers.arms]
     assert column(table, "not reached: out of reach") == ["8", "8"]
     for arm, row in zip(answers.arms, table.rows, strict=True):
-        assert sum(map(int, row[4:])) == arm.rate.total - arm.rate.count
+        assert sum(map(int, row[4:-2])) == arm.rate.total - arm.rate.count
     assert len(figures(section)) == 1
+
+
+def test_what_was_checked_is_said_with_of_how_many(section, answers, bare, unfinished):
+    table = tables(section)[0]
+    assert column(table, "self-collision") == ["not checked", "checked"]
+    counts = [arm.verified.total for arm in answers.arms]
+    assert column(table, "plain numpy agrees") == [f"{count} of {count}" for count in counts]
+    arm = replace(bare.arms[0], verdicts={**bare.arms[0].verdicts, "verified": np.ma.masked_all(12, dtype=bool)})
+    assert column(tables(make_success(replace(bare, arms=(arm,))))[0], "plain numpy agrees") == ["not checked"]
+    assert column(tables(make_success(unfinished))[0], "self-collision") == ["not checked", "–"]
 
 
 def test_targets_are_told_apart_by_name(section):
@@ -54,7 +67,9 @@ def test_of_many_targets_those_that_were_reached_least_often_are_shown(answers, 
 
 def test_one_arm_with_single_solves_has_one_table(bare):
     section = make_success(bare)
-    assert [table.rows for table in tables(section)] == [(("auto", "12", "0", "0.0 (0.0–24.2)", "12"),)]
+    assert [table.rows for table in tables(section)] == [
+        (("auto", "12", "0", "0.0 (0.0–24.2)", "12", "checked", "1 of 1"),)
+    ]
     assert figures(section) == []
 
 
