@@ -89,15 +89,19 @@ def validate(
     error, but nothing is ever free then: they are named, with the line to add to the file if they may touch.
     """
     from ikde.io.robots import load_robot
-    from ikde.report.robot import format_valid, valid_json
+    from ikde.report.pairs import format_pairs, pairs_json
     from ikde.report.units import Units
 
     model = load_robot(file)
     chosen = model.detector(detector)
     if as_json:
-        print_json(valid_json(model, chosen))
+        counts = {"joints": len(model.joints), "frames": len(model.frames)}
+        print_json({"valid": True, "name": model.name, **counts, "collision": pairs_json(model, chosen)})
     else:
-        print_result(format_valid(file, model, chosen, Units(unit), color=use_color(), width=page_width()))
+        print_result(
+            f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames"
+        )
+        print_result(format_pairs(model, chosen, Units(unit), color=use_color(), width=page_width()))
 
 
 @robots.command("export")

@@ -116,7 +116,7 @@ class DetectorEntry(Entry):
     spheres: Name
     """The robot's sphere approximation."""
     pairs: Name = "non_adjacent"
-    """The robot's list of component pairs to look at."""
+    """The robot's list of component pairs to compare."""
     safe_distance: Number = 0.0
     """Clearance at which collision begins."""
 

@@ -102,7 +102,7 @@ def _with_reasons(value: Any) -> Any:
 class AdjacentEntry(Entry):
     """Pairs that are adjacent although the tree does not show it, each with the reason: {A: {B: "why"}}."""
 
-    pairs: dict[Name, Annotated[dict[Name, Name], BeforeValidator(_with_reasons)]]
+    pairs: dict[Name, Annotated[dict[Name, str], BeforeValidator(_with_reasons)]]
 
 
 class DetectorEntry(Entry):

@@ -165,7 +165,8 @@ def _check_pairs(robot: Robot, components: Mapping[str, int]) -> None:
         _check_list(pairs, components, ("pairs", name, "pairs"))
     _check_list(tuple((pair.a, pair.b) for pair in robot.adjacent), components, ("adjacent", "pairs"))
     for pair in robot.adjacent:
-        _require(bool(pair.reason.strip()), "expected a reason", "adjacent", "pairs", pair.a, pair.b)
+        has_reason = bool(pair.reason.strip()) and pair.reason.isprintable()
+        _require(has_reason, "expected a reason, in one line of printable text", "adjacent", "pairs", pair.a, pair.b)
 
 
 def _check_list(pairs: Pairs, components: Mapping[str, int], where: tuple[str | int, ...]) -> None:

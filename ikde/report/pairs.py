@@ -5,7 +5,7 @@ from typing import Any
 from ikde.io.units import LENGTHS_M
 from ikde.model.pairs import explain_no_detector
 from ikde.model.robot import Detector, Robot
-from ikde.report.render import make_table, plain, verbatim
+from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
 from ikde.solver.check import compute_pairs
 from ikde.solver.touching import find_always_touching
@@ -28,17 +28,23 @@ def pairs_json(robot: Robot, detector: Detector | None) -> dict[str, Any] | None
     }
 
 
-def pair_parts(robot: Robot, detector: Detector | None, units: Units) -> list[Any]:
-    """What there is to render: how many pairs, what always touches, and a table each of those compared and left out."""
-    told = plain(_describe(robot, detector))
+def format_pairs(
+    robot: Robot, detector: Detector | None, units: Units, *, color: bool = False, width: int = 100
+) -> str:
+    """What is checked, what always touches, and a table each of the pairs compared, worst first, and of those left out.
+
+    Lines to copy stand alone, and are never wrapped.
+    """
     if detector is None:
-        return [told]
-    left_out = [_left_out_table(robot, detector)] if robot.left_out_pairs(detector) else []
-    return [told, *_touching_lines(robot, detector), "", _compared_table(robot, detector, units), *left_out]
+        return _describe(robot, detector)
+    tables = [_compared_table(robot, detector, units)]
+    if robot.left_out_pairs(detector):
+        tables.append(_left_out_table(robot, detector))
+    lines = [_describe(robot, detector), *_touching_lines(robot, detector)]
+    return "\n".join([*lines, "", render(*tables, color=color, width=width)])
 
 
 def _describe(robot: Robot, detector: Detector | None) -> str:
-    """One line: what is checked."""
     if detector is None:
         why = f" ({explain_no_detector(robot)})" if robot.detector(None) is None else ""
         return f"no detector: collisions are not checked{why}"
@@ -46,13 +52,12 @@ def _describe(robot: Robot, detector: Detector | None) -> str:
     return f"collision: detector {detector.name} compares {compared} pair{'s' * (compared != 1)}, {left_out} left out"
 
 
-def _touching_lines(robot: Robot, detector: Detector) -> list[Any]:
+def _touching_lines(robot: Robot, detector: Detector) -> list[str]:
     touching = find_always_touching(robot, detector)
     if touching is None:
         return []
-    lines = [verbatim(line) for line in touching.lines]
-    meant = f"if that is meant, {plain(touching.remedy)}{':' if lines else ''}"
-    return [f"[yellow]{plain(str(touching))}[/]", meant, *lines]
+    meant = f"if that is meant, {touching.remedy}{':' if touching.lines else ''}"
+    return [str(touching), meant, *touching.lines]
 
 
 def _compared_table(robot: Robot, detector: Detector, units: Units) -> Any:

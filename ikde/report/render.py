@@ -7,12 +7,11 @@ from typing import Any
 def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
     """Lay renderables out as text of at most `width` columns, with ANSI colours only if asked."""
     from rich.console import Console
-    from rich.text import Text
 
     buffer = StringIO()
     console = Console(file=buffer, force_terminal=color, no_color=not color, width=width, highlight=False)
     for renderable in renderables:
-        console.print(renderable, soft_wrap=isinstance(renderable, Text))
+        console.print(renderable)
     lines = [line.rstrip() for line in buffer.getvalue().splitlines()]
     return "\n".join(line for line, before in zip(lines, ["x", *lines], strict=False) if line or before).strip("\n")
 
@@ -22,13 +21,6 @@ def plain(text: str) -> str:
     from rich.markup import escape
 
     return escape(text)
-
-
-def verbatim(text: str) -> Any:
-    """A line that is neither wrapped nor read as markup, so that it can be copied."""
-    from rich.text import Text
-
-    return Text(text)
 
 
 def make_table(*columns: str, title: str | None = None) -> Any:

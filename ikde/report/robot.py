@@ -3,13 +3,12 @@
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 from ikde.io.units import LENGTHS_M
 from ikde.model.robot import Detector, Robot, Wheels
-from ikde.report.pairs import pair_parts, pairs_json
-from ikde.report.render import make_table, plain, render, verbatim
+from ikde.report.pairs import format_pairs, pairs_json
+from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units
 
 
@@ -70,26 +69,9 @@ def format_robot(
     wheels = [_wheel_table(robot, robot.wheels, units)] if robot.wheels else []
     detectors = [_detector_table(robot, units)] if robot.detectors else []
     parts = [_joint_table(robot, units), _frame_table(robot, units), *wheels, *detectors]
-    return render(head, "", *parts, *pair_parts(robot, detector, units), "", _sources(robot), color=color, width=width)
-
-
-def format_valid(
-    file: Path, robot: Robot, detector: Detector | None, units: Units, *, color: bool = False, width: int = 100
-) -> str:
-    """A good robot file for the terminal: what it holds, and the pairs of a detector."""
-    head = f"{file}: valid, robot {robot.name} with {len(robot.joints)} joints and {len(robot.frames)} frames"
-    return render(verbatim(head), *pair_parts(robot, detector, units), color=color, width=width)
-
-
-def valid_json(robot: Robot, detector: Detector | None) -> dict[str, Any]:
-    """The same as plain data."""
-    return {
-        "valid": True,
-        "name": robot.name,
-        "joints": len(robot.joints),
-        "frames": len(robot.frames),
-        "collision": pairs_json(robot, detector),
-    }
+    pairs = format_pairs(robot, detector, units, color=color, width=width)
+    above, below = render(head, "", *parts, color=color, width=width), render(_sources(robot), color=color, width=width)
+    return "\n\n".join([above, pairs, below])
 
 
 def _joint_table(robot: Robot, units: Units) -> Any:

@@ -1,6 +1,8 @@
 """Options that commands share: units, joint values, detectors, frozen joints, and what is refused."""
 
 import json
+import os
+import sys
 
 import pytest
 
@@ -15,6 +17,7 @@ from ikde.cli.options import (
     read_freeze,
     read_q,
 )
+from ikde.cli.output import page_width
 from ikde.errors import FileError, InputError
 
 SOLVE = ("solve", "--position", "0.8", "0.5", "1")
@@ -119,6 +122,14 @@ def test_a_detector_is_read_with_its_changes(qiao):
 
 def test_no_detector_is_called_none(qiao):
     assert read_detector(qiao, "none", None, None, LengthUnit.m) == "none"
+
+
+@pytest.mark.parametrize(("columns", "width"), [(20, 60), (80, 80), (300, 120)])
+def test_a_page_is_as_wide_as_the_terminal_within_reason(monkeypatch, columns, width):
+    monkeypatch.setattr("ikde.cli.output.get_terminal_size", lambda: os.terminal_size((columns, 24)))
+    assert page_width() == 100
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert page_width() == width
 
 
 @pytest.mark.parametrize(("name", "err"), [("qiao2021_dh", "has no spheres\n"), ("qiao2021", "")])

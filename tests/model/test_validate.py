@@ -251,9 +251,16 @@ def test_an_unknown_component_among_adjacent_pairs():
     )
 
 
-@pytest.mark.parametrize("reason", ["", "  "])
+@pytest.mark.parametrize("reason", ["", "  ", "two\nlines", "red \x1b[31m", "\u202eback"])
 def test_an_adjacent_pair_without_a_reason(reason):
-    reject("expected a reason", "adjacent", "pairs", "G", "B", adjacent=(AdjacentPair(a="G", b="B", reason=reason),))
+    reject(
+        "expected a reason, in one line",
+        "adjacent",
+        "pairs",
+        "G",
+        "B",
+        adjacent=(AdjacentPair(a="G", b="B", reason=reason),),
+    )
 
 
 @pytest.mark.parametrize("again", [("G", "B"), ("B", "G")])

@@ -10,8 +10,7 @@ import ikde
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.proofs import drop_proved, proof_margin
 from ikde.model.pack import pack_detector, pack_robot
-from ikde.report.pairs import pair_parts, pairs_json
-from ikde.report.render import render
+from ikde.report.pairs import format_pairs, pairs_json
 from ikde.report.units import Units
 from tests.bare_robot import BARE
 
@@ -26,7 +25,7 @@ def load(text, tmp_path):
 
 
 def show(robot, detector, units=MM, width=100):
-    return render(*pair_parts(robot, detector, units), width=width)
+    return format_pairs(robot, detector, units, width=width)
 
 
 def test_json_accounts_for_every_pair(any_robot):
