@@ -50,6 +50,8 @@ class Answers:
     q: np.ndarray
     reached: np.ndarray
     figures: np.ndarray  # [A, 3] position error, orientation error, clearance (inf without a pair)
+    collides: list  # None where nothing was compared
+    verified: list  # None where plain numpy did not grade
     methods: list
 
 
@@ -171,6 +173,8 @@ def _read_rows(rows):
         q=rows.q,
         reached=rows.reached,
         figures=np.column_stack([rows.position_error_m, rows.orientation_error_rad, rows.clearance_m]),
+        collides=rows.self_collision.tolist(),
+        verified=rows.verified.tolist(),
         methods=[row.method for row in rows],
     )
 
@@ -185,6 +189,8 @@ def _read_results(lists):
         figures=np.column_stack(
             [[r.position_error_m for r in results], [r.orientation_error_rad for r in results], clearances]
         ),
+        collides=[result.self_collision for result in results],
+        verified=[result.verified for result in results],
         methods=[result.method for result in results],
     )
 
@@ -205,6 +211,9 @@ def regrade(grader, question, answers):
     with np.errstate(invalid="ignore"):
         gaps = np.where(own == answers.figures, 0.0, np.abs(own - answers.figures)) / far
     faults["other figures than told"] = ~(gaps <= FIGURES).all(axis=1)
+    collides = own[:, 2] <= grader.safe_distance(question.detector) if grader.compared(question.detector) else None
+    faults["other verdict on collision than told"] = np.not_equal(answers.collides, collides, dtype=object).astype(bool)
+    faults["graders of ikde disagree"] = np.equal(answers.verified, False, dtype=object).astype(bool)  # None: not asked
     counts = Counter(
         targets=len(question),
         answers=len(answers.q),

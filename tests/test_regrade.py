@@ -230,6 +230,18 @@ def test_whatever_is_called_reached_and_is_not_is_found():
     assert len({tuple(fault["q"]) for fault in lied.faults}) == (~answers.reached).sum() > 0
 
 
+@pytest.mark.parametrize("detector", [None, "none"])
+def test_a_verdict_on_what_was_not_compared_is_found_as_well_as_a_wrong_one(detector):
+    grader, robot = grader_and_robot(0)
+    question = replace(draw_question(grader, np.random.default_rng(0), 9), how="many", detector=detector)
+    answers = ask(robot, question)
+    assert not regrade_answers(grader, question, answers).faults
+    answers.collides[3] = None if detector is None else False
+    answers.verified[5] = False
+    told = [fault["fault"] for fault in regrade_answers(grader, question, answers).faults]
+    assert told == ["other verdict on collision than told", "graders of ikde disagree"]
+
+
 @pytest.mark.parametrize("column", range(3))
 def test_a_figure_that_is_not_so_is_found(column):
     grader, robot = grader_and_robot(0)
