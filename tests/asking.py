@@ -50,6 +50,8 @@ class Answers:
     q: np.ndarray
     reached: np.ndarray
     figures: np.ndarray  # [A, 3] position error, orientation error, clearance (inf without a pair)
+    collides: list  # None where nothing was compared
+    verified: list  # None where plain numpy did not grade
     methods: list
 
 
@@ -171,6 +173,8 @@ def _read_rows(rows):
         q=rows.q,
         reached=rows.reached,
         figures=np.column_stack([rows.position_error_m, rows.orientation_error_rad, rows.clearance_m]),
+        collides=rows.self_collision.tolist(),
+        verified=rows.verified.tolist(),
         methods=[row.method for row in rows],
     )
 
@@ -185,6 +189,8 @@ def _read_results(lists):
         figures=np.column_stack(
             [[r.position_error_m for r in results], [r.orientation_error_rad for r in results], clearances]
         ),
+        collides=[result.self_collision for result in results],
+        verified=[result.verified for result in results],
         methods=[result.method for result in results],
     )
 
@@ -192,19 +198,20 @@ def _read_results(lists):
 # ---- grades
 
 
-def regrade(grader, question, answers):
-    """The tally of one question's answers: what is called reached and is not, and figures that are not so."""
-    kinds, T = question.kinds[answers.rows], question.T_world_tool[answers.rows]
-    own = np.column_stack(grader.grade(answers.q, (kinds, T), question.detector))
-    faults = find_faults(
-        grader, answers.q, own, question.tolerances, detector=question.detector, frozen=question.freeze
-    )
+def grade_answers(grader, question, answers):
+    """The tally of one question's answers: what is called reached and is not, and what is told and is not so."""
+    own = np.column_stack(grader.grade(answers.q, _asked(question, answers), question.detector))
+    options = {"detector": question.detector, "frozen": question.freeze}
+    faults = find_faults(grader, answers.q, own, question.tolerances, **options)
     accepted = ~np.any(list(faults.values()), axis=0)
+    gaps = _find_gaps(question, answers, own)
     faults = {name: rows & answers.reached for name, rows in faults.items()}
-    far = np.maximum(1.0, np.abs(T[:, :, 3]).max(axis=1, keepdims=True))
-    with np.errstate(invalid="ignore"):
-        gaps = np.where(own == answers.figures, 0.0, np.abs(own - answers.figures)) / far
     faults["other figures than told"] = ~(gaps <= FIGURES).all(axis=1)
+    touches = (own[:, 2] <= grader.safe_distance(question.detector)).tolist()
+    touches = touches if grader.compared(question.detector) else [None] * len(touches)
+    differs = [told != seen for told, seen in zip(answers.collides, touches, strict=True)]
+    faults["other verdict on collision than told"] = np.array(differs)
+    faults["graders of ikde disagree"] = np.array([verified is False for verified in answers.verified])
     counts = Counter(
         targets=len(question),
         answers=len(answers.q),
@@ -212,28 +219,42 @@ def regrade(grader, question, answers):
         accepted_but_not_called_reached=int((accepted & ~answers.reached).sum()),
     )
     counts.update(f"reached by {answers.methods[k]}" for k in np.flatnonzero(answers.reached))
-    told = [
-        {
-            "fault": name,
-            "target": {"kind": str(kinds[k]), "T_world_tool": T[k].tolist()},
-            "q": answers.q[k].tolist(),
-            "told": answers.figures[k].tolist(),
-            "graded": own[k].tolist(),
-            "tolerances": question.tolerances,
-            "detector": question.detector,
-            "how": f"{question.how}, {question.method}, near {question.near is not None}, frozen {question.freeze}",
-        }
-        for name, rows in faults.items()
-        for k in np.flatnonzero(rows)
-    ]
+    told = [_tell(name, question, answers, own, k) for name, rows in faults.items() for k in np.flatnonzero(rows)]
     return Tally(counts=counts, faults=told, largest_gap=float(gaps.max(initial=0.0)))
+
+
+def _asked(question, answers):
+    """Kind and pose of the target of each answer."""
+    return question.kinds[answers.rows], question.T_world_tool[answers.rows]
+
+
+def _find_gaps(question, answers, own):
+    """How far figures told are from the grader's [A, 3], for a target beyond a metre relative to its distance."""
+    far = np.maximum(1.0, np.abs(question.T_world_tool[answers.rows, :, 3]).max(axis=1, keepdims=True))
+    with np.errstate(invalid="ignore"):
+        return np.where(own == answers.figures, 0.0, np.abs(own - answers.figures)) / far
+
+
+def _tell(name, question, answers, own, k):
+    """All that is needed to see a fault again."""
+    kinds, T = _asked(question, answers)
+    return {
+        "fault": name,
+        "target": {"kind": str(kinds[k]), "T_world_tool": T[k].tolist()},
+        "q": answers.q[k].tolist(),
+        "told": answers.figures[k].tolist(),
+        "graded": own[k].tolist(),
+        "tolerances": question.tolerances,
+        "detector": question.detector,
+        "how": f"{question.how}, {question.method}, near {question.near is not None}, frozen {question.freeze}",
+    }
 
 
 def ask_and_regrade(robot, grader, rng, total, *, threads=None, **options):
     """The tally of questions with `total` targets together; options as for `draw_questions`."""
     tally = Tally()
     for question in draw_questions(grader, rng, total, **options):
-        tally += regrade(grader, question, ask(robot, question, threads))
+        tally += grade_answers(grader, question, ask(robot, question, threads))
     return tally
 
 

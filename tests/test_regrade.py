@@ -13,8 +13,7 @@ from ikde.io import robot_file
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_gaps
 from tests import regrade, robot_texts
-from tests.asking import account_for_pairs, ask, ask_and_regrade, draw_question, load_text
-from tests.asking import regrade as regrade_answers
+from tests.asking import account_for_pairs, ask, ask_and_regrade, draw_question, grade_answers, load_text
 from tests.conftest import random_q
 from tests.regrade import Grader, find_faults
 from tests.robot_texts import random_robot_text
@@ -226,8 +225,20 @@ def test_whatever_is_called_reached_and_is_not_is_found():
     grader, robot = grader_and_robot(1)
     question = draw_question(grader, np.random.default_rng(0), 100)
     answers = ask(robot, replace(question, how="many", method="lm", restarts=8))
-    lied = regrade_answers(grader, question, replace(answers, reached=np.ones(len(answers.q), dtype=bool)))
+    lied = grade_answers(grader, question, replace(answers, reached=np.ones(len(answers.q), dtype=bool)))
     assert len({tuple(fault["q"]) for fault in lied.faults}) == (~answers.reached).sum() > 0
+
+
+@pytest.mark.parametrize("detector", [None, "none"])
+def test_a_verdict_on_what_was_not_compared_is_found_as_well_as_a_wrong_one(detector):
+    grader, robot = grader_and_robot(0)
+    question = replace(draw_question(grader, np.random.default_rng(0), 9), how="many", detector=detector)
+    answers = ask(robot, question)
+    assert not grade_answers(grader, question, answers).faults
+    answers.collides[3] = None if detector is None else False
+    answers.verified[5] = False
+    told = [fault["fault"] for fault in grade_answers(grader, question, answers).faults]
+    assert told == ["other verdict on collision than told", "graders of ikde disagree"]
 
 
 @pytest.mark.parametrize("column", range(3))
@@ -236,9 +247,7 @@ def test_a_figure_that_is_not_so_is_found(column):
     question = replace(draw_question(grader, np.random.default_rng(0), 9), method="lm", restarts=8, detector=None)
     answers = ask(robot, question)
     answers.figures[4, column] += 1e-8
-    assert [fault["fault"] for fault in regrade_answers(grader, question, answers).faults] == [
-        "other figures than told"
-    ]
+    assert [fault["fault"] for fault in grade_answers(grader, question, answers).faults] == ["other figures than told"]
 
 
 def turn_the_other_way_round(rpy_rad):
