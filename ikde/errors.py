@@ -32,14 +32,23 @@ class FileError(InputError):
         self.args = (f"{place} → {self.args[0]}" if where else f"{place}: {message}",)
 
 
+class CacheWarning(RuntimeWarning):
+    """The cache of compiled code could not be used, or was damaged: answers are the same, but take longer."""
+
+
 class VerificationError(IkdeError):
     """A kernel and plain numpy disagree: a bug in ikde, never a property of the target."""
 
 
 def format_path(where: tuple[str | int, ...]) -> str:
     """Write `("spheres", "typical", 2, "radius")` as `spheres.typical[2].radius`."""
-    text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in where)
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{show(key)}" for key in where)
     return text.removeprefix(".")
+
+
+def show(text: str) -> str:
+    """Text on one line: what a terminal might obey, and what nobody sees, as its escape."""
+    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

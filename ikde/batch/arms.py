@@ -1,8 +1,8 @@
 """From `solve` and `arms` of a run file to problems: names resolved, numbers in m and rad."""
 
-import re
 from typing import Any
 
+from ikde.batch.parts import PLAIN_NAME
 from ikde.batch.plan import Arm
 from ikde.batch.recipe import as_plain
 from ikde.batch.spec import BatchSpec, SolveEntry
@@ -14,7 +14,6 @@ from ikde.model.robot import NO_DETECTOR, Robot
 from ikde.solver.problem import make_problem
 from ikde.solver.settings import SolveSettings
 
-PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]+")  # arms and graders name files and columns
 MERGED = ("settings", "ranges", "near", "freeze")  # an arm adds to these instead of replacing them
 TOLERANCES = {"position_tolerance": "position_tolerance_m", "orientation_tolerance": "orientation_tolerance_rad"}
 

@@ -4,7 +4,7 @@ import logging
 import signal
 import threading
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from itertools import islice
@@ -14,7 +14,7 @@ from ikde.batch.options import LOCAL, check_address
 from ikde.batch.parts import GO_ON
 from ikde.batch.task import Answer, Task, solve_task
 from ikde.errors import InputError
-from ikde.model.generate.module import code_digest
+from ikde.model.generate.module import describe_kernels
 from ikde.solver.search import usable_cores
 
 SolveTasks = Callable[[Iterable[Task]], Generator[Answer]]
@@ -45,10 +45,13 @@ def open_cluster(address: str, workers: int | None = None) -> Iterator[SolveTask
         yield lambda tasks: _until_it_goes(_exchange(distributed, client, iter(tasks)))
 
 
-def solve_remotely(task: Task, kernels: str) -> Answer:
-    """What a worker does; `kernels` is the digest of the kernels that must have a hand in the answer."""
-    if code_digest() != kernels:
+def solve_remotely(task: Task, kernels: Mapping[str, str]) -> Answer:
+    """What a worker does; `kernels` describes those that must have a hand in the answer."""
+    ours = describe_kernels()
+    if ours["code"] != kernels["code"]:
         raise InputError("the workers have another version of ikde: its answers would differ")
+    if ours["kind"] != kernels["kind"]:
+        raise InputError(f"the workers run {ours['kind']} kernels, this run {kernels['kind']} ones (IKDE_KERNELS)")
     return solve_task(task, threads=1)
 
 
@@ -132,7 +135,7 @@ def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Generator
     landed = distributed.as_completed(loop=client.loop)
 
     def send(task: Task, tries: int) -> None:
-        future = client.submit(solve_remotely, task, code_digest(), pure=False)
+        future = client.submit(solve_remotely, task, describe_kernels(), pure=False)
         flying[future] = (task, tries)
         landed.add(future)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ikde.batch.machine import describe_machine, describe_versions
-from ikde.batch.parts import Part, list_parts
+from ikde.batch.parts import PLAIN_NAME, Part, list_parts
 from ikde.batch.plan import Batch
 from ikde.errors import FileError, format_path
 from ikde.files.atomic import write_atomically
@@ -112,10 +112,12 @@ def read_manifest(folder: Path) -> Manifest:
         if data["format"] != FORMAT:
             raise _refuse_format(folder, data["format"])
         arms = tuple(ArmFacts(**arm) for arm in data.pop("arms"))
+        if not all(PLAIN_NAME.fullmatch(arm.name) for arm in arms):  # they name the files that are read
+            raise ValueError(arms)
         return Manifest(arms=arms, graders=tuple(data.pop("graders")), **data)
     except OSError as error:
         raise FileError(folder, f"holds no run of ikde: {MANIFEST}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours") from None
 
 

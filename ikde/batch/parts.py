@@ -1,5 +1,6 @@
 """A run is cut into parts, so many consecutive solves of one arm each, and a part is two Parquet files."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -11,6 +12,7 @@ import pyarrow.parquet as pq
 from ikde.errors import FileError
 from ikde.files.atomic import write_together
 
+PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]+")  # arms name files, graders name columns
 SOLUTIONS, TIMING = "solutions", "timing"
 RECIPE, SEAL = b"ikde_recipe", b"ikde_seal"  # keys in the metadata of a file
 DAMAGED = (OSError, ValueError, pa.ArrowException)  # what reading a damaged file raises, bad UTF-8 included

@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from ikde.batch.arms import PLAIN_NAME, describe_arm, make_arm, make_arms
+from ikde.batch.arms import describe_arm, make_arm, make_arms
+from ikde.batch.parts import PLAIN_NAME
 from ikde.batch.plan import Batch
 from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
@@ -11,7 +12,7 @@ from ikde.batch.targets import make_source
 from ikde.errors import InputError
 from ikde.files.placed import placed
 from ikde.files.robot_entries import read_detector
-from ikde.model.generate.module import code_digest
+from ikde.model.generate.module import describe_kernels
 from ikde.model.robot import Detector, Robot
 
 MOST_SOLVES = 10**9  # of an arm
@@ -46,7 +47,7 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
     }
     recipe = {
         "ikde": ikde_version(),
-        "kernels": code_digest(),
+        "kernels": describe_kernels(),
         "robot": {"name": robot.name, "digest": robot_digest(robot)},
         "targets": targets,
         "arms": {arm.name: describe_arm(arm) for arm in arms},

@@ -14,6 +14,7 @@ from ikde.files.entries import (
     Name,
     Number,
     OrientationEntry,
+    Text,
     UnitsEntry,
     Vector,
 )
@@ -156,7 +157,7 @@ class BatchSpec(Entry):
 
     name: Name | None = None
     """What to call the run (default: the file's name)."""
-    robot: Name
+    robot: Text
     """A robot that ships with ikde, or its file, relative to the run file."""
     units: UnitsEntry = UnitsEntry()
     """Units of everything written here."""

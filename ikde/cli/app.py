@@ -19,7 +19,7 @@ from ikde.cli.report import report
 from ikde.cli.robots import robots
 from ikde.cli.schema import schema
 from ikde.cli.solve import solve
-from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread
+from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread, warn_in_one_line
 from ikde.cli.track import track
 from ikde.cli.warmup import warmup
 from ikde.errors import InputError
@@ -65,6 +65,7 @@ def run_and_exit() -> NoReturn:
     """Run the command line and exit."""
     skip_garbage_collection()
     use_one_blas_thread()
+    warn_in_one_line()
     code = run(sys.argv[1:])
     leave_garbage_at_exit()
     sys.exit(code)
@@ -96,6 +97,8 @@ def _reader_has_gone(error: BaseException | None) -> bool:
 
 def explain_error(error: BaseException) -> tuple[ExitCode, str]:
     """The exit code and the one line for an error; of a bug the traceback is written as well."""
+    if isinstance(error, typer.Abort) and isinstance(error.__cause__, EOFError):
+        error = error.__cause__  # typer takes it for Ctrl-D at a prompt; there is none here
     if isinstance(error, UsageError):
         usage: Any = error
         if not usage.format_message():  # no command at all: the help has been printed

@@ -14,7 +14,7 @@ def describe_machine(announce: Callable[[], None]) -> dict[str, Any]:
     """Versions, cores, cache folder, and the seconds of importing, compiling or loading, and solving."""
     started = time.perf_counter()
     import ikde
-    from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
+    from ikde.kernels.cache_folder import CACHE_FOLDER, CACHE_IS_WRITABLE
     from ikde.solver.search import usable_cores
     from ikde.solver.solve import solve
 

@@ -84,6 +84,7 @@ def read_detector(
 
     from ikde.errors import InputError
     from ikde.io.units import LENGTHS_M
+    from ikde.model.names import LONGEST_NAME
 
     detector = robot.detector(name)
     if detector is None:
@@ -94,7 +95,7 @@ def read_detector(
         if pairs not in robot.pair_lists:
             known = ", ".join(robot.pair_lists)
             raise InputError(f"no pair list is called {pairs!r}; {robot.name} has {known}", ("pairs",))
-        detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}")
+        detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}"[:LONGEST_NAME])
     if safe_distance is not None:
         if not 0.0 <= safe_distance < float("inf"):
             raise InputError(f"expected a distance of at least 0, got {safe_distance:g}", ("safe-distance",))

@@ -45,7 +45,7 @@ def working(text: str) -> AbstractContextManager[Any]:
 
 def announce_compile(takes: str = "10 s to a minute") -> None:
     """Said once, when kernels must be compiled before the first solve."""
-    from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
+    from ikde.kernels.cache_folder import CACHE_IS_WRITABLE
 
-    often = "once on this machine" if CACHE_IS_WRITABLE else f"every time, since {CACHE_FOLDER} cannot be written"
+    often = "once on this machine" if CACHE_IS_WRITABLE else "every time, since no cache folder can be used"
     print_note(f"compiling the kernels: {often}, {takes} ...")

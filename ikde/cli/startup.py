@@ -3,6 +3,11 @@
 import gc
 import os
 import sys
+import warnings
+from typing import Any
+
+from ikde.cli.output import print_note
+from ikde.errors import CacheWarning
 
 
 def skip_garbage_collection() -> None:
@@ -29,3 +34,16 @@ def skip_blas_probe() -> None:
     No kernel of ikde calls BLAS. Only the command line does this, in its own process; the library leaves numba alone.
     """
     sys.modules.setdefault("scipy.linalg.cython_blas", None)  # type: ignore[arg-type]
+
+
+def warn_in_one_line() -> None:
+    """What is wrong with the cache, as every other remark; other warnings stay as Python shows them."""
+    theirs = warnings.showwarning
+
+    def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
+        if issubclass(category, CacheWarning):
+            print_note(f"ikde: {message}")
+        else:
+            theirs(message, category, *where)
+
+    warnings.showwarning = show

@@ -9,6 +9,8 @@ from typing import Any
 
 from ikde.errors import FileError
 
+FLAGS = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0)  # a link would lead elsewhere
+
 
 def write_atomically(path: Path, data: Any) -> None:
     """Write bytes (anything with a buffer) to `path`, on the disk when this returns; raises `OSError`.
@@ -29,7 +31,7 @@ def write_together(files: Mapping[Path, Any]) -> None:
     try:
         for path, data in files.items():
             with _blame(path):
-                opened[path] = os.open(temporary_path(path), os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
+                opened[path] = os.open(temporary_path(path), FLAGS, 0o666)
                 _write(opened[path], data)
         _sync_together(opened)
         for path in files:

@@ -4,20 +4,32 @@ import math
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
+from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError
+from ikde.model.names import LONGEST_NAME, find_fault
 
 OrientationKind = Literal["axis", "rpy", "quat_wxyz"]
 ORIENTATIONS: tuple[OrientationKind, ...] = get_args(OrientationKind)
-Name = Annotated[str, StringConstraints(min_length=1)]
+Text = Annotated[str, StringConstraints(min_length=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Count = Annotated[int, Field(strict=True, ge=1, le=10**9)]
 Interval = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
-ThreeNames = Annotated[list[Name], Field(min_length=3, max_length=3)]
-FourNames = Annotated[list[Name], Field(min_length=4, max_length=4)]
+ThreeTexts = Annotated[list[Text], Field(min_length=3, max_length=3)]
+FourTexts = Annotated[list[Text], Field(min_length=4, max_length=4)]
+
+
+def _check_name(name: str) -> str:
+    fault = find_fault(name)
+    if fault:
+        raise PydanticCustomError("name", "{fault}", {"fault": fault})
+    return name
+
+
+Name = Annotated[str, StringConstraints(min_length=1), AfterValidator(_check_name), Field(max_length=LONGEST_NAME)]
 
 
 def _text_or_entry(value: Any) -> str:
@@ -25,8 +37,8 @@ def _text_or_entry(value: Any) -> str:
 
 
 AsText, AsEntry, TextOrEntry = Tag("text"), Tag("entry"), Discriminator(_text_or_entry)  # errors of one branch only
-ThreeColumns = Annotated[Annotated[Name, AsText] | Annotated[ThreeNames, AsEntry], TextOrEntry]
-FourColumns = Annotated[Annotated[Name, AsText] | Annotated[FourNames, AsEntry], TextOrEntry]
+ThreeColumns = Annotated[Annotated[Text, AsText] | Annotated[ThreeTexts, AsEntry], TextOrEntry]
+FourColumns = Annotated[Annotated[Text, AsText] | Annotated[FourTexts, AsEntry], TextOrEntry]
 
 
 class Entry(BaseModel):
@@ -85,7 +97,7 @@ class ColumnsEntry(Entry):
     """Columns of roll, pitch, yaw."""
     quat_wxyz: FourColumns | None = None
     """Columns of the quaternion, w first."""
-    name: Name | None = None
+    name: Text | None = None
     """Column of the targets' names."""
 
 
@@ -100,7 +112,7 @@ def chosen_orientation(entry: OrientationEntry | ColumnsEntry) -> OrientationKin
 class FileEntry(Entry):
     """Targets from a table, a row each."""
 
-    path: Name
+    path: Text
     """A .csv, .parquet or .npz file, relative to the run file."""
     columns: ColumnsEntry
     """Which columns hold what."""

@@ -3,10 +3,11 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError, nearest
+from ikde.files.entries import Name, Text
 from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
@@ -24,7 +25,6 @@ from ikde.model.robot import (
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import NON_ADJACENT, check_robot
 
-Name = Annotated[str, StringConstraints(min_length=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Vector = tuple[Number, Number, Number]
 Source = Name | dict[Name, Name]
@@ -51,7 +51,7 @@ class SourceEntry(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
     kind: Literal["published", "derived", "calibrated"]
-    text: Name
+    text: Text
 
 
 class JointEntry(Entry):

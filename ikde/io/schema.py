@@ -32,6 +32,8 @@ LIMITS = {
     "less_than": ("less than", "lt"),
 }
 
+KEY_ITSELF = "[key]"  # pydantic's last step to a key that is wrong, where others lead to values
+
 
 class Source(Protocol):
     """Plain data that can say where in it an error is: a `Document`, or a `Given`."""
@@ -94,7 +96,7 @@ def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:
     """Pydantic's location without the union branches it adds, which are no keys of the file."""
     where: list[str | int] = []
     for position, key in enumerate(loc):
-        if isinstance(data, dict) and (key in data or position == len(loc) - 1):
+        if isinstance(data, dict) and (key in data or (position == len(loc) - 1 and key != KEY_ITSELF)):
             where.append(key)
             data = data.get(key)
         elif isinstance(data, list) and isinstance(key, int):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
+from ikde.model.names import check_printable
 
 WORLD = "world"
 NO_DETECTOR = "none"
@@ -210,6 +211,7 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
     ):
         if name not in known:
             raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
+    check_printable(detector.name, (*where, "name"))
     if not 0.0 <= detector.safe_distance_m < np.inf:
         raise InputError("expected a distance of at least 0", (*where, "safe_distance"))
     described = robot.components(detector.spheres)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ikde.errors import InputError, nearest
+from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
 from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import NO_DETECTOR, TOOL, WORLD, Frame, Pairs, Robot, SphereRow, check_detector
@@ -21,6 +22,7 @@ def check_robot(draft: Robot) -> Robot:
     Raises:
         InputError: with the path of the first value that makes no sense.
     """
+    _check_names(draft)
     _check_joints(draft)
     robot = replace(draft, frames=_sort_frames(draft))
     _check_tool(robot)
@@ -42,6 +44,26 @@ def check_robot(draft: Robot) -> Robot:
     _check_conventions(robot)
     _check_wheels(robot)
     return robot
+
+
+def _check_names(robot: Robot) -> None:
+    """Everything that a robot names; what only refers to something must be the name of it anyway."""
+    check_printable(robot.name, ("name",))
+    check_printable(robot.convention, ("convention",))
+    named = {
+        "joints": robot.joint_names,
+        "frames": [frame.name for frame in robot.frames],
+        "spheres": robot.approximations,
+        "pairs": robot.pair_lists,
+        "detectors": robot.detectors,
+        "conventions": robot.conventions,
+    }
+    for section, names in named.items():
+        for name in names:
+            check_printable(name, (section, name))
+    for name, rows in robot.approximations.items():
+        for index, row in enumerate(rows):
+            check_printable(row.component, ("spheres", name, index, "component"))
 
 
 def _check_name(name: str, known: Iterable[str], where: tuple[str | int, ...], what: str) -> None:

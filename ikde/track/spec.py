@@ -13,6 +13,7 @@ from ikde.files.entries import (
     Name,
     Number,
     OrientationEntry,
+    Text,
     UnitsEntry,
     Vector,
 )
@@ -31,7 +32,7 @@ def _text_or_number(value: Any) -> str:
     return "text" if isinstance(value, str) else "number"
 
 
-Formula = Annotated[Annotated[Name, Tag("text")] | Annotated[Number, Tag("number")], Discriminator(_text_or_number)]
+Formula = Annotated[Annotated[Text, Tag("text")] | Annotated[Number, Tag("number")], Discriminator(_text_or_number)]
 """A number, or arithmetic over the sample k, the count N and pi."""
 ThreeFormulas = Annotated[list[Formula], Field(min_length=3, max_length=3)]
 FourFormulas = Annotated[list[Formula], Field(min_length=4, max_length=4)]
@@ -178,7 +179,7 @@ class TrackSpec(Entry):
 
     name: Name | None = None
     """What to call the track (default: the file's name)."""
-    robot: Name
+    robot: Text
     """A robot that ships with ikde, or its file, relative to the track file."""
     units: UnitsEntry = UnitsEntry()
     """Units of everything written here; seconds are seconds."""

@@ -38,7 +38,9 @@ def format_module(robot: Robot, detector: Detector | None, kind: str) -> str:
         format_find(arrays, tests, robot.lower, robot.upper),
         format_judge(arrays, tests),
     ]
-    head = _format_head(robot, detector, kind, (count_sphere_pairs(packed), len(every), len(needed), len(tests)))
+    head = _format_head(
+        kind, len(robot.joints), margin, (count_sphere_pairs(packed), len(every), len(needed), len(tests))
+    )
     lines = sorted({line for block in imports for line in block.splitlines() if line.startswith("from ikde")})
     first = "\n".join(["import math", "", "import numpy as np", "", *lines, *OWN_IMPORTS, "", f"LANES = {LANES}\n"])
     return "\n\n".join([head, first, *functions]) + "".join(engines)
@@ -50,14 +52,11 @@ def _split(source: Path) -> tuple[str, str]:
     return before.split('"""\n', 2)[1], after
 
 
-def _format_head(robot: Robot, detector: Detector | None, kind: str, counts: tuple[int, int, int, int]) -> str:
+def _format_head(kind: str, joints: int, margin: float, counts: tuple[int, int, int, int]) -> str:
+    """What the module is for, in numbers and in words of ikde's own: a name would be run with the rest."""
     pairs, every, needed, left = counts
-    joints = ", ".join(f"q{k} {joint.name}" for k, joint in enumerate(robot.joints))
-    judge = f"Detector {detector.name}" if detector else "No detector"
-    proved = f"{needed - left} proved never to fail inside the joint limits, for a safe distance up to"
-    return f'''"""Kernels of the robot {robot.name} for {kind} targets, written by ikde: straight-line code.
+    return f'''"""Kernels of one robot for {kind} targets, written by ikde: straight-line code, q0 to q{joints - 1}.
 
-{joints}
-{judge}: {pairs} pairs of spheres; {every} tests of rows and spheres, {every - needed} of them implied by others,
-{proved} {proof_margin(robot, detector):g} m; {left} left.
+{pairs} pairs of spheres; {every} tests of rows and spheres, {every - needed} of them implied by others,
+{needed - left} proved never to fail inside the joint limits, for a safe distance up to {margin:g} m; {left} left.
 """'''

@@ -1,18 +1,24 @@
-"""The module for a robot, detector and kind of target: found in the cache folder or written, imported by path."""
+"""The module for a robot, detector and kind of target: found in the cache folder or written, run from what was read.
+
+A module's file is named by the SHA-256 of its text, and is run only if its bytes have that hash. An index, a file for
+each digest of what a text depends on, names the text, so that nothing is written twice; no name of a robot, joint or
+detector is part of either.
+"""
 
 import hashlib
-import importlib.util
+import marshal
 import os
-import re
 import sys
-import tempfile
 from functools import lru_cache
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
+from typing import Literal
 
 import numpy as np
 
-from ikde.kernels import jit
+from ikde.kernels import cache_folder
+from ikde.kernels.cache_files import discard, read_file, read_sealed, write_file, write_sealed
+from ikde.model.closed_form import find_ur_arm
 from ikde.model.generate.proofs import proof_margin
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.robot import Detector, Robot
@@ -20,36 +26,39 @@ from ikde.model.robot import Detector, Robot
 
 @lru_cache(maxsize=256)
 def load_module(robot: Robot, detector: Detector | None, kind: str) -> ModuleType:
-    """The module for targets of one kind (`position`, `axis`, `pose`); written first if the cache has none yet."""
-    name = module_name(robot, detector, kind)
-    if not jit.CACHE_IS_WRITABLE:  # by us, that is: nothing that lies there may be run
-        return _execute(f"ikde_kernels_{name}", _format(robot, detector, kind))
-    path = jit.CACHE_FOLDER / "robots" / f"{name}.py"
-    if not path.exists():
-        write_whole(path, _format(robot, detector, kind).encode())
-    return _import(f"ikde_kernels_{name}", path)
+    """The module for targets of one kind (`position`, `axis`, `pose`); written first if the cache has none yet.
+
+    Without a cache it has no file, and every process compiles for itself.
+    """
+    if not cache_folder.CACHE_IS_WRITABLE:  # what lies there may be anybody's
+        return _run(_format(robot, detector, kind), None)
+    index = robots_folder() / f"{digest_inputs(robot, detector, kind)}.index"
+    return _run(*(_find(index) or _write(index, _format(robot, detector, kind))))
 
 
-def code_digest() -> str:
-    """Of all code that answers hang on bit for bit: the kernels, and the generator that writes more of them."""
-    return f"{jit.CACHE_FOLDER.name}-{_own_digest()[:12]}"
+def robots_folder() -> Path:
+    """Where modules and pools of seeds are kept."""
+    return cache_folder.CACHE_FOLDER / cache_folder.ROBOTS
 
 
-def _format(robot: Robot, detector: Detector | None, kind: str) -> str:
-    """The text; the generator is imported only when it has something to write."""
-    from ikde.model.generate.assemble import format_module
-
-    return format_module(robot, detector, kind)
+def describe_kernels() -> dict[str, str]:
+    """All that answers depend on bit for bit beside their recipe: the kernels and what writes them, and which run."""
+    return {"code": f"{cache_folder.CACHE_FOLDER.name}-{_own_digest()[:12]}", "kind": kernel_kind()}
 
 
-def module_name(robot: Robot, detector: Detector | None, kind: str) -> str:
-    """Name of a module: readable, and unlike that of any module with other contents."""
-    arrays, packed = pack_robot(robot), pack_detector(robot, detector)
-    digest = hashlib.sha256(f"{kind} {proof_margin(robot, detector)} {jit.CACHE_FOLDER.name} {_own_digest()}".encode())
-    for array in (*arrays, *packed[1:], robot.lower, robot.upper):
-        digest.update(np.asarray(array).tobytes())
-    words = (robot.name, detector.name if detector else "none", kind, digest.hexdigest()[:12])
-    return "_".join(re.sub(r"\W+", "_", word) for word in words)
+def kernel_kind() -> Literal["written", "tables"]:
+    """`written` for a robot, or `tables` if `$IKDE_KERNELS` says so; they add up in another order, so bits differ."""
+    return "tables" if os.environ.get("IKDE_KERNELS") == "tables" else "written"
+
+
+def digest_inputs(robot: Robot, detector: Detector | None, kind: str) -> str:
+    """SHA-256, hex, of all that a text depends on; no name is."""
+    closed = kind == "pose" and find_ur_arm(robot) is not None
+    words = (kind, closed, proof_margin(robot, detector), cache_folder.CACHE_FOLDER.name, _own_digest())
+    digest = hashlib.sha256(repr(words).encode())
+    for array in (*pack_robot(robot), *pack_detector(robot, detector)[1:], robot.lower, robot.upper):
+        digest.update(repr(np.shape(array)).encode() + np.asarray(array).tobytes())
+    return digest.hexdigest()
 
 
 @lru_cache(maxsize=1)
@@ -61,35 +70,58 @@ def _own_digest() -> str:
     return digest.hexdigest()
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Whole or not at all: another process may write the same at the same moment.
+def _format(robot: Robot, detector: Detector | None, kind: str) -> bytes:
+    """The text; the generator is imported only when it has something to write."""
+    from ikde.model.generate.assemble import format_module
 
-    Its time is always the same, as its contents are: numba takes machine code for outdated when the file is newer.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.utime(temporary, (1.0, 1.0))
-        Path(temporary).replace(path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    return format_module(robot, detector, kind).encode()
 
 
-def _execute(name: str, content: str) -> ModuleType:
-    """A module without a file."""
-    module = sys.modules[name] = ModuleType(name)
-    exec(compile(content, f"<{name}>", "exec"), module.__dict__)
+def _find(index: Path) -> tuple[bytes, Path] | None:
+    """The text that an index names and its file, or None; a text that is not what its name says is removed."""
+    named = read_sealed(index)
+    if named is None:
+        return None
+    path = index.with_name(f"{named.decode()}.py")
+    text = read_file(path)
+    if text is None:
+        return None
+    if hashlib.sha256(text).hexdigest() != path.stem:
+        discard(path, "is damaged")
+        return None
+    return text, path
+
+
+def _write(index: Path, text: bytes) -> tuple[bytes, Path | None]:
+    """Put a text and its index into the cache; the text and its file, None where nothing can be written."""
+    path = index.with_name(f"{hashlib.sha256(text).hexdigest()}.py")
+    if not write_file(path, text):
+        return text, None
+    write_sealed(index, path.stem.encode())
+    return text, path
+
+
+@lru_cache(maxsize=256)
+def _run(text: bytes, path: Path | None) -> ModuleType:
+    """A module of this text: one for all robots that differ in names only."""
+    name = f"ikde_kernels_{hashlib.sha256(text).hexdigest()}"
+    module = sys.modules[name] = ModuleType(name)  # machine code from the cache looks its module up by name
+    if path is None:
+        code = compile(text, f"<{name}>", "exec")
+    else:
+        module.__file__, code = str(path), _compile(text, path)
+    exec(code, module.__dict__)
     return module
 
 
-def _import(name: str, path: Path) -> ModuleType:
-    """Import a file; numba finds its machine code by the file's path."""
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot import {path}")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # machine code from the cache looks its module up by name
-    spec.loader.exec_module(module)
-    return module
+def _compile(text: bytes, path: Path) -> CodeType:
+    """The text as Python runs it; kept beside it, since compiling it takes 0.02 to 0.08 s of every start."""
+    kept = path.with_suffix(f".{sys.implementation.cache_tag}.code")
+    content = read_sealed(kept)
+    if content is not None:
+        code = marshal.loads(content)
+        if code.co_filename == str(path):
+            return code
+    code = compile(text, str(path), "exec")
+    write_sealed(kept, marshal.dumps(code))
+    return code

@@ -1,7 +1,6 @@
 """The seeds of the engines `lm` and `analytic`: collision-free configurations drawn once for a robot and its ranges."""
 
 import hashlib
-import os
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ikde.kernels import cache_folder
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
-from ikde.kernels.jit import CACHE_FOLDER, CACHE_IS_WRITABLE
 from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
-from ikde.model.generate.module import load_module, module_name
+from ikde.model.generate.module import digest_inputs, kernel_kind, load_module, robots_folder
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.planar_base import NO_BASE, find_planar_base
 from ikde.model.reach import arm_length_m
@@ -45,7 +44,7 @@ Kernels = tuple[Any, Any, Any]
 def load_kernels(robot: Robot, detector: Detector | None, kind: str) -> Kernels:
     """The module written for a robot, and what it takes in place of tables: nothing, and the safe distance in m.
 
-    With `$IKDE_KERNELS` set to `tables`, or with no folder to write modules to, the data-driven kernels and the tables.
+    With `$IKDE_KERNELS` set to `tables`, the data-driven kernels and the tables.
     """
     packed = pack_detector(robot, detector)
     safe_distance = packed.safe_distance + ROUNDING
@@ -55,8 +54,8 @@ def load_kernels(robot: Robot, detector: Detector | None, kind: str) -> Kernels:
 
 
 def runs_on_tables() -> bool:
-    """True if kernels written for a robot are not wanted, or have no place to be."""
-    return os.environ.get("IKDE_KERNELS") == "tables" or not CACHE_IS_WRITABLE
+    """True if kernels written for a robot are not wanted."""
+    return kernel_kind() == "tables"
 
 
 @lru_cache
@@ -82,9 +81,9 @@ def _find_pool(
     """The pool of a robot, a detector and joint ranges; that of the joint limits lies in the cache folder."""
     lower, upper = np.array(ranges).T.copy()
     whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
-    if not whole or runs_on_tables():
+    if not whole or runs_on_tables() or not cache_folder.CACHE_IS_WRITABLE:
         return draw_pool(robot, detector, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
-    path = CACHE_FOLDER / "robots" / f"{pool_name(robot, detector, kind)}.npz"
+    path = robots_folder() / f"{digest_pool(robot, detector, kind)}.pool"
     seeds = pool_file.load_pool(path)
     if seeds is None:
         seeds = draw_pool(robot, detector, kind, lower, upper, DRAWN)
@@ -92,12 +91,11 @@ def _find_pool(
     return seeds
 
 
-def pool_name(robot: Robot, detector: Detector | None, kind: str) -> str:
-    """Name of the pool within the joint limits: unlike that of any pool with other contents."""
-    digest = hashlib.sha256(_own_source())
-    base, (_, _, told) = find_base(robot, robot.lower, robot.upper), load_kernels(robot, detector, kind)
-    digest.update(f"{told!r} {base.tolist()} {rotation_length_m(robot)!r}".encode())
-    return f"{module_name(robot, detector, kind)}_{digest.hexdigest()[:12]}"
+def digest_pool(robot: Robot, detector: Detector | None, kind: str) -> str:
+    """SHA-256, hex, of all that the pool within the joint limits depends on; no name is."""
+    base, (_, _, distance) = find_base(robot, robot.lower, robot.upper), load_kernels(robot, detector, kind)
+    words = (digest_inputs(robot, detector, kind), distance, base.tolist(), rotation_length_m(robot))
+    return hashlib.sha256(repr(words).encode() + _own_source()).hexdigest()
 
 
 @lru_cache(maxsize=1)

@@ -1,0 +1,69 @@
+"""The machine code of kernels on disk, one file a kernel and types of its arguments.
+
+It takes the place of numba's own cache, which loads what lies in its folder as it is: a file that was cut raises errors
+of many kinds from every later call, and a flipped bit is run. Here a checksum stands in front of every file, and
+whatever cannot be loaded is removed and compiled again.
+"""
+
+import hashlib
+import pickle
+import sys
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite
+import numba
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+from ikde.kernels.cache_files import discard, read_sealed, write_sealed
+
+VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__)
+
+
+class MachineCode(NullCache):
+    """What numba asks for compiled code and tells of it: the methods of its own caches that a dispatcher calls."""
+
+    def __init__(self, function: Callable[..., Any], source: str, folder: Path) -> None:
+        code = function.__code__
+        self._folder = folder
+        self._name = f"{Path(code.co_filename).stem}.{function.__name__.strip('<>')}"
+        body = hashlib.sha256(code.co_code).hexdigest()
+        self._identity = (*VERSIONS, source, function.__qualname__, code.co_firstlineno, body)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Compiled code for types of arguments, or None if there is none that can be used."""
+        target_context.refresh()
+        path, key = self._find(sig, target_context)
+        content = read_sealed(path)
+        if content is None:
+            return None
+        try:
+            written_for, parts = pickle.loads(content)
+            return CompileResult._rebuild(target_context, *parts) if written_for == key else None
+        except Exception as error:  # numba and LLVM have many ways to fail, and all are mended in one
+            discard(path, f"cannot be loaded ({type(error).__name__})")
+            return None
+
+    def save_overload(self, sig: Any, cres: Any) -> None:
+        """Keep compiled code, unless it holds addresses of this process."""
+        if not cres.library.has_dynamic_globals and not cres.lifted:
+            path, key = self._find(sig, cres.target_context)
+            write_sealed(path, dumps((key, cres._reduce())))
+
+    def _find(self, sig: Any, target_context: Any) -> tuple[Path, Any]:
+        """Where code for these types and this processor is kept, and what it is for."""
+        key = (sig, target_context.codegen().magic_tuple(), self._identity)
+        return self._folder / f"{self._name}.{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}.nbc", key
+
+
+@lru_cache(maxsize=1024)
+def hash_source(file: str) -> str | None:
+    """SHA-256 of a source file, hex; None if there is none, as for code that was compiled from memory."""
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError:
+        return None

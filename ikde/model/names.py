@@ -1,0 +1,24 @@
+"""What things may be called. A name is shown, compared and stored; it is never run, and never names a file."""
+
+from typing import Any
+
+from ikde.errors import InputError
+
+LONGEST_NAME = 100  # characters
+
+
+def check_printable(name: Any, where: tuple[str | int, ...]) -> None:
+    """Raise `InputError` unless this is text of 1 to 100 printable characters."""
+    fault = find_fault(name)
+    if fault:
+        raise InputError(fault, where)
+
+
+def find_fault(name: Any) -> str | None:
+    """What is wrong with a name, or None. Control characters, invisible ones and those that turn text are refused."""
+    if not isinstance(name, str):
+        return f"expected a name, got {type(name).__name__}"
+    if not 1 <= len(name) <= LONGEST_NAME:
+        return f"expected a name of 1 to {LONGEST_NAME} characters, got {len(name):,}"
+    hidden = next((character for character in name if not character.isprintable()), None)
+    return None if hidden is None else f"expected a name of printable characters, got one with {hidden!a}"
