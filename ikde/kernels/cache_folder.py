@@ -42,7 +42,8 @@ def find_usable(wanted: Path) -> tuple[Path, bool]:
     spare = Path(tempfile.gettempdir()).absolute() / f"ikde-{USER}" / wanted.name
     further = prepare(spare)
     instead = f"{spare.parent} is used instead" if further is None else f"{further}; every process compiles for itself"
-    told = f"the cache folder {wanted.parent} is not used: {fault}; IKDE_CACHE_DIR can name another; {instead}"
+    advice = "mend that, or name another folder by IKDE_CACHE_DIR"
+    told = f"the cache folder {wanted.parent} is not used: {fault}; {advice}; {instead}"
     warnings.warn(told, CacheWarning, stacklevel=2)
     return spare, further is None
 
@@ -94,10 +95,10 @@ def _check_above(level: Path) -> str | None:
         return None
     if not stat.S_ISDIR(state.st_mode):
         return f"{level} is no folder"
+    if not HAS_OWNERS or state.st_mode & stat.S_ISVTX:
+        return None
     shared = state.st_mode & stat.S_IWOTH or (state.st_mode & stat.S_IWGRP and not _is_alone_in(state.st_gid))
-    if HAS_OWNERS and shared and not state.st_mode & stat.S_ISVTX:
-        return f"{level} can be written by others (mode {stat.S_IMODE(state.st_mode):o})"
-    return None
+    return f"{level} can be written by others (mode {stat.S_IMODE(state.st_mode):o})" if shared else None
 
 
 def _check_own(level: Path) -> str | None:
@@ -110,7 +111,7 @@ def _check_own(level: Path) -> str | None:
         return f"{level} is no folder"
     fault = find_fault(state)
     if fault:
-        return f"{level} {fault}; remove it"
+        return f"{level} {fault}"
     return None if os.access(level, os.W_OK | os.X_OK) else f"{level} cannot be written"
 
 

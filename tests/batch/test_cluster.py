@@ -20,6 +20,7 @@ from ikde.batch.cluster import SILENT, open_cluster, solve_remotely
 from ikde.batch.parts import Part
 from ikde.batch.task import make_task
 from ikde.errors import InputError
+from ikde.model.generate.module import describe_kernels
 from tests.batch.small import BLINK, ROBOT, make_arm, make_batch, read_files
 
 SLOW = {"population": 30, "generations": 300, "restarts": 1, "position_tolerance_m": 1e-12}
@@ -114,9 +115,16 @@ def test_a_connection_that_breaks_is_one_line(batch, cluster, monkeypatch, call)
         next(solve([make_task(batch, Part("careful", 0, 0, 5))]))
 
 
-def test_a_worker_with_other_kernels_is_refused(batch):
-    with pytest.raises(InputError, match="another version of ikde"):
-        solve_remotely(make_task(batch, Part("careful", 0, 0, 5)), "0123456789ab")
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"code": "0123456789ab"}, "the workers have another version of ikde"),
+        ({"kind": "written"}, "the workers run tables kernels, this run written ones"),
+    ],
+)
+def test_a_worker_with_other_kernels_is_refused(batch, change, words):
+    with pytest.raises(InputError, match=words):
+        solve_remotely(make_task(batch, Part("careful", 0, 0, 5)), describe_kernels() | change)
 
 
 @pytest.mark.parametrize("address", ["", "nowhere", "127.0.0.1", "ftp://127.0.0.1:21", "a b:1", "tcp://127.0.0.1:x"])

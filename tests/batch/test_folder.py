@@ -114,6 +114,27 @@ def test_a_run_that_was_killed_before_its_manifest_was_whole_goes_on(tmp_path):
     assert read_manifest(tmp_path)
 
 
+@pytest.mark.parametrize("name", [MANIFEST, LOCK, "solutions", "timing", "report"])
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_a_link_in_a_run_is_refused_and_not_followed(run, tmp_path_factory, name, overwrite):
+    elsewhere = tmp_path_factory.mktemp("elsewhere") / "precious"
+    (run / name).rename(elsewhere)
+    inside = {path: path.read_bytes() for path in [elsewhere, *elsewhere.rglob("*")] if path.is_file()}
+    (run / name).symlink_to(elsewhere)
+    with pytest.raises(FileError, match=f"{name}: is a symbolic link; a run holds none"):
+        claim(run, overwrite)
+    assert {path: path.read_bytes() for path in inside} == inside
+
+
+def test_a_link_that_was_left_alone_in_a_folder_is_not_followed(tmp_path):
+    (tmp_path / "precious").write_text("text")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / LOCK).symlink_to(tmp_path / "precious")
+    with pytest.raises(FileError, match="is a symbolic link"):
+        claim(tmp_path / "run")
+    assert (tmp_path / "precious").read_text() == "text"
+
+
 @pytest.mark.parametrize("place", ["a", "a/b"])
 def test_a_file_is_no_folder(tmp_path, place):
     (tmp_path / "a").touch()

@@ -35,7 +35,7 @@ def test_it_says_what_runs(manifest):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", "{}", '{"format": "other"}', '{"format": 1}', '{"format": "ikde batch 2"}', "\x00"]
+    "text", ["", "[]", "{}", '{"format": "other"}', '{"format": 1}', '{"format": "ikde batch 2"}', "\x00", "[" * 10**5]
 )
 def test_a_file_of_somebody_else_is_refused(tmp_path, text):
     (tmp_path / MANIFEST).write_text(text)
@@ -53,6 +53,12 @@ def test_an_unknown_key_is_refused(tmp_path, manifest):
     write_manifest(tmp_path, manifest)
     path = tmp_path / MANIFEST
     path.write_text(json.dumps(json.loads(path.read_text()) | {"more": 1}))
+    with pytest.raises(FileError, match="none of ours"):
+        read_manifest(tmp_path)
+
+
+def test_an_arm_that_would_name_files_elsewhere_is_refused(tmp_path, manifest):
+    write_manifest(tmp_path, replace(manifest, arms=(replace(manifest.arms[0], name="../../elsewhere"),)))
     with pytest.raises(FileError, match="none of ours"):
         read_manifest(tmp_path)
 

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from ikde.batch.folder import claim_folder
 from ikde.batch.resolve import make_batch
 from ikde.batch.spec import BatchSpec
-from ikde.errors import InputError
+from ikde.errors import FileError, InputError
 
 TARGETS = {"inline": [{"position": [0.8, 0.5, 1.0], "name": "task 1"}]}
 HERE = Path()
@@ -116,3 +117,14 @@ def test_what_is_wrong_is_named(qiao, keys, expected):
 def test_a_part_is_a_hundredth_of_an_arm_within_reason(qiao, count, repeats, asked, chunk):
     box = {"box": {"from": [0, 0, 0], "to": [1, 1, 1], "count": count}}
     assert make(qiao, targets=box, repeats=repeats, chunk=asked).chunk == chunk
+
+
+def test_the_two_kinds_of_kernels_are_never_mixed_in_a_run(qiao, monkeypatch, tmp_path):
+    with claim_folder(tmp_path, make(qiao), overwrite=False):
+        pass
+    monkeypatch.delenv("IKDE_KERNELS")
+    with (
+        pytest.raises(FileError, match=r"holds another run: kernels.kind: 'tables' there, 'written' now \(--overwrite"),
+        claim_folder(tmp_path, make(qiao), overwrite=False),
+    ):
+        pass

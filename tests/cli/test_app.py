@@ -1,8 +1,10 @@
 """The command as a whole: help, version, exit codes, and a process that starts light and ends quietly."""
 
+import os
 import signal
 import subprocess
 import sys
+import warnings
 
 import pytest
 import typer
@@ -10,7 +12,8 @@ import typer
 from ikde import __version__
 from ikde.cli.app import UsageError, explain_error
 from ikde.cli.exit_codes import ExitCode
-from ikde.errors import FileError, InputError, VerificationError
+from ikde.cli.startup import warn_in_one_line
+from ikde.errors import CacheWarning, FileError, InputError, VerificationError
 from tests.cli.conftest import Outcome
 
 COMMANDS = ("solve", "fk", "check", "batch", "doctor", "robots")
@@ -112,6 +115,38 @@ def test_a_bug_inside_a_command_exits_with_3(cli, monkeypatch):
     outcome = cli("fk")
     assert (outcome.code, outcome.out) == (3, "")
     assert outcome.err.splitlines()[-1] == "ikde: this is a bug, please report it: ZeroDivisionError: by zero"
+
+
+def test_a_file_that_ends_too_early_is_a_bug_and_no_ctrl_c(cli, monkeypatch):
+    def cut(name):
+        raise EOFError("Ran out of input")
+
+    monkeypatch.setattr("ikde.io.robots.load_robot", cut)
+    outcome = cli("fk")
+    assert (outcome.code, outcome.out) == (3, "")
+    assert outcome.err.splitlines()[-1] == "ikde: this is a bug, please report it: EOFError: Ran out of input"
+
+
+def test_what_is_wrong_with_the_cache_is_one_line(tmp_path):
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    cache.chmod(0o777)
+    told = {**os.environ, "IKDE_CACHE_DIR": str(cache), "TMPDIR": str(tmp_path)}
+    command = [sys.executable, "-m", "ikde", "robots", "show", "ur5", "--kernels", "--detector", "none"]
+    done = subprocess.run(command, env=told, capture_output=True, text=True, timeout=120, check=True)
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"ikde: the cache folder {cache} is not used: {cache} can be written by others (mode 777); ")
+
+
+def test_other_warnings_stay_as_they_are(monkeypatch, capsys):
+    shown = []
+    monkeypatch.setattr(warnings, "showwarning", lambda message, *_: shown.append(str(message)))
+    warn_in_one_line()
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        warnings.warn("of the cache", CacheWarning, stacklevel=1)
+        warnings.warn("of others", RuntimeWarning, stacklevel=1)
+    assert (shown, capsys.readouterr().err) == (["of others"], "ikde: of the cache\n")
 
 
 def test_an_interrupted_command_exits_with_130(cli, monkeypatch):

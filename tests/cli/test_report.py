@@ -46,6 +46,15 @@ def test_the_page_goes_beside_the_answers(cli, run):
     assert len(after) == len(before) + 2
 
 
+def test_a_link_in_place_of_the_pages_folder_is_refused(cli, run, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (run / "report").symlink_to(tmp_path / "elsewhere")
+    outcome = cli("report", run)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert outcome.err == f"ikde: {run / 'report'}: is a symbolic link; --out says where the page goes\n"
+    assert names(tmp_path / "elsewhere") == []
+
+
 def test_the_same_run_gives_the_same_bytes(cli, run):
     cli("report", run)
     before = contents(run)

@@ -5,7 +5,8 @@ import pytest
 import ikde
 from ikde.io.robots import robot_path
 from tests.bare_robot import BARE
-from tests.io.test_robot_file import GOOD
+from tests.hostile_names import PRINTABLE, rename_in_file
+from tests.io.test_robot_file import GOOD, NAMES
 
 
 @pytest.mark.parametrize("command", [("robots",), ("robots", "list")])
@@ -43,6 +44,37 @@ def test_the_kernels_of_a_robot_are_shown_as_source_or_inside_json(cli):
     compile(source, "ur5", "exec")
     assert cli(*asked, "--json").data == {"robot": "ur5", "kind": "position", "source": source}
     assert "expected one of" in cli(*asked[:4], "--kind", "poses", "--json").err
+
+
+@pytest.mark.parametrize("template", PRINTABLE.values(), ids=PRINTABLE)
+def test_whatever_a_robot_is_called_it_is_checked_shown_and_exported(cli, tmp_path, monkeypatch, template):
+    path = tmp_path / "two.yaml"
+    path.write_text(rename_in_file(GOOD, template.format, NAMES))
+    monkeypatch.chdir(tmp_path)
+    robot = ("--robot", path)
+    asked = (
+        ("robots", "validate", path),
+        ("robots", "show", path),
+        ("robots", "show", path, "--kernels"),
+        ("robots", "export", path, "--urdf"),
+        ("robots", "export", path, "--mjcf", "--out", "two.xml"),
+        ("check", *robot),
+        ("solve", *robot, "--position", "0.1", "0", "0.7505", "--json"),
+    )
+    for command in asked:
+        outcome = cli(*command)
+        assert outcome.code == 0, (command, outcome)
+        assert outcome.err == "" or outcome.err.startswith("compiling the kernels")
+    assert sorted(tmp_path.rglob("*")) == [tmp_path / "two.xml", path]
+
+
+def test_the_kernels_that_are_shown_hold_no_name(cli, tmp_path):
+    path = tmp_path / "two.yaml"
+    shown = []
+    for template in ("{}", PRINTABLE["quotes"]):
+        path.write_text(rename_in_file(GOOD, template.format, NAMES))
+        shown.append(cli("robots", "show", path, "--kernels").out)
+    assert shown[0] == shown[1]
 
 
 def test_a_good_file_is_valid(cli, tmp_path):

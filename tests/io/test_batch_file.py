@@ -11,6 +11,9 @@ import ikde
 from ikde.errors import FileError, InputError
 from ikde.io.batch_file import load_batch
 from ikde.io.robots import FOLDER
+from ikde.kernels import cache_folder
+from ikde.model.generate.module import load_module
+from tests.hostile_names import payload
 
 SHIPPED = sorted((Path(__file__).parents[2] / "configs" / "runs").glob("*.yaml"))
 GOOD = """\
@@ -92,10 +95,32 @@ def test_robots_and_tables_stand_beside_the_run_file(tmp_path):
     assert (batch.robot.name, batch.source.count) == ("ur5", 1)
 
 
+def test_a_detector_of_a_run_file_is_never_run(tmp_path, monkeypatch):
+    """As it would be from the text that is written for it."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path / "cache")
+    detector = {"name": payload("marker"), "spheres": "typical", "pairs": "non_adjacent"}
+    batch = load_batch({**yaml.safe_load(GOOD), "solve": {"detector": detector}, "arms": {}})
+    (arm,) = batch.arms
+    assert arm.problem.detector.name == detector["name"]
+    assert load_module(batch.robot, arm.problem.detector, "position")
+    assert [path.name for path in tmp_path.iterdir()] == ["cache"]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "place", "words"),
     [
         ("grade: [improved]", "name: ''", ":16 → name:", "expected text that is not empty"),
+        (
+            "grade: [improved]",
+            r'name: "a\e[2J"',
+            ":16 → name:",
+            r"characters, got one with '\x1b'",
+        ),
+        ("name: task 1", f"name: {'x' * 101}", ":5 → targets.inline[0].name:", "1 to 100 characters, got 101"),
+        ("name: mine", r'name: "a\n"', ":9 → solve.detector.name:", "expected a name of printable characters"),
+        ("name: mine", r'name: "a\u202e"', ":9 → solve.detector.name:", "expected a name of printable characters"),
+        ("few:", f"{'x' * 101}:", f":13 → arms.{'x' * 101}:", "1 to 100 characters, got 101"),
         (TASK_2, "[540, -131]", ":6 → targets.inline[1].position:", "expected 3 values, got 2"),
         (TASK_2, "[1, 2, 3, 4]", ":6 → targets.inline[1].position:", "expected 3 values, got 4"),
         (TASK_2, "[1, 2, .nan]", ":6 → targets.inline[1].position[2]:", "expected a finite number"),

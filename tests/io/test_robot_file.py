@@ -11,9 +11,11 @@ from hypothesis import strategies as st
 
 import ikde
 from ikde.errors import FileError, InputError
+from ikde.io.robot_file import parse_robot
 from ikde.io.robots import FOLDER, load_robot
 from ikde.io.yaml_file import Document
 from ikde.model.robot import AdjacentPair
+from tests.hostile_names import HIDDEN, PRINTABLE, rename_in_file
 
 GOOD = """\
 name: two
@@ -73,6 +75,52 @@ def complaint(old, new, tmp_path):
     message = str(caught.value)
     assert "\n" not in message
     return message
+
+
+NAMES = ("two", "ours", "slide", "turn", "rail", "arm", "tip", "coarse", "box", "bar", "all")  # in GOOD
+
+
+@pytest.mark.parametrize("template", PRINTABLE.values(), ids=PRINTABLE)
+def test_any_printable_name_is_one(tmp_path, template):
+    robot = parse(rename_in_file(GOOD, template.format, NAMES), tmp_path)
+    plain = parse(GOOD, tmp_path)
+    assert robot.joint_names == tuple(map(template.format, plain.joint_names))
+    detector = robot.detector(None)
+    assert (detector.name, detector.pairs) == (template.format("coarse"), template.format("all"))
+    assert robot.upper.tolist() == plain.upper.tolist()
+
+
+@pytest.mark.parametrize("hidden", HIDDEN, ids=ascii)
+def test_a_name_with_what_cannot_be_seen_is_refused(hidden):
+    document = Document(Path("robot.yaml"), GOOD)
+    document.data["joints"][f"slide{hidden}"] = document.data["joints"].pop("slide")
+    with pytest.raises(FileError, match="expected a name of printable characters") as caught:
+        parse_robot(document)
+    assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ("name: two", 'name: "two{}"', "robot.yaml:1 → name"),
+        ("  slide:", '  "slide{}":', "robot.yaml:6 → joints.slide{}"),
+        ("  rail:", '  "rail{}":', "robot.yaml:9 → frames.rail{}"),
+        ("component: bar", 'component: "bar{}"', "robot.yaml:16 → spheres.coarse[1].component"),
+        ("  coarse:\n", '  "coarse{}":\n', "robot.yaml:14 → spheres.coarse{}"),
+        ("  all:", '  "all{}":', "robot.yaml:18 → pairs.all{}"),
+        ("  coarse: {", '  "coarse{}": {{', "robot.yaml:20 → detectors.coarse{}"),
+    ],
+)
+@pytest.mark.parametrize(("hidden", "shown"), [(r"\e[2J", r"\x1b[2J"), (r"\u202e", r"\u202e"), (r"\n", r"\n")])
+def test_a_name_is_refused_at_its_place_and_shown_harmless(tmp_path, old, new, place, hidden, shown):
+    message = complaint(old, new.format(hidden), tmp_path)
+    assert message.startswith(f"{tmp_path}/{place.format(shown)}: expected a name of printable characters")
+    assert message.isprintable()
+
+
+def test_a_name_that_is_too_long_is_refused(tmp_path):
+    message = complaint("name: two", f"name: {'x' * 101}", tmp_path)
+    assert message.endswith("robot.yaml:1 → name: expected a name of 1 to 100 characters, got 101")
 
 
 def test_units_become_metres_and_radians(tmp_path):

@@ -106,6 +106,8 @@ def test_a_mapping_is_the_same_track(tmp_path):
         ("{axis: [0, 0, 1]}", "{axis: [0, 1]}", ":10 → orientation.axis:", "expected 3 values, got 2"),
         ("{axis: [0, 0, 1]}", "fre", ":10 → orientation:", "expected 'free', got 'fre'"),
         ("drive: diff", "drive: d", ":11 → drive:", "expected 'differential' or 'omnidirectional'"),
+        ("robot: qiao", r'name: "a\e[2J"' + "\nrobot: qiao", ":1 → name:", "expected a name of printable characters"),
+        ("robot: qiao", f"detector: {'x' * 101}\nrobot: qiao", ":1 → detector:", "1 to 100 characters, got 101"),
         ("prismatic: 500", "prismatic: -5", ":13 → limits.speed.prismatic:", "expected at least 0, got -5"),
         ("prismatic: 500", "q9: 5", ":13 → limits.speed.q9:", "qiao2021 has no joint 'q9'"),
         ("robot: qiao2021", "robot: qiao", ":1 → robot:", "no robot is called 'qiao'"),

@@ -57,6 +57,31 @@ def reject(message, *where, **changes):
     assert caught.value.where == where
 
 
+@pytest.mark.parametrize("hidden", ["\n", "\x1b", "\u202e", "x" * 100])
+def test_whatever_bears_a_name_may_be_called_what_can_be_printed(hidden):
+    """Of robots that Python makes, as of those from files."""
+    told = "expected a name of"
+    reject(told, "name", name=f"draft{hidden}")
+    reject(told, "convention", convention=f"own{hidden}")
+    for key, section in (
+        ("approximations", "spheres"),
+        ("pair_lists", "pairs"),
+        ("detectors", "detectors"),
+        ("conventions", "conventions"),
+    ):
+        reject(told, section, f"new{hidden}", **{key: {**getattr(make_draft(), key), f"new{hidden}": ()}})
+    reject(told, "joints", f"turn{hidden}", joints=(make_joint(f"turn{hidden}"),))
+    reject(told, "frames", f"b{hidden}", frames=(make_frame(f"b{hidden}", "world"),))
+    rows = (make_row(), make_row(f"B{hidden}"))
+    reject(told, "spheres", "fine", 1, "component", approximations={"fine": rows})
+
+
+def test_a_detector_of_pythons_own_is_called_what_can_be_printed():
+    robot = check_robot(make_draft())
+    with pytest.raises(InputError, match=r"^detector\.name: expected a name of printable characters"):
+        robot.detector(Detector(name="a\nb", spheres="fine", pairs="some"))
+
+
 def replace_frame(name, **changes):
     return tuple(replace(f, **changes) if f.name == name else f for f in make_draft().frames)
 

@@ -1,7 +1,9 @@
-"""Modules: the same text for the same robot under a name of its own, whole in the cache, whoever writes it first."""
+"""Modules: one text for one shape of robot, whatever it is called, run only if it is what its name says."""
 
+import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,11 +15,13 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels import jit
+from ikde.errors import CacheWarning
+from ikde.kernels import cache_files, cache_folder
 from ikde.model.generate import assemble, module
 from ikde.model.robot import Detector
 from ikde.model.target import KINDS
 from tests.collision_robots import find_gaps
+from tests.hostile_names import payload, rename
 from tests.random_robots import make_frame, make_robot, random_robot
 
 ROOT = Path(__file__).parents[3]
@@ -45,14 +49,32 @@ def tiny_robot():
 @pytest.fixture
 def empty_cache(tmp_path, monkeypatch):
     """Modules and their machine code go into a folder of the test's own."""
-    monkeypatch.setattr(jit, "CACHE_FOLDER", tmp_path)
-    monkeypatch.setattr(jit, "CACHE_IS_WRITABLE", True)
-    module.load_module.cache_clear()
+    monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path)
+    monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", True)
+    monkeypatch.setattr(cache_files, "TOLD", set())
+    forget()
     yield tmp_path
+    forget()
+
+
+def forget():
+    """What a new process does not know."""
     module.load_module.cache_clear()
+    module._run.cache_clear()
 
 
-# ---- the name
+def load(robot):
+    """The module for position targets, as a new process loads it."""
+    forget()
+    return module.load_module(robot, robot.detector(None), "position")
+
+
+def only(folder, suffix):
+    (path,) = (path for path in (folder / cache_folder.ROBOTS).iterdir() if path.suffix == suffix)
+    return path
+
+
+# ---- the digest of what a text depends on
 
 
 def variants(robot):
@@ -68,7 +90,6 @@ def variants(robot):
     approximations = {**robot.approximations, detector.spheres: larger}
     yield replace(robot, approximations=MappingProxyType(approximations)), detector
     yield replace(robot, pair_lists=MappingProxyType(fewer)), detector
-    yield replace(robot, name="another"), detector
     yield robot, replace(detector, safe_distance_m=0.05)
     yield robot, replace(detector, safe_distance_m=0.5)
     yield robot, replace(detector, safe_distance_m=5.0)
@@ -78,20 +99,36 @@ def variants(robot):
 def test_wheels_are_no_part_of_it(qiao, unwheeled):
     detector = qiao.detector(None)
     for kind in KINDS:
-        assert module.module_name(unwheeled, detector, kind) == module.module_name(qiao, detector, kind)
+        assert module.digest_inputs(unwheeled, detector, kind) == module.digest_inputs(qiao, detector, kind)
         assert assemble.format_module(unwheeled, detector, kind) == assemble.format_module(qiao, detector, kind)
 
 
+def test_no_name_is_part_of_it(qiao):
+    other = rename(qiao, "other {}".format)
+    for kind in KINDS:
+        digests = {module.digest_inputs(robot, robot.detector(None), kind) for robot in (qiao, other)}
+        assert len(digests) == 1
+
+
 @pytest.mark.parametrize("robot", [ikde.load_robot("qiao2021"), random_robot(3)], ids=lambda robot: robot.name)
-def test_what_differs_has_a_name_of_its_own(robot):
-    names = [module.module_name(*case, kind) for case in variants(robot) for kind in KINDS]
-    assert len(set(names)) == len(names)
-    assert all(name.isidentifier() for name in names)
+def test_what_differs_has_a_digest_of_its_own(robot):
+    digests = [module.digest_inputs(*case, kind) for case in variants(robot) for kind in KINDS]
+    assert len(set(digests)) == len(digests)
+
+
+@pytest.mark.parametrize("change", ["generator", "kernels"])
+def test_other_code_has_other_digests(qiao, monkeypatch, change):
+    before = module.digest_inputs(qiao, None, "pose")
+    if change == "generator":
+        monkeypatch.setattr(module, "_own_digest", lambda: "another")
+    else:
+        monkeypatch.setattr(cache_folder, "CACHE_FOLDER", Path("another"))
+    assert module.digest_inputs(qiao, None, "pose") != before
 
 
 def test_a_safe_distance_within_the_margin_changes_nothing(qiao):
     detectors = [replace(qiao.detector(None), safe_distance_m=d) for d in (0.0, 0.003, 0.00999)]
-    assert len({module.module_name(qiao, detector, "pose") for detector in detectors}) == 1
+    assert len({module.digest_inputs(qiao, detector, "pose") for detector in detectors}) == 1
     assert len({assemble.format_module(qiao, detector, "pose") for detector in detectors}) == 1
 
 
@@ -101,50 +138,120 @@ def test_beyond_the_last_margin_nothing_is_proved(qiao):
     assert "\n0 proved never to fail" in head
 
 
-def test_a_name_can_be_read(qiao):
-    assert module.module_name(qiao, qiao.detector(None), "axis").startswith("qiao2021_improved_axis_")
-    assert module.module_name(qiao, None, "axis").startswith("qiao2021_none_axis_")
-    odd = replace(qiao, name="my robot/2.0 (new)")
-    assert "/" not in module.module_name(odd, None, "pose")
-
-
 # ---- the cache
 
 
-def test_a_module_is_written_once_and_imported_from_the_cache(empty_cache):
+def test_a_module_is_named_by_the_hash_of_its_text(empty_cache):
     robot = tiny_robot()
-    made = module.load_module(robot, robot.detector(None), "position")
-    path = Path(made.__file__)
+    path = Path(load(robot).__file__)
+    text = assemble.format_module(robot, robot.detector(None), "position").encode()
     assert path.parent == empty_cache / "robots"
-    assert path.read_text(encoding="utf-8") == assemble.format_module(robot, robot.detector(None), "position")
-    before = path.stat()
-    assert module.load_module(robot, robot.detector(None), "position") is made
-    again = tiny_robot()
-    module.load_module(again, again.detector(None), "position")
-    assert (path.stat().st_ino, path.stat().st_mtime) == (before.st_ino, before.st_mtime)
-    assert [file.suffix for file in path.parent.iterdir() if file.is_file()] == [".py"]
+    assert (path.read_bytes(), path.stem) == (text, hashlib.sha256(text).hexdigest())
 
 
-def test_a_file_that_is_written_again_is_as_old_as_before(empty_cache):
-    path = empty_cache / "robots" / "some.py"
-    stamps = []
-    for _ in range(2):
-        module.write_whole(path, b"ONE = 1\n")
-        stamps.append((path.stat().st_mtime, path.stat().st_size))
-    assert stamps[0] == stamps[1]
+def test_what_lies_in_the_cache_is_not_written_again(empty_cache, monkeypatch):
+    before = load(tiny_robot())
+    times = {path: path.stat().st_mtime_ns for path in (empty_cache / "robots").iterdir()}
+    monkeypatch.setattr(module, "_format", lambda *_: pytest.fail("the text was written again"))
+    after = load(tiny_robot())
+    assert after is not before
+    assert after.__file__ == before.__file__
+    assert {path: path.stat().st_mtime_ns for path in (empty_cache / "robots").iterdir()} == times
+    assert [path.suffix for path in sorted(times)].count(".py") == 1
 
 
-def test_where_nothing_can_be_written_a_module_has_no_file(empty_cache, monkeypatch):
-    monkeypatch.setattr(jit, "CACHE_IS_WRITABLE", False)
+def test_robots_that_differ_in_names_share_one_module(empty_cache):
     robot = tiny_robot()
-    name = module.module_name(robot, robot.detector(None), "position")
-    folder = empty_cache / "robots"
-    folder.mkdir()
-    (folder / f"{name}.py").write_text("raise RuntimeError('run by mistake')\n")  # whose it is, nobody knows
-    made = module.load_module(robot, robot.detector(None), "position")
-    find = getattr(made.find_collision, "py_func", made.find_collision)
-    assert callable(find)
-    assert len(list(folder.iterdir())) == 1
+    other = rename(robot, "other {}".format)
+    assert load(robot) is module.load_module(other, other.detector(None), "position")
+
+
+@pytest.mark.parametrize("line", ["; ", "\n"])
+def test_no_name_is_ever_run(empty_cache, tmp_path, line):
+    """Of a robot, a joint, a detector and all else; nor does it lie in wait for a robot of the same shape."""
+    marker, robot = tmp_path / "marker", tiny_robot()
+    hostile = rename(robot, lambda old: payload(marker, line) + old)
+    assert load(hostile).__name__ == load(robot).__name__
+    assert not marker.exists()
+
+
+def test_a_text_that_is_not_what_its_name_says_is_never_run(empty_cache, tmp_path):
+    robot, marker = tiny_robot(), tmp_path / "marker"
+    path = Path(load(robot).__file__)
+    text = path.read_bytes()
+    path.write_bytes(text + f"open({str(marker)!r}, 'w')\n".encode())
+    with pytest.warns(CacheWarning, match=f"^{path} is damaged: "):
+        assert load(robot).__file__ == str(path)
+    assert path.read_bytes() == text
+    assert not marker.exists()
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def empty(path):
+    path.write_bytes(b"")
+
+
+def scribble(path):
+    path.write_bytes(b"../../x" + path.read_bytes()[7:])
+
+
+def put_folder(path):
+    path.unlink()
+    (path / "inside").mkdir(parents=True)
+
+
+@pytest.mark.parametrize("damage", [cut, empty, scribble, put_folder])
+@pytest.mark.parametrize("suffix", [".py", ".index", ".code"])
+def test_a_damaged_file_heals(empty_cache, suffix, damage):
+    robot = tiny_robot()
+    load(robot)
+    path = only(empty_cache, suffix)
+    before = path.read_bytes()
+    damage(path)
+    with pytest.warns(CacheWarning) as caught:
+        assert callable(load(robot).find_collision)
+    assert len(caught) == 1
+    assert load(robot)
+    assert path.read_bytes() == before
+
+
+def test_a_cache_that_was_moved_runs_its_modules_where_they_are(empty_cache, monkeypatch):
+    before = load(tiny_robot())
+    moved = empty_cache.with_name("moved") / empty_cache.name
+    shutil.copytree(empty_cache, moved)
+    monkeypatch.setattr(cache_folder, "CACHE_FOLDER", moved)
+    made = load(tiny_robot())
+    assert made.__name__ == before.__name__
+    assert getattr(made.find_collision, "py_func", made.find_collision).__code__.co_filename == made.__file__
+    assert Path(made.__file__).parent == moved / "robots"
+
+
+def test_without_a_cache_a_module_has_no_file_and_the_same_text(empty_cache, monkeypatch):
+    with_file = load(tiny_robot())
+    monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", False)
+    for path in (empty_cache / "robots").iterdir():
+        path.write_text("raise RuntimeError('run by mistake')\n")  # whose it is, nobody knows
+    made = load(tiny_robot())
+    assert made.__name__ == with_file.__name__
+    assert not hasattr(made, "__file__")
+    assert len(list((empty_cache / "robots").iterdir())) == 3
+
+
+def test_on_a_disk_that_is_full_a_module_has_no_file(empty_cache, monkeypatch):
+    monkeypatch.setattr(module, "write_file", lambda path, content: False)
+    assert not hasattr(load(tiny_robot()), "__file__")
+
+
+@pytest.mark.parametrize(("told", "kind"), [(None, "written"), ("tables", "tables"), ("written", "written")])
+def test_the_kind_of_kernels_that_runs_is_told(monkeypatch, told, kind):
+    monkeypatch.delenv("IKDE_KERNELS")
+    if told:
+        monkeypatch.setenv("IKDE_KERNELS", told)
+    monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", False)  # they have no file then, and are the same
+    assert module.describe_kernels()["kind"] == kind
 
 
 SCRIPT = """

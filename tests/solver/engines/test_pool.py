@@ -6,20 +6,23 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.kernels import cache_folder
 from ikde.kernels.seeds import find_cell
 from ikde.model.pack import pack_targets
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Targets
+from ikde.solver.engines import pool as module
 from ikde.solver.engines.pool import (
     DRAWN,
     PER_CELL,
+    digest_pool,
     find_base,
     load_kernels,
     make_seeds,
-    pool_name,
     rotation_length_m,
 )
 from ikde.solver.problem import make_problem
+from tests.hostile_names import rename
 
 
 def pool(robot: Robot, kind: str = "pose", **options):
@@ -79,16 +82,50 @@ def test_a_radian_counts_as_a_part_of_the_arm(any_robot):
     assert 0.05 < rotation_length_m(any_robot) < 1.0
 
 
-def test_pools_of_other_detectors_have_other_names(qiao):
+def test_pools_of_other_detectors_are_others(qiao):
     detector = qiao.detector(None)
     wider = replace(detector, safe_distance_m=detector.safe_distance_m + 1e-3)
-    names = {pool_name(qiao, each, kind) for each in (None, detector, wider) for kind in KINDS}
+    names = {digest_pool(qiao, each, kind) for each in (None, detector, wider) for kind in KINDS}
     assert len(names) == 9
 
 
 def test_wheels_leave_the_pool_alone(qiao, unwheeled):
     detector = qiao.detector(None)
-    assert pool_name(unwheeled, detector, "axis") == pool_name(qiao, detector, "axis")
+    assert digest_pool(unwheeled, detector, "axis") == digest_pool(qiao, detector, "axis")
+
+
+def test_no_name_is_part_of_a_pool(qiao):
+    other = rename(qiao, "other {}".format)
+    assert len({digest_pool(robot, robot.detector(None), "axis") for robot in (qiao, other)}) == 1
+
+
+def test_a_robot_has_one_pool_with_a_cache_and_without(monkeypatch, tmp_path):
+    """Drawn and kept, loaded, and drawn where nothing is kept."""
+    monkeypatch.delenv("IKDE_KERNELS")
+    monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path)
+    load_kernels = "ikde.solver.engines.pool.load_kernels"  # those of tables are compiled already
+    robot = ikde.load_robot("ur5")
+    with monkeypatch.context() as tables:
+        tables.setenv("IKDE_KERNELS", "tables")
+        ready = module.load_kernels(robot, robot.detector(None), "position")
+    monkeypatch.setattr(load_kernels, lambda *_: ready)
+    bits = []
+    for usable in (True, True, False):
+        monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", usable)
+        module._find_pool.cache_clear()
+        bits.append([np.asarray(field).tobytes() for field in pool(robot, "position")])
+    module._find_pool.cache_clear()
+    assert bits[0] == bits[1] == bits[2]
+    assert [path.suffix for path in (tmp_path / cache_folder.ROBOTS).iterdir()] == [".pool"]
+
+
+def test_without_a_cache_kernels_are_written_all_the_same(monkeypatch):
+    monkeypatch.delenv("IKDE_KERNELS")
+    monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", False)
+    robot = ikde.load_robot("qiao2021_dh")
+    kernels, tables, _ = load_kernels(robot, None, "position")
+    assert tables == 0
+    assert kernels.__name__.startswith("ikde_kernels_")
 
 
 def test_tables_take_the_place_of_modules_if_asked(qiao, monkeypatch):
