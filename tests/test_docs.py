@@ -107,3 +107,11 @@ def test_a_python_example_of_a_track_follows_its_path(text, tmp_path, monkeypatc
     names = {"ikde": ikde}
     exec(compile(text, "example", "exec"), names)
     assert names["motion"].reached
+
+
+def test_every_defence_names_tests_that_are_there():
+    rows = [line for line in PAGES["security.md"].splitlines() if re.match(r"\| (?!against)\w", line)]
+    named = [re.findall(r"`(tests/[\w/]+\.py)`", row.rsplit("|", 2)[1]) for row in rows]
+    assert len(rows) > 10
+    assert all(named)
+    assert [path for paths in named for path in paths if not (ROOT / path).is_file()] == []

@@ -11,13 +11,12 @@ from ikde.files.entries import (
     FileEntry,
     InlineTarget,
     Interval,
-    Name,
     Number,
     OrientationEntry,
-    Text,
     UnitsEntry,
     Vector,
 )
+from ikde.files.names import Name, Text
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.settings import Collision, Method, Update
 

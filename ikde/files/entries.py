@@ -4,15 +4,13 @@ import math
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from ikde.errors import InputError
-from ikde.model.names import LONGEST_NAME, find_fault
+from ikde.files.names import Name, Text
 
 OrientationKind = Literal["axis", "rpy", "quat_wxyz"]
 ORIENTATIONS: tuple[OrientationKind, ...] = get_args(OrientationKind)
-Text = Annotated[str, StringConstraints(min_length=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Count = Annotated[int, Field(strict=True, ge=1, le=10**9)]
 Interval = Annotated[list[Number], Field(min_length=2, max_length=2)]
@@ -20,16 +18,6 @@ Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
 ThreeTexts = Annotated[list[Text], Field(min_length=3, max_length=3)]
 FourTexts = Annotated[list[Text], Field(min_length=4, max_length=4)]
-
-
-def _check_name(name: str) -> str:
-    fault = find_fault(name)
-    if fault:
-        raise PydanticCustomError("name", "{fault}", {"fault": fault})
-    return name
-
-
-Name = Annotated[str, StringConstraints(min_length=1), AfterValidator(_check_name), Field(max_length=LONGEST_NAME)]
 
 
 def _text_or_entry(value: Any) -> str:

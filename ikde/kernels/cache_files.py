@@ -42,6 +42,8 @@ def write_file(path: Path, content: bytes) -> bool:
                 file.write(content)
                 file.flush()
                 os.fsync(handle)
+            if path.is_dir():
+                discard(path, "is no file")
             Path(temporary).replace(path)
         finally:
             Path(temporary).unlink(missing_ok=True)

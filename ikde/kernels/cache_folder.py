@@ -105,6 +105,7 @@ def _check_own(level: Path) -> str | None:
     """Make a folder of the cache if it is missing or a file of this user's stands there; what is wrong, or None."""
     if level.is_file() and not level.is_symlink() and find_fault(level.lstat()) is None:
         level.unlink()
+        warnings.warn(f"{level} is removed: it was a file, expected a folder", CacheWarning, stacklevel=2)
     _make(level)
     state = level.lstat()
     if not stat.S_ISDIR(state.st_mode):

@@ -10,13 +10,12 @@ from ikde.files.entries import (
     FileEntry,
     InlineTarget,
     Interval,
-    Name,
     Number,
     OrientationEntry,
-    Text,
     UnitsEntry,
     Vector,
 )
+from ikde.files.names import Name, Text
 
 Drive = Literal["differential", "omnidirectional"]
 TrackMethod = Literal["continuation", "optimized", "typical"]

@@ -106,6 +106,13 @@ def test_what_is_no_file_of_this_users_alone_is_removed_unread(tmp_path, put):
     assert put is not put_link or module.read_sealed(tmp_path / "target") == CONTENT
 
 
+def test_a_folder_where_a_file_is_written_is_removed(tmp_path):
+    put_folder(tmp_path / "file")
+    with pytest.warns(CacheWarning, match=rf"^{tmp_path / 'file'} is no file"):
+        module.write_sealed(tmp_path / "file", CONTENT)
+    assert module.read_sealed(tmp_path / "file") == CONTENT
+
+
 def test_damage_is_told_once(tmp_path):
     for name in "ab":
         (tmp_path / name).write_text("short")

@@ -118,7 +118,8 @@ def test_a_file_in_place_of_a_folder_of_the_cache_is_removed(wanted):
     for folder in (wanted / module.ROBOTS, wanted):
         shutil.rmtree(folder)
         folder.write_text("in the way")
-        assert module.prepare(wanted) is None
+        with pytest.warns(CacheWarning, match=f"^{folder} is removed: it was a file, expected a folder$"):
+            assert module.prepare(wanted) is None
         assert (wanted / module.ROBOTS).is_dir()
 
 

@@ -112,6 +112,8 @@ def test_a_robot_has_one_pool_with_a_cache_and_without(monkeypatch, tmp_path):
     bits = []
     for usable in (True, True, False):
         monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", usable)
+        for path in () if usable else tmp_path.rglob("*.pool"):
+            path.write_text("somebody else's")
         module._find_pool.cache_clear()
         bits.append([np.asarray(field).tobytes() for field in pool(robot, "position")])
     module._find_pool.cache_clear()

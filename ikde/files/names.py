@@ -1,0 +1,19 @@
+"""Text and names as all files take them."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, StringConstraints
+from pydantic_core import PydanticCustomError
+
+from ikde.model.names import LONGEST_NAME, find_fault
+
+
+def _check(name: str) -> str:
+    fault = find_fault(name)
+    if fault:
+        raise PydanticCustomError("name", "{fault}", {"fault": fault})
+    return name
+
+
+Text = Annotated[str, StringConstraints(min_length=1)]
+Name = Annotated[Text, AfterValidator(_check), Field(max_length=LONGEST_NAME)]
