@@ -58,7 +58,7 @@ def test_whatever_a_robot_is_called_it_is_checked_shown_and_exported(cli, tmp_pa
         ("robots", "show", path, "--kernels"),
         ("robots", "export", path, "--urdf"),
         ("robots", "export", path, "--mjcf", "--out", "two.xml"),
-        ("check", *robot),
+        ("check", *robot, f"--pairs={template.format('all')}"),
         ("solve", *robot, "--position", "0.1", "0", "0.7505", "--json"),
     )
     for command in asked:

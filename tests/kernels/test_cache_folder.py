@@ -1,5 +1,6 @@
 """The cache follows the kernels' source, and code is run from a folder only if nobody else can have put it there."""
 
+import grp
 import os
 import shutil
 import stat
@@ -175,8 +176,10 @@ def test_a_folder_above_that_a_group_can_write_is_refused_unless_it_is_ones_own_
     above = wanted.parent.parent
     above.chmod(0o770)
     assert find(wanted)[1:] == (True, [])  # a group called like its only member
-    give_away(above, GROUP)
-    assert f"{above} can be written by others (mode 770)" in find(wanted)[2][0]
+    other = next(group.gr_gid for group in grp.getgrall() if group.gr_gid and not group.gr_mem)
+    for group in (GROUP, other):  # one that nobody has given a name, and one of another name
+        give_away(above, group)
+        assert f"{above} can be written by others (mode 770)" in find(wanted)[2][0]
 
 
 @pytest.mark.parametrize("level", ["abc", "robots", "machine_code"])
