@@ -6,7 +6,7 @@ or a bug. The next attempt, or the next engine, then goes on with that row.
 
 import numpy as np
 
-from ikde.kernels.arrays import REACHED, Floats, Ints
+from ikde.kernels.arrays import ATTEMPTS, REACHED, Ints
 from ikde.model.target import Targets
 from ikde.solver.engines.found import Found
 from ikde.solver.figures import Limits, compute_figures
@@ -21,24 +21,26 @@ class Referee:
     def __init__(self, problem: Problem, targets: Targets, found: Found) -> None:
         self._targets, self._found = targets, found
         self._problem, self._limits = problem, _widest(problem)
-        self._graded: Floats = np.full_like(found.q, np.nan)
+        self._graded = np.full(len(targets), -1)  # attempts of each row when it was graded: without a new one, no new q
 
     def refuse(self) -> Ints:
-        """Grade every row whose `q` is new; open those again that are called reached but not accepted; which ones."""
-        found = self._found
-        new = np.flatnonzero((found.q != self._graded).any(axis=1))
+        """Grade every row with new attempts; open those again that are called reached but not accepted; which ones."""
+        found, reached = self._found, self._found.counts[:, REACHED] == 1
+        new = np.flatnonzero((found.counts[:, ATTEMPTS] != self._graded) | (reached & ~found.figures.accepted))
         if len(new):
             self._grade(new)
-        refused = new[(found.counts[new, REACHED] == 1) & ~found.figures.accepted[new]]
+        refused = np.flatnonzero(reached & ~found.figures.accepted)
         found.counts[refused, REACHED] = 0
         found.score[refused] = REFUSED
         return refused
 
     def _grade(self, rows: Ints) -> None:
-        problem, q = self._problem, self._found.q[rows]
-        asked = problem.robot, problem.detector, self._targets.take(rows), q, problem.settings
+        problem, targets, q = self._problem, self._targets, self._found.q
+        if len(rows) < len(q):  # mostly all at once, without a copy
+            targets, q = targets.take(rows), q[rows]
+        asked = problem.robot, problem.detector, targets, q, problem.settings
         self._found.figures.put(rows, compute_figures(*asked, limits=self._limits))
-        self._graded[rows] = q
+        self._graded[rows] = self._found.counts[rows, ATTEMPTS]
 
 
 def _widest(problem: Problem) -> Limits:
