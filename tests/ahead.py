@@ -1,7 +1,6 @@
-"""What takes minutes is begun when a session starts, in processes of its own: most tests keep one core busy.
+"""Compiling takes minutes, so a whole suite begins with it, in a process beside those of the tests.
 
-Types are checked; `test_tooling.py` waits for the verdict. Kernels are compiled into the cache, for a whole suite only;
-what a test needs before it is there, the test compiles itself. What still runs at the end of the session is stopped.
+What a test needs before it is in the cache, the test compiles itself. What still runs at the end is stopped.
 """
 
 import os
@@ -11,53 +10,34 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-TYPES = [str(Path(sys.executable).parent / "pyright"), "--pythonpath", sys.executable]
-KERNELS = [sys.executable, "-m", "tests.ahead"]
-WHOLE = 1000  # tests; fewer are no whole suite
-STARTED = {}
+STARTED = []
 
 
-def begin(tests):
-    """Start what these tests need."""
-    if any(name.endswith("test_types_hold") for name in tests):
-        STARTED["types"] = _start(TYPES, subprocess.PIPE)
-    if len(tests) >= WHOLE and os.environ.get("NUMBA_DISABLE_JIT", "0") == "0":
-        STARTED["kernels"] = _start(KERNELS, subprocess.DEVNULL)
-
-
-def check_types():
-    """(exit code, output) of the type checker."""
-    process = STARTED["types"]
-    output, _ = process.communicate()
-    return process.returncode, output
+def begin():
+    """Start to compile into the cache."""
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0":
+        quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        command = [sys.executable, "-m", "tests.ahead"]
+        STARTED.append(subprocess.Popen(command, cwd=ROOT, start_new_session=True, **quiet))
 
 
 def stop():
     """Leave no process behind, nor a child of one."""
     while STARTED:
-        _, process = STARTED.popitem()
+        process = STARTED.pop()
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        if process.stdout:
-            process.stdout.close()
-
-
-def _start(command, output):
-    own = {"stdin": subprocess.DEVNULL, "start_new_session": True}
-    return subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT, text=True, **own)
 
 
 def compile_kernels():
-    """Last what the first tests compile meanwhile: then it is in the cache."""
+    """All that a robot of the paper's size needs."""
     import ikde
     from ikde.solver.warmup import list_stages, warm_up
     from ikde.track.warmup import list_track_stages
 
     robot = ikde.load_robot("qiao2021")
-    stages = {stage.name: stage for stage in list_stages(robot)}
-    late = [stages.pop(name) for name in ("memetic", "analytic")]
-    warm_up([*late, *list_track_stages(robot), *stages.values()])
+    warm_up([*list_stages(robot), *list_track_stages(robot)])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 """What every test shares: the robots, a random generator, and a matplotlib that needs no screen."""
 
+import gc
 import os
 from dataclasses import replace
+from pathlib import Path
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 # Kernels written for a robot are compiled for that robot alone, 10 s a kind of target. What is not about them uses the
@@ -16,6 +18,10 @@ import ikde
 from tests import ahead
 
 ROBOTS = ikde.robot_names()
+TESTS = Path(__file__).parent
+WORKERS = 2
+LATE = {"kernels": 1, **dict.fromkeys(("batch", "bench", "cli", "report", "solver", "track", "test_docs.py"), 2)}
+LEFT_OUT = pytest.StashKey[int]()
 
 # The same examples in every run, however slow the machine: a test that fails is wrong, not unlucky.
 settings.register_profile("ikde", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -52,19 +58,71 @@ def random_q(robot, rng, count=None):
     return rng.uniform(robot.lower, robot.upper, size)
 
 
-def pytest_collection_finish(session):
-    """Begin what takes minutes."""
-    if not session.config.option.collectonly:
-        ahead.begin([item.nodeid for item in session.items])
+def is_whole(config):
+    """Whether all tests are run, but the slow ones."""
+    chosen = [Path(config.invocation_params.dir, arg) for arg in config.args]
+    return (
+        any(Path(__file__).is_relative_to(path.resolve()) for path in chosen)
+        and config.option.markexpr == "not slow"
+        and not config.option.keyword
+        and not config.option.collectonly
+    )
 
 
-def pytest_sessionfinish():
+def is_worker(config):
+    """Whether this process runs the tests that another hands out."""
+    return hasattr(config, "workerinput")
+
+
+def pytest_xdist_auto_num_workers(config):
+    """A process a core for all tests; for some, starting a second one takes longer than it saves."""
+    return WORKERS if is_whole(config) else 0
+
+
+def pytest_sessionstart(session):
+    """Compile, which takes minutes, once and first: all others wait for it in the end."""
+    if is_worker(session.config):
+        os.nice(5)
+    elif is_whole(session.config):
+        ahead.begin()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Nobody looks for garbage among thousands of tests, now or later: that took a third of the time of small ones."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
+def pytest_collection_modifyitems(items):
+    """First what needs no kernels, then what compiles its own; last what needs what `ahead` compiles meanwhile."""
+    items.sort(key=lambda item: LATE.get(item.path.relative_to(TESTS).parts[0], 0))
+
+
+def pytest_deselected(items):
+    """Count the slow tests that are left out."""
+    stash = items[0].config.stash
+    stash[LEFT_OUT] = stash.get(LEFT_OUT, 0) + sum(item.get_closest_marker("slow") is not None for item in items)
+
+
+def pytest_sessionfinish(session):
     """Also after Ctrl-C or a failure."""
     ahead.stop()
+    if is_worker(session.config):
+        session.config.workeroutput["left_out"] = session.config.stash.get(LEFT_OUT, 0)
 
 
-def pytest_terminal_summary(terminalreporter):
+def pytest_testnodedown(node):
+    """All workers leave out the same."""
+    node.config.stash[LEFT_OUT] = getattr(node, "workeroutput", {}).get("left_out", 0)
+
+
+def pytest_terminal_summary(terminalreporter, config):
     """Say at the end what was left out and how to run it."""
-    left_out = len(terminalreporter.stats.get("deselected", []))
-    if left_out and terminalreporter.config.option.markexpr == "not slow":
+    left_out = config.stash.get(LEFT_OUT, 0)
+    if left_out and config.option.markexpr == "not slow":
         terminalreporter.write_line(f"left out: {left_out} tests, the slow ones; `python -m pytest -m slow` runs them")

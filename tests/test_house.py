@@ -12,7 +12,7 @@ SOURCES = sorted(PACKAGE.rglob("*.py"))
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 FORBIDDEN_NAMES = {"utils", "util", "types", "core", "base", "helpers", "common", "misc"}
 LONGEST_FILE, LONGEST_BODY = 400, 60
-KERNEL_DECORATORS = {"kernel", "inline_kernel"}
+KERNEL_DECORATORS = {"kernel", "leaf_kernel", "inline_kernel"}
 PROVENANCE = {"published", "derived", "calibrated"}
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
 NO_TEST_OF_ITS_OWN = {
@@ -113,6 +113,12 @@ def test_arithmetic_is_strict(path):
 def test_only_kernels_know_numba(path):
     if not inside(path, "kernels"):
         assert "numba" not in set(imported(path))
+
+
+def test_a_kernel_is_known_by_its_decorator():
+    files = [path for path in SOURCES if inside(path, "kernels") and path.name != "jit.py"]
+    used = {ast.unparse(mark) for path in files for f in functions(path) for mark in f.decorator_list}
+    assert used == KERNEL_DECORATORS
 
 
 @every_file

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from tests import ahead
-
 ROOT = Path(__file__).parent.parent
 TOOLS = {
     "style": ["ruff", "check", "."],
     "format": ["ruff", "format", "--check", "."],
     "floors": ["lint-imports"],
+    "types": ["pyright", "--pythonpath", sys.executable],
 }
 
 
@@ -22,9 +21,3 @@ def test_the_house_holds(name):
     command = [str(Path(sys.executable).parent / program), *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-
-
-def test_types_hold():
-    """Begun with the session."""
-    code, output = ahead.check_types()
-    assert code == 0, output

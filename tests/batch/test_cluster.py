@@ -65,7 +65,7 @@ def test_a_cluster_gives_the_same_bytes(batch, whole, cluster, tmp_path):
 
 
 def test_a_local_cluster_gives_the_same_bytes_and_says_nothing(batch, whole, tmp_path, capfd):
-    ikde.run_batch(batch, tmp_path, dask="local", workers=2)
+    ikde.run_batch(batch, tmp_path, dask="local", workers=1)
     assert read_files(tmp_path) == whole
     assert capfd.readouterr() == ("", "")
 

@@ -60,7 +60,7 @@ def kill_at(process, folder, parts, delay):
     process.wait()
 
 
-@pytest.mark.parametrize("kills", [3, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
 def test_a_killed_run_goes_on_to_the_same_bytes(spec, whole, tmp_path, kills):
     dice = random.Random(kills)
     moments = sorted(dice.sample(range(PARTS // 2), kills))  # half a second before the end, however late we look

@@ -4,15 +4,18 @@ import json
 from dataclasses import asdict
 
 import pytest
+from matplotlib.figure import Figure
 
 from ikde.bench import budget as budgets
+from ikde.report.paper import pictures
 from tests.tiny_paper import TINY
 
 
 @pytest.fixture
 def report(cli, tmp_path, monkeypatch):
-    """A tiny report in a folder of its own."""
+    """A tiny report in a folder of its own, its pictures of the robot blank: each takes half a second."""
     monkeypatch.setattr(budgets, "QUICK", TINY)
+    monkeypatch.setattr(pictures, "plot_pose", lambda *_, **__: Figure(figsize=(1, 1)))
     outcome = cli("bench", "paper", "--out", tmp_path / "report", "--quick")
     assert outcome.code == 0, outcome
     return tmp_path / "report", outcome
@@ -59,12 +62,17 @@ def test_a_check_takes_its_sizes_from_the_record(refuse):
     assert "--quick" in refuse("bench", "paper", "--check", "--quick")
 
 
-def test_a_section_alone(cli, tmp_path):
-    outcome = cli("bench", "paper", "--out", tmp_path / "r", "--only", "kinematics,misprints")
+def test_sections_alone(cli, tmp_path):
+    outcome = cli("bench", "paper", "--out", tmp_path / "r", "--only", "kinematics,approximation,misprints")
     assert outcome.code == 0
     page = (tmp_path / "r" / "report.md").read_text(encoding="utf-8")
     assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == [
-        *("Formula 23 and Figure 6: kinematics", "Misprints, puzzles and what was calibrated", "How this was made"),
+        *(
+            "Formula 23 and Figure 6: kinematics",
+            "Table 2 and Figure 7: sphere approximations",
+            "Misprints, puzzles and what was calibrated",
+            "How this was made",
+        ),
     ]
     assert "ikde bench paper --only kinematics --out report/" in page
     assert cli("bench", "paper", "--out", tmp_path / "r", "--check").code == 0

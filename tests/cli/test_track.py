@@ -6,6 +6,7 @@ import math
 import pytest
 
 from ikde.io.robots import robot_path
+from tests.report.pages import leave_out_figures
 
 SPEC = """
 name: short
@@ -56,7 +57,8 @@ def test_without_a_folder_nothing_is_written(cli, spec, tmp_path):
     assert names(tmp_path) == ["short.yaml"]
 
 
-def test_without_figures_and_from_a_start(cli, spec, tmp_path):
+def test_without_figures_and_from_a_start(cli, spec, tmp_path, monkeypatch):
+    leave_out_figures(monkeypatch)
     chosen = cli("track", spec, "--out", tmp_path / "a", "--no-plot", "--json").data
     assert "report.html" not in names(tmp_path / "a")
     start = ",".join(f"{name}={value}" for name, value in chosen["start"].items())
@@ -92,7 +94,8 @@ def test_wheels_that_nobody_told_of_have_no_limit(cart, refuse):
     assert "short.yaml:7 → limits.wheel_speed: qiao2021 has no wheels: its file has no `wheels`" in told
 
 
-def test_a_path_that_ends_early_says_where_and_exits_with_1(cli, spec, tmp_path):
+def test_a_path_that_ends_early_says_where_and_exits_with_1(cli, spec, tmp_path, monkeypatch):
+    leave_out_figures(monkeypatch)
     spec.write_text(SPEC.replace("0.002*k", "(0 if k < 4 else 0.5)"))
     outcome = cli("track", spec, "--out", tmp_path / "a")
     assert outcome.code == 1

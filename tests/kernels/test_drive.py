@@ -101,6 +101,7 @@ def test_what_is_frozen_has_no_bounds_to_keep(qiao):
     speed = np.full(9, 0.5)
     speed[8] = 0.0
     drive, track = make_drive(qiao, speed=speed), make_track(qiao)
-    lower, upper = np.empty(8), np.empty(8)
-    assert set_step_box(drive, track.ranges, qiao.upper + 1.0, np.zeros(8), False, lower, upper) is not None
+    q, lower, upper = qiao.home.copy(), np.empty(8), np.empty(8)
+    q[8] = qiao.upper[8] + 1.0
+    assert set_step_box(drive, track.ranges, q, np.zeros(8), False, lower, upper)
     assert (lower[7], upper[7], drive.largest[7]) == (-1.0, 1.0, 0.0)

@@ -6,6 +6,7 @@ import pytest
 from ikde.kernels import tracking, wishes
 from ikde.kernels.arrays import CLEARANCE, DRIFT, LIMITS, MANIPULABILITY
 from ikde.kernels.drive import take_drive_step
+from ikde.kernels.fences import MOST_PAIRS
 from ikde.solver.plain import compute_gaps
 from tests.conftest import random_q
 from tests.kernels.driving import Stand
@@ -61,19 +62,29 @@ def test_agility_is_a_gradient(qiao, rng, name, kind):
             assert found[k] == pytest.approx((ends[0] - ends[1]) / 2e-4, abs=1e-6)
 
 
+def step_gaps(stand, step):
+    """Clearance of each pair [P] at the end of a step."""
+    end, detector = np.empty(9), stand.robot.detector(None)
+    plain(take_drive_step)(stand.drive, stand.q, step, end)
+    return compute_gaps(stand.robot, detector.spheres, stand.robot.pairs(detector), end)
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_apart_opens_the_nearest_pair(qiao, rng, name):
-    detector = qiao.detector(None)
-    opened = 0
+def test_near_pairs_push_up_the_gradients_of_their_gaps(qiao, rng, name):
+    """By all joints; a pair as hard as the square of how near it is, whatever the length of its gradient."""
+    pushed = 0
     for _ in range(8):
         stand = Stand(qiao, random_q(qiao, rng), name)
-        gaps = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), stand.q)
-        if not -0.05 < gaps.min() < 0.05:
-            continue
-        end = np.empty(9)
-        plain(take_drive_step)(stand.drive, stand.q, 1e-3 * wish_of(stand, apart=1.0), end)
-        opened += compute_gaps(qiao, detector.spheres, qiao.pairs(detector), end).min() >= gaps.min()
-    assert opened
+        moves = 1e-6 * np.eye(stand.size)
+        gaps, expected = step_gaps(stand, np.zeros(stand.size)), np.zeros(stand.size)
+        slopes = np.array([step_gaps(stand, move) - step_gaps(stand, -move) for move in moves]) / 2e-6
+        nearest, track = np.argsort(gaps)[:MOST_PAIRS], stand.track
+        for pair in nearest[gaps[nearest] < track.reach]:
+            near = 1.0 - (gaps[pair] - track.margin) / (track.reach - track.margin)
+            expected += 1e-2 * near**2 * slopes[:, pair] / np.linalg.norm(slopes[:, pair])
+        np.testing.assert_allclose(wish_of(stand, apart=1e-2), expected, atol=1e-8)
+        pushed += expected.any()
+    assert pushed >= 6
 
 
 def test_middle_is_minded_near_the_ends_only(qiao):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError, nearest
-from ikde.model.robot import AdjacentPair, Detector, Frame, Joint, Robot, SphereRow, Wheels
+from ikde.model.robot import AdjacentPair, Detector, Joint, Robot, SphereRow, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.random_robots import make_frame
 
@@ -449,7 +449,3 @@ def test_a_base_may_have_wheels_or_not(qiao, unwheeled):
 @pytest.mark.parametrize(("name", "expected"), [("improvd", " (did you mean 'improved'?)"), ("xyz", "")])
 def test_nearest_names_only_what_is_near(name, expected):
     assert nearest(name, ["improved", "typical"]) == expected
-
-
-def test_frames_are_plain_data():
-    assert isinstance(make_draft().frames[0], Frame)

@@ -1,5 +1,6 @@
-"""A page with every kind of block, and a drawing small enough to read."""
+"""A page with every kind of block, and a drawing small enough to read; and pages of tracks without their figures."""
 
+from ikde.report import track_page
 from ikde.report.page import (
     Animation,
     Cell,
@@ -33,6 +34,11 @@ RATES = Table(
     caption="Rates of **both** detectors",
     note="Intervals are `Wilson's`.",
 )
+
+
+def leave_out_figures(monkeypatch):
+    """Pages of tracks without their figures, which take 2 s; `test_track_page.py` draws them."""
+    monkeypatch.setattr(track_page, "_list_sections", lambda motion: [])
 
 
 def make_page():

@@ -16,6 +16,7 @@ from ikde.track.follow_path import grade_motion
 from ikde.track.methods import Followed
 from ikde.track.summary import summarise_track
 from ikde.track.trajectory import TrackStop, TrackStopReason
+from tests.report.pages import leave_out_figures
 from tests.track.measured import make_measured, make_still
 
 MOST_BYTES = 5_000_000
@@ -111,7 +112,8 @@ def test_a_start_alone_is_shown(qiao, plan):
     assert "certified" not in render_html(page)  # there is nothing between
 
 
-def test_the_same_again_is_the_same_run(qiao, plan, tmp_path):
+def test_the_same_again_is_the_same_run(qiao, plan, tmp_path, monkeypatch):
+    leave_out_figures(monkeypatch)
     file = str(tmp_path / "my path.yaml")
     motion, plan = make_measured(qiao), replace(plan, file=file)
 

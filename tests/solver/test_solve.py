@@ -193,8 +193,7 @@ def test_the_cost_is_counted(qiao):
     result = ikde.solve(qiao, ikde.Target((0.0, 0.0, 9.0)), CHEAP)
     assert result.attempts == 1
     assert result.evaluations >= CHEAP.population * CHEAP.generations
-    assert result.solve_seconds >= 0.0
-    assert result.compile_seconds >= 0.0
+    assert result.solve_seconds > 0.0
 
 
 def test_many_targets_come_back_in_order(qiao, rng):

@@ -64,7 +64,6 @@ def test_a_dead_end_is_left_by_going_back():
     assert stuck
     only = ContinuationSettings(uses=(tuple(use),))
     further = [choose_course(follower, starts[[k]], 500, 0, anything, only).last - ends[k].last for k in stuck[:3]]
-    assert min(further) >= 0
     assert max(further) > 0
 
 

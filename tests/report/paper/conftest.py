@@ -22,7 +22,7 @@ def robots():
 
 @pytest.fixture(autouse=True, scope="package")
 def _blank_pictures():
-    """Drawing a robot takes half a second; tests/report/paper/test_pictures.py and tests/cli/test_bench.py do it."""
+    """Drawing a robot takes half a second; tests/report/paper/test_pictures.py does it."""
     patch = pytest.MonkeyPatch()
     patch.setattr(pictures, "plot_pose", lambda *_, **__: Figure(figsize=(1, 1)))
     yield
