@@ -10,7 +10,7 @@ from typing import Any
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.batch.parts import PLAIN_NAME, Part, list_parts
 from ikde.batch.plan import Batch
-from ikde.errors import FileError, format_path
+from ikde.errors import FileError, format_path, quoted
 from ikde.files.atomic import write_atomically
 
 MANIFEST = "manifest.json"
@@ -19,7 +19,6 @@ REPORT_FILES = ("report.html", "report.md")
 FORMAT = "ikde batch 2"
 EARLIER = ("ikde batch 1",)  # `verified` was true where nothing had graded, and there was no `self_collision`
 SHOWN = 3  # differences that are spelt out
-LONGEST = 60  # characters of a value in a message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,5 +148,4 @@ def _flatten(data: Any, where: tuple[str | int, ...] = ()) -> Iterator[tuple[tup
 def _show(leaves: Mapping[Any, Any], key: Any) -> str:
     if key not in leaves:
         return "nothing"
-    text = repr(leaves[key])
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
+    return quoted(leaves[key])

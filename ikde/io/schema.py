@@ -5,7 +5,7 @@ from typing import Annotated, Any, Protocol, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.io.yaml_file import Where
 
 EXPECTED = {
@@ -71,13 +71,13 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
     elif kind == "too_long" and "actual_length" in context:
         message = f"expected {context['max_length']} values, got {context['actual_length']}"
     elif kind == "literal_error":
-        message = f"expected {context['expected']}, got {first['input']!r}"
+        message = f"expected {context['expected']}, got {quoted(first['input'])}"
     elif kind in LIMITS:
         words, key = LIMITS[kind]
         limit = context[key]
-        message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {_shorten(first['input'])}"
-    elif kind in EXPECTED:
-        got = "" if kind == "missing" else f", got {_shorten(first['input'])}"
+        message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {quoted(first['input'])}"
+    elif kind in EXPECTED:  # a whole file that is something else is none of ours to quote
+        got = "" if kind == "missing" or not where else f", got {quoted(first['input'])}"
         message = f"{EXPECTED[kind]}{got}"
     else:
         message = first["msg"][0].lower() + first["msg"][1:]
@@ -85,11 +85,6 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
         message = f"expected 3 values, got {where[-1]}"
         where = where[:-1]
     return document.error(message, where)
-
-
-def _shorten(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 40 else f"{text[:37]}..."
 
 
 def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:

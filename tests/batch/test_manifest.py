@@ -80,7 +80,7 @@ def test_one_that_cannot_be_written_is_an_error_in_one_line(tmp_path, manifest):
         ({"a": [1, 2]}, {"a": [1, 3]}, "a[1]: 2 there, 3 now"),
         ({"a": 1}, {"b": 1}, "a: 1 there, nothing now; b: nothing there, 1 now"),
         ({"a": {}}, {"a": {"b": None}}, "a: {} there, nothing now; a.b: nothing there, None now"),
-        ({}, {"a": "x" * 99}, f"a: nothing there, '{'x' * 59} ... now"),
+        ({}, {"a": "x" * 99}, f"a: nothing there, '{'x' * 56}... now"),
     ],
 )
 def test_a_difference_is_told_by_key(there, now, words):
