@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from ikde.bench.budget import Budget
@@ -19,9 +20,7 @@ def prepare_folder(folder: Path) -> None:
     """Make the folder if need be; raises `FileError` now rather than after minutes of work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".ikde"
-        probe.touch()
-        probe.unlink()
+        TemporaryFile(dir=folder).close()
     except FileExistsError:
         raise FileError(folder, "this is a file; expected a folder") from None
     except OSError as error:
