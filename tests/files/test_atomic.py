@@ -30,15 +30,6 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     assert [(p, p.read_bytes()) for p in tmp_path.iterdir()] == [(path, b"old")]
 
 
-def test_a_link_in_the_way_is_not_followed(tmp_path):
-    (tmp_path / "precious").write_text("text")
-    temporary_path(tmp_path / "a").symlink_to("precious")
-    with pytest.raises(OSError, match=r"a"):
-        write_atomically(tmp_path / "a", b"new")
-    assert (tmp_path / "precious").read_text() == "text"
-    write_atomically(tmp_path / "a", b"new")  # it is gone, as what a killed process leaves
-
-
 def test_a_folder_holds_what_is_new_and_nothing_that_was_before(tmp_path):
     assert replace_all(tmp_path, {"b": b"1", "a": b"2"}, "abc") == (tmp_path / "b", tmp_path / "a")
     (tmp_path / "mine").touch()
