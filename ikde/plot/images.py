@@ -28,7 +28,7 @@ def show_as_text(figure: Any) -> Any:
     for text in figure.findobj(Text):
         text.set_parse_math(False)
         text.set_usetex(False)
-        text.set_text(printable(text.get_text(), keep="\n"))
+        text.set_text(printable(text.get_text()))
     return figure
 
 

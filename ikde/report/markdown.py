@@ -11,12 +11,12 @@ from ikde.report.page import Animation, Block, Cell, Code, Facts, Figure, Galler
 _RULES = {"left": ":--", "right": "--:"}
 _MARKS = {"": "{}", "published": "_{}_", "ours": "**{}**", "off": "≠ **{}**"}
 _SPECIAL = re.compile(r"[\\`*|~$]|\b_|_\b|\](?=\()|:(?=//)|(?<=www)\.")  # a lone bracket or underscore is no mark
-_OPENING = re.compile(r"^(\d*)(?=[#>+=.)-])")  # of a line, by which it would be a heading, a list or a rule
+_OPENING = re.compile(r"^(?=[#>+=-])|(?<=^\d)(?=[.)])")  # of a line, by which it would be a heading, a list, a rule
 
 
 def render_markdown(page: Page) -> str:
     """The whole file as text; the pictures are in the HTML page."""
-    parts = [f"# {_plain(page.title)}", _plain(page.subtitle), *map(_block, page.lead)]
+    parts = [f"# {_plain(page.title)}", _plain_line(page.subtitle), *map(_block, page.lead)]
     for section in page.sections:
         parts += [f"## {_plain(section.title)}", *map(_block, section.blocks)]
     parts.append(_text(page.footer))
@@ -33,6 +33,11 @@ def _plain(text: str) -> str:
     return re.sub(r"&(?=#?\w+;)", "&amp;", escaped).replace("<", "&lt;")
 
 
+def _plain_line(text: str) -> str:
+    """The same at the beginning of a line."""
+    return _OPENING.sub(r"\\", _plain(text).lstrip())
+
+
 def _line(markup: str) -> str:
     parts = []
     for number, span in enumerate(parse_line(markup)):
@@ -44,8 +49,7 @@ def _line(markup: str) -> str:
             case "link":
                 parts.append(f"[{_plain(span.text)}]({span.href})")
             case "plain":
-                text = _plain(span.text)
-                parts.append(text if number else _OPENING.sub(r"\1\\", text.lstrip()))
+                parts.append(_plain(span.text) if number else _plain_line(span.text))
     return "".join(parts).strip()
 
 

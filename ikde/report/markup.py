@@ -9,7 +9,7 @@ from typing import Literal
 
 from ikde.errors import printable
 
-_FACE = r"\\(?P<face>[\\`*\[\]])"
+_FACE = r"\\(?P<face>[\\`*\[\]-])"
 _CODE = r"`(?P<code>[^`]+)`"
 _BOLD = r"\*\*(?P<bold>(?:\\.|[^*\\])+)\*\*"
 _LINK = r"\[(?P<link>(?:\\.|[^\]\\])+)\]\((?P<href>#[^)\s]+)\)"  # inside the page, and nowhere else
@@ -40,7 +40,7 @@ def as_line(text: str) -> str:
 
 def verbatim(text: str) -> str:
     """Markup that shows `text` as it is: names and reasons may hold brackets and stars, line breaks and worse."""
-    return re.sub(r"([\\`*\[\]])", r"\\\1", as_line(text))
+    return re.sub(r"^-|[\\`*\[\]]", r"\\\g<0>", as_line(text))
 
 
 def code(text: str) -> str:
