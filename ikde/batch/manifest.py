@@ -59,8 +59,8 @@ class Manifest:
     recipe: Annotated[Mapping[str, Any], AfterValidator(_check_recipe)]
     file: str | None
     robot: str
-    arms: Annotated[tuple[ArmFacts, ...], Field(min_length=1, max_length=10_000)]
-    graders: Annotated[tuple[PlainName, ...], Field(max_length=1000)]
+    arms: Annotated[tuple[ArmFacts, ...], Field(min_length=1, max_length=1000)]
+    graders: Annotated[tuple[PlainName, ...], Field(max_length=100)]
     targets: Count
     repeats: Count
     solves: Count

@@ -25,6 +25,7 @@ EXPECTED = {
     "finite_number": "expected a finite number",
     "string_too_short": "expected text that is not empty",
 }
+FEW = 4  # values: where there may not be more, there may not be fewer either
 LIMITS = {
     "greater_than_equal": ("at least", "ge"),
     "greater_than": ("more than", "gt"),
@@ -69,7 +70,9 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
         least = context["min_length"]
         message = f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {context['actual_length']}"
     elif kind == "too_long" and "actual_length" in context:
-        message = f"expected {context['max_length']} values, got {context['actual_length']}"
+        most, length = context["max_length"], context["actual_length"]
+        got = "more" if length is None else f"{length:,}"  # pydantic stops counting keys
+        message = f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
     elif kind == "literal_error":
         message = f"expected {context['expected']}, got {quoted(first['input'])}"
     elif kind in LIMITS:

@@ -75,6 +75,7 @@ def test_what_a_run_makes_is_read(tmp_path):
         ({"arm": words(*["other"] * 5)}, "arm holds words that are not among its own"),
         ({"hint": words(*["x" * 6000] * 5)}, "hint holds words of more than 5,000 bytes"),
         ({"clearance_m": [1e300] * 5}, "clearance_m holds numbers beyond 1e+12"),
+        ({"clearance_m": np.full(5, 6e4, np.float16)}, "clearance_m holds halffloat"),
         ({"clearance_m": [[1.0]] * 5}, "clearance_m holds list"),
         ({"clearance_m": [{"x": 1.0}] * 5}, "clearance_m holds struct"),
     ],
