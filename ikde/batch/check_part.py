@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from ikde.batch.columns import WORDS
 from ikde.batch.manifest import Manifest
@@ -18,7 +17,7 @@ ALWAYS = {
 }
 WORDY = ("arm", "target_name", "stop_reason", "closest_pair", "reason", "hint", "target_kind", "host")
 VERDICTS = ("self_collision", "verified")  # and `<grader>_collides`: null where nothing was checked
-LONGEST_WORD = 5000  # bytes
+LONGEST_WORD = 5000  # characters
 LARGEST = 1e12  # of a number
 
 
@@ -76,11 +75,11 @@ def _is_of_kind(name: str, kind: pa.DataType) -> bool:
 
 def _find_wrong_values(name: str, column: pa.ChunkedArray, manifest: Manifest, part: Part) -> Iterator[str]:
     if pa.types.is_dictionary(column.type):
-        words = pa.chunked_array([chunk.dictionary for chunk in column.chunks], pa.string())
-        if (pc.max(pc.binary_length(words)).as_py() or 0) > LONGEST_WORD:
-            yield f"{name} holds words of more than {LONGEST_WORD:,} bytes"
+        words = {word for chunk in column.chunks for word in chunk.dictionary.to_pylist()}
+        if max((len(word or "") for word in words), default=0) > LONGEST_WORD:
+            yield f"{name} holds words of more than {LONGEST_WORD:,} characters"
         known = {"arm": [part.arm], "stop_reason": WORDS}.get(name)
-        if known and not set(words.to_pylist()) <= set(known):
+        if known and not words <= set(known):
             yield f"{name} holds words that are not among its own"
         return
     solves = np.arange(part.first, part.last)

@@ -132,8 +132,8 @@ def is_plain(kind: pa.DataType) -> bool:
 
 
 def _spelt_bytes(chunk: pa.DictionaryArray) -> int:
-    lengths = pc.binary_length(chunk.dictionary).take(chunk.indices)
-    return pc.sum(lengths.cast(pa.int64())).as_py() or 0
+    lengths = pc.call_function("binary_length", [chunk.dictionary]).fill_null(0)
+    return int(lengths.take(chunk.indices.drop_null()).to_numpy().sum(dtype=np.int64))
 
 
 READERS = {".csv": CsvTable, ".parquet": ParquetTable, ".npz": NpzTable}

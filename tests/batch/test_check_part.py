@@ -73,7 +73,7 @@ def test_what_a_run_makes_is_read(tmp_path):
         ({"stop_reason": ["reached"] * 5}, "stop_reason holds string"),
         ({"stop_reason": words(*["<script>"] * 5)}, "stop_reason holds words that are not among its own"),
         ({"arm": words(*["other"] * 5)}, "arm holds words that are not among its own"),
-        ({"hint": words(*["x" * 6000] * 5)}, "hint holds words of more than 5,000 bytes"),
+        ({"hint": words(*["x" * 6000] * 5)}, "hint holds words of more than 5,000 characters"),
         ({"clearance_m": [1e300] * 5}, "clearance_m holds numbers beyond 1e+12"),
         ({"clearance_m": np.full(5, 6e4, np.float16)}, "clearance_m holds halffloat"),
         ({"clearance_m": [[1.0]] * 5}, "clearance_m holds list"),
