@@ -1,10 +1,15 @@
-"""The one family of exceptions that ikde raises.
+"""The one family of exceptions that ikde raises, and foreign text as it may be shown.
 
-A target that cannot be reached is not an error: it is a `SolveResult` with a `StopReason`.
+A target that cannot be reached is not an error: it is a `SolveResult` with a `StopReason`. An error is one line of at
+most `LONGEST` characters: files and names may hold anything, also what a terminal would obey.
 """
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+
+LONGEST = 300  # characters of an error; file, line and key are kept, the message is cut
+LONGEST_FILE, LONGEST_KEYS, LONGEST_KEY, LONGEST_QUOTE = 140, 80, 40, 60
+MOST_COMPARED = 1000  # names that a misspelt one is compared with
 
 
 class IkdeError(Exception):
@@ -18,9 +23,9 @@ class InputError(IkdeError):
     """
 
     def __init__(self, message: str, where: tuple[str | int, ...] = ()) -> None:
-        self.message = message
+        self.message = shorten(printable(message), LONGEST)
         self.where = where
-        super().__init__(f"{format_path(where)}: {message}" if where else message)
+        super().__init__(_write_line(format_path(where), self.message))
 
 
 class FileError(InputError):
@@ -28,8 +33,9 @@ class FileError(InputError):
 
     def __init__(self, path: object, message: str, where: tuple[str | int, ...] = (), line: int | None = None) -> None:
         super().__init__(message, where)
-        place = f"{path}:{line}" if line else f"{path}"
-        self.args = (f"{place} → {self.args[0]}" if where else f"{place}: {message}",)
+        file = shorten(printable(str(path)), LONGEST_FILE, keep_end=True)
+        place = f"{file}:{line}" if line else file
+        self.args = (_write_line(f"{place} → {format_path(where)}" if where else place, self.message),)
 
 
 class CacheWarning(RuntimeWarning):
@@ -42,16 +48,38 @@ class VerificationError(IkdeError):
 
 def format_path(where: tuple[str | int, ...]) -> str:
     """Write `("spheres", "typical", 2, "radius")` as `spheres.typical[2].radius`."""
-    text = "".join(f"[{key}]" if isinstance(key, int) else f".{show(key)}" for key in where)
-    return text.removeprefix(".")
-
-
-def show(text: str) -> str:
-    """Text on one line: what a terminal might obey, and what nobody sees, as its escape."""
-    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(str(key), LONGEST_KEY)}" for key in where)
+    return shorten(printable(text.removeprefix(".")), LONGEST_KEYS, keep_end=True)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """` (did you mean 'x'?)`, or nothing when no known name is close."""
-    close = get_close_matches(name, list(known), n=1)
-    return f" (did you mean {close[0]!r}?)" if close else ""
+    close = get_close_matches(name[:LONGEST_QUOTE], list(known)[:MOST_COMPARED], n=1)
+    return f" (did you mean {quoted(close[0])}?)" if close else ""
+
+
+def printable(text: str, keep: str = "") -> str:
+    """Text on one line in which nothing is an order to a terminal: `\\x1b[31m` for what would turn it red.
+
+    Control characters, line breaks, marks that reverse the direction of text, halves of characters: all that Unicode
+    does not call printable is written as Python writes it, but for the characters in `keep`.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c in keep else repr(c)[1:-1] for c in text)
+
+
+def quoted(value: object) -> str:
+    """A value as Python writes it, in so few characters that a line has room for it."""
+    return shorten(printable(repr(value)), LONGEST_QUOTE)
+
+
+def shorten(text: str, most: int, *, keep_end: bool = False) -> str:
+    """At most so many characters: the first ones, or the last ones."""
+    if len(text) <= most:
+        return text
+    return f"...{text[len(text) - most + 3 :]}" if keep_end else f"{text[: most - 3]}..."
+
+
+def _write_line(place: str, message: str) -> str:
+    return f"{place}: {shorten(message, LONGEST - len(place) - 2)}" if place else message

@@ -18,7 +18,6 @@ CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
 NO_TEST_OF_ITS_OWN = {
     "__main__.py": "two lines; tests/cli/test_app.py runs them in a process",
     "bench/budget.py": "sample sizes; the tests of every section use them",
-    "errors.py": "every test of a refusal reads its messages",
     "cli/exit_codes.py": "an enumeration; tests/cli/test_app.py",
     "cli/output.py": "tests/cli/test_app.py sees what it writes",
     "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",

@@ -60,7 +60,7 @@ def _make_named(name: str, spec: BatchSpec, robot: Robot) -> Arm:
     """An arm laid over `solve`; what is wrong with it is placed where it was written."""
     own = spec.arms[name].model_dump(exclude_unset=True)
     if not PLAIN_NAME.fullmatch(name):
-        raise InputError("expected a name of letters, digits and . _ -, since it names files", ("arms", name))
+        raise InputError("expected a name of up to 100 letters, digits and . _ -, since it names files", ("arms", name))
     shared = spec.solve.model_dump(exclude_unset=True)
     added = {key: {**shared[key], **own[key]} for key in MERGED if shared.get(key) and own.get(key)}
     try:

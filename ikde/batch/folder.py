@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -42,7 +43,7 @@ def claim_folder(folder: Path, batch: Batch, *, overwrite: bool) -> Iterator[Non
         except (FileExistsError, NotADirectoryError):
             raise FileError(folder, "is a file or lies below one; expected a folder") from None
         except OSError as error:
-            raise FileError(folder, f"cannot be used: {error.strerror}") from None
+            raise FileError(folder, f"cannot be used: {error.strerror or error}") from None
         yield
 
 
@@ -83,7 +84,7 @@ def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
     there = read_manifest(folder) if (folder / MANIFEST).exists() else None
     if there and there.hash != batch.hash and not overwrite:
         difference = describe_difference(there.recipe, batch.recipe)
-        raise FileError(folder, f"holds another run: {difference} (--overwrite replaces it)")
+        raise FileError(folder, f"holds another run (--overwrite replaces it): {difference}")
     if there is None:
         write_manifest(folder, make_manifest(batch))
     for kind in (SOLUTIONS, TIMING):
@@ -114,13 +115,17 @@ def _check_ours(folder: Path) -> None:
 @contextmanager
 def _lock(folder: Path) -> Iterator[None]:
     """A lock that the system lets go of when its holder ends, however it ends."""
-    with (folder / LOCK).open("a+") as file:
+    flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC  # a link would lead elsewhere
+    descriptor = os.open(folder / LOCK, flags, 0o666)
+    with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            file.seek(0)
-            raise FileError(folder, f"process {file.read() or 'another'} is writing this run") from None
-        file.truncate(0)
+            raise FileError(folder, f"process {file.read(20) or 'another'} is writing this run") from None
+        if not re.fullmatch(r"\d*", file.read(20)):
+            raise FileError(folder / LOCK, "is none of ours; expected the number of a process")
+        file.seek(0)
+        file.truncate()
         file.write(str(os.getpid()))
         file.flush()
         yield

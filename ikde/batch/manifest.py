@@ -1,17 +1,23 @@
-"""The manifest of a run: recipe, what it was started on, and the parts to expect. Written before anything else."""
+"""The manifest of a run: recipe, what it was started on, and the parts to expect. Written before anything else.
+
+Who reads a run may have it from a stranger: everything in it is checked, and nothing in its folder may be a link.
+"""
 
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, ConfigDict, Field, StringConstraints, TypeAdapter, ValidationError
 
 from ikde.batch.machine import describe_machine, describe_versions
-from ikde.batch.parts import PLAIN_NAME, Part, list_parts
+from ikde.batch.parts import MOST_PARTS, PLAIN_NAME, SOLUTIONS, TIMING, Part, list_parts
 from ikde.batch.plan import Batch
-from ikde.errors import FileError, format_path
+from ikde.errors import FileError, format_path, quoted
 from ikde.files.atomic import write_atomically
+from ikde.files.reading import read_json
 
 MANIFEST = "manifest.json"
 REPORT = "report"  # where `ikde report` puts its page
@@ -19,14 +25,24 @@ REPORT_FILES = ("report.html", "report.md")
 FORMAT = "ikde batch 2"
 EARLIER = ("ikde batch 1",)  # `verified` was true where nothing had graded, and there was no `self_collision`
 SHOWN = 3  # differences that are spelt out
-LONGEST = 60  # characters of a value in a message
+
+PlainName = Annotated[str, StringConstraints(pattern=f"^{PLAIN_NAME.pattern}$")]
+Count = Annotated[int, Field(ge=1, le=10**9)]
+
+
+def _check_recipe(recipe: Mapping[str, Any]) -> Mapping[str, Any]:
+    arms, targets = recipe.get("arms", {}), recipe.get("targets", {})
+    if not (isinstance(targets, dict) and isinstance(arms, dict) and all(isinstance(a, dict) for a in arms.values())):
+        raise ValueError("arms and targets of a recipe are mappings")
+    return recipe
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmFacts:
     """An arm as the manifest knows it."""
 
-    name: str
+    __pydantic_config__ = ConfigDict(extra="forbid")
+    name: PlainName
     method: str
     detector: str
     settings: Mapping[str, Any]
@@ -36,22 +52,23 @@ class ArmFacts:
 class Manifest:
     """What stands in `manifest.json`."""
 
+    __pydantic_config__ = ConfigDict(extra="forbid")
     format: str
     name: str
     hash: str
-    recipe: Mapping[str, Any]
+    recipe: Annotated[Mapping[str, Any], AfterValidator(_check_recipe)]
     file: str | None
     robot: str
-    arms: tuple[ArmFacts, ...]
-    graders: tuple[str, ...]
-    targets: int
-    repeats: int
-    solves: int
+    arms: Annotated[tuple[ArmFacts, ...], Field(min_length=1, max_length=1000)]
+    graders: Annotated[tuple[PlainName, ...], Field(max_length=100)]
+    targets: Count
+    repeats: Count
+    solves: Count
     """Of one arm."""
     seed: int
-    chunk: int
+    chunk: Count
     """Solves a part."""
-    parts: int
+    parts: Annotated[int, Field(ge=1, le=MOST_PARTS)]
     """Of all arms."""
     started: str
     """UTC, ISO 8601."""
@@ -106,26 +123,34 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run; raises `FileError` for a folder that holds none of this format."""
+    """Read the manifest of a run; raises `FileError` for a folder that holds none of ours, or links."""
+    for name in (SOLUTIONS, TIMING, REPORT):
+        if (folder / name).is_symlink():
+            raise FileError(folder / name, "is a symbolic link; a run holds none")
     try:
-        data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-        if data["format"] != FORMAT:
-            raise _refuse_format(folder, data["format"])
-        arms = tuple(ArmFacts(**arm) for arm in data.pop("arms"))
-        if not all(PLAIN_NAME.fullmatch(arm.name) for arm in arms):  # they name the files that are read
-            raise ValueError(arms)
-        return Manifest(arms=arms, graders=tuple(data.pop("graders")), **data)
-    except OSError as error:
-        raise FileError(folder, f"holds no run of ikde: {MANIFEST}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError, RecursionError):
-        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours") from None
-
-
-def _refuse_format(folder: Path, found: Any) -> Exception:
-    """Columns of another format mean something else: parts of both must not be mixed."""
-    if found not in EARLIER:
-        return ValueError(found)
-    return FileError(folder, f"holds a run of an earlier ikde ({found!r}, expected {FORMAT!r}); name another folder")
+        data = read_json(folder / MANIFEST, follow=False)
+    except FileError as error:
+        raise FileError(folder, f"holds no run of ikde: {MANIFEST}: {error.message}") from None
+    if isinstance(data, dict) and data.get("format") in EARLIER:
+        # Columns of another format mean something else: parts of both must not be mixed.
+        told = f"holds a run of an earlier ikde ({data['format']!r}, expected {FORMAT!r}); name another folder"
+        raise FileError(folder, told)
+    try:
+        manifest = TypeAdapter(Manifest).validate_python(data)
+    except ValidationError as error:
+        where = format_path(error.errors()[0]["loc"])
+        raise FileError(
+            folder, f"holds no run of ikde: its {MANIFEST} is none of ours ({where or 'all of it'})"
+        ) from None
+    names = [arm.name for arm in manifest.arms]
+    parts = len(names) * -(-manifest.solves // manifest.chunk)
+    if (
+        manifest.format != FORMAT
+        or (manifest.solves, manifest.parts) != (manifest.targets * manifest.repeats, parts)
+        or len(set(names)) < len(names)
+    ):
+        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours, or contradicts itself")
+    return manifest
 
 
 def describe_difference(there: Any, now: Any) -> str:
@@ -149,5 +174,4 @@ def _flatten(data: Any, where: tuple[str | int, ...] = ()) -> Iterator[tuple[tup
 def _show(leaves: Mapping[Any, Any], key: Any) -> str:
     if key not in leaves:
         return "nothing"
-    text = repr(leaves[key])
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
+    return quoted(leaves[key])

@@ -11,11 +11,13 @@ import pyarrow.parquet as pq
 
 from ikde.errors import FileError
 from ikde.files.atomic import write_together
+from ikde.files.reading import errors_of, read_bytes
+from ikde.files.tables import check_room, claimed_bytes
 
-PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]+")  # arms name files, graders name columns
+PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]{1,100}")  # arms name files, graders name columns
 SOLUTIONS, TIMING = "solutions", "timing"
 RECIPE, SEAL = b"ikde_recipe", b"ikde_seal"  # keys in the metadata of a file
-DAMAGED = (OSError, ValueError, pa.ArrowException)  # what reading a damaged file raises, bad UTF-8 included
+MOST_PARTS = 10**6  # of a run
 GO_ON = "finished parts are intact; run the same command again to go on"
 
 
@@ -88,17 +90,22 @@ def serialize(table: pa.Table) -> pa.Buffer:
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
-    """A file of a part, or those of `columns` that it has; raises what is `DAMAGED` if it is."""
-    with pq.ParquetFile(path, page_checksum_verification=True) as file:
-        wanted = None if columns is None else [name for name in file.schema_arrow.names if name in columns]
-        return file.read(wanted)
+    """A file of a part, or those of `columns` that it has; raises `FileError` if it is damaged, or a link."""
+    source = pa.BufferReader(read_bytes(path, follow=False))
+    with errors_of(path), pq.ParquetFile(source, page_checksum_verification=True) as file:
+        wanted = [name for name in file.schema_arrow.names if columns is None or name in columns]
+        check_room(path, claimed_bytes(file.metadata, len(wanted)))
+        table = file.read(wanted)
+        table.validate(full=True)
+        return table
 
 
 def is_finished(folder: Path, part: Part, recipe: str) -> bool:
     """True if both files are there, of this recipe, undamaged, and hold the rows they should."""
     try:
-        answers, timing = part.path(folder, SOLUTIONS).read_bytes(), read_table(part.path(folder, TIMING))
-    except DAMAGED:
+        answers = read_bytes(part.path(folder, SOLUTIONS), follow=False)
+        timing = read_table(part.path(folder, TIMING))
+    except FileError:
         return False
     marks = {RECIPE: recipe.encode(), SEAL: _seal(answers, timing).encode()}
     return len(timing) == part.rows and timing.schema.metadata == marks

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
+from ikde.batch.check_part import check_part
 from ikde.batch.manifest import Manifest, read_manifest
-from ikde.batch.parts import DAMAGED, SOLUTIONS, TIMING, Part, read_table
+from ikde.batch.parts import SOLUTIONS, TIMING, Part, read_table
 from ikde.errors import FileError
+from ikde.files.reading import errors_of
 from ikde.solver.verify import MaskedBools
 
 
@@ -24,11 +26,12 @@ def read_batch(folder: str | PathLike[str], timing: bool = False) -> pa.Table:
         FileError: for a folder that is no run, has no finished part yet, or holds a part that is damaged.
     """
     folder = Path(folder)
-    kind = TIMING if timing else SOLUTIONS
-    tables = [read_part(folder, part, kind) for part in list_finished(folder, read_manifest(folder))]
+    kind, manifest = TIMING if timing else SOLUTIONS, read_manifest(folder)
+    tables = [read_part(folder, manifest, part, kind) for part in list_finished(folder, manifest)]
     if not tables:
         raise FileError(folder, "no part of this run is finished yet")
-    return pa.concat_tables(tables).unify_dictionaries()
+    with errors_of(folder):  # parts of a stranger may have different columns
+        return pa.concat_tables(tables).unify_dictionaries()
 
 
 def read_verdicts(column: pa.ChunkedArray) -> MaskedBools:
@@ -41,11 +44,15 @@ def list_finished(folder: Path, manifest: Manifest) -> Iterator[Part]:
     return (part for part in manifest.list_parts() if part.path(folder, SOLUTIONS).exists())
 
 
-def read_part(folder: Path, part: Part, kind: str, columns: Sequence[str] | None = None) -> pa.Table:
-    """One file of a part, or those of `columns` that it has."""
+def read_part(
+    folder: Path, manifest: Manifest, part: Part, kind: str, columns: Sequence[str] | None = None
+) -> pa.Table:
+    """One file of a part, or those of `columns` that it has; raises `FileError` if it is not what the run makes."""
     path = part.path(folder, kind)
     try:
-        return read_table(path, columns)
-    except DAMAGED as error:
-        cause = str(error).splitlines()[0]
+        table = read_table(path, columns)
+    except FileError as error:
+        cause = error.message.removeprefix("cannot be read: ")
         raise FileError(path, f"cannot be read; running the batch again redoes this part ({cause})") from None
+    check_part(path, manifest, part, kind, table, columns)
+    return table

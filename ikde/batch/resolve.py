@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ikde.batch.arms import describe_arm, make_arm, make_arms
-from ikde.batch.parts import PLAIN_NAME
+from ikde.batch.parts import MOST_PARTS, PLAIN_NAME
 from ikde.batch.plan import Batch
 from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
@@ -38,10 +38,14 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
     source, targets = make_source(spec, shared.problem, folder)
     if source.count * spec.repeats > MOST_SOLVES:
         raise InputError(f"{source.count:,} targets make more than {MOST_SOLVES:,} solves an arm", ("repeats",))
+    chunk = spec.chunk or choose_chunk(source.count * spec.repeats)
+    parts = len(arms) * -(-source.count * spec.repeats // chunk)
+    if parts > MOST_PARTS:
+        raise InputError(f"this makes {parts:,} files; expected at most {MOST_PARTS:,}", ("chunk",))
     asked: dict[str, Any] = {
         "repeats": spec.repeats,
         "seed": spec.seed,
-        "chunk": spec.chunk or choose_chunk(source.count * spec.repeats),
+        "chunk": chunk,
         "explain": spec.explain,
         "columns": tuple(group for group in COLUMN_GROUPS if group in spec.output.columns),
     }
@@ -73,7 +77,7 @@ def _make_graders(spec: BatchSpec, robot: Robot) -> tuple[Detector, ...]:
             if detector is None:
                 raise InputError("expected a detector; 'none' grades nothing")
             if not PLAIN_NAME.fullmatch(detector.name):
-                raise InputError("expected a name of letters, digits and . _ -, since it names columns")
+                raise InputError("expected a name of up to 100 letters, digits and . _ -, since it names columns")
             if detector.name in graders:
                 raise InputError(f"two detectors are called {detector.name!r}")
             graders[detector.name] = detector

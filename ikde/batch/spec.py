@@ -164,9 +164,9 @@ class BatchSpec(Entry):
     """What to reach."""
     solve: SolveEntry = SolveEntry()
     """How to solve."""
-    arms: dict[Name, SolveEntry] = {}
+    arms: Annotated[dict[Name, SolveEntry], Field(max_length=1000)] = {}
     """Several ways to solve, compared over the same targets and random streams; each is laid over `solve`."""
-    grade: list[DetectorChoice] = []
+    grade: Annotated[list[DetectorChoice], Field(max_length=100)] = []
     """Further detectors that grade every solution."""
     repeats: Count = 1
     """How often each target is solved, each time with its own random stream."""

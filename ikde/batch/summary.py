@@ -46,9 +46,9 @@ def summarise(folder: str | PathLike[str]) -> RunSummary:
     tallies = {arm.name: ArmTally(arm, manifest) for arm in manifest.arms}
     done = list(list_finished(folder, manifest))
     for part in done:
-        solutions = read_part(folder, part, SOLUTIONS, _columns(manifest))
-        seconds = read_part(folder, part, TIMING, ["solve_seconds"])["solve_seconds"].to_numpy()
-        tallies[part.arm].add(solutions, seconds)
+        solutions = read_part(folder, manifest, part, SOLUTIONS, _columns(manifest))
+        timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
+        tallies[part.arm].add(solutions, timing["solve_seconds"].to_numpy())
     return RunSummary(
         folder=folder,
         name=manifest.name,

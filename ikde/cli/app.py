@@ -22,7 +22,7 @@ from ikde.cli.solve import solve
 from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread, warn_in_one_line
 from ikde.cli.track import track
 from ikde.cli.warmup import warmup
-from ikde.errors import InputError
+from ikde.errors import InputError, printable
 
 # Click's UsageError, wherever typer keeps it: newer ones carry a copy of click of their own.
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -107,7 +107,10 @@ def explain_error(error: BaseException) -> tuple[ExitCode, str]:
         return ExitCode.BAD_INPUT, f"{path}: {' '.join(usage.format_message().split())}"
     if isinstance(error, InputError):
         return ExitCode.BAD_INPUT, f"ikde: {error}"
+    if isinstance(error, typer.Abort) and isinstance(error.__cause__, EOFError):
+        error = error.__cause__  # typer takes the end of a file for Ctrl-C
     if isinstance(error, KeyboardInterrupt | typer.Abort):
         return ExitCode.INTERRUPTED, str(error) or INTERRUPTED
-    traceback.print_exception(error)
+    for line in traceback.format_exception(error):
+        sys.stderr.write(printable(line, keep="\n"))
     return ExitCode.BUG, f"ikde: this is a bug, please report it: {type(error).__name__}: {error}"

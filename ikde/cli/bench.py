@@ -10,7 +10,7 @@ import typer
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption
-from ikde.cli.output import announce_compile, print_json, print_result
+from ikde.cli.output import announce_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> N
     if as_json:
         print_json(results)
     else:
-        print_result(f"{out / 'report.html'}  (report.md and {RESULTS} beside it)")
+        print_line(f"{out / 'report.html'}  (report.md and {RESULTS} beside it)")
 
 
 def _render(results: Mapping[str, Any], sources: "Sources") -> dict[str, str]:
@@ -109,9 +109,10 @@ def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
     if as_json:
         print_json({"agrees": not differences, "differences": differences})
     elif differences:
-        print_result("\n".join([f"{len(differences)} figures differ from {out / RESULTS}:", *differences]))
+        for line in (f"{len(differences)} figures differ from {out / RESULTS}:", *differences):
+            print_line(line)
     else:
-        print_result(f"{out / RESULTS}: every exact figure comes out the same")
+        print_line(f"{out / RESULTS}: every exact figure comes out the same")
     return ExitCode.NOT_REACHED if differences else ExitCode.OK
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import JsonOption, note_unchecked
-from ikde.cli.output import announce_compile, print_json, print_result
+from ikde.cli.output import announce_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def bench_track(
     if as_json:
         print_json(data)
     else:
-        print_result(f"{out / 'report.html'}  ({RESULTS} beside it)")
+        print_line(f"{out / 'report.html'}  ({RESULTS} beside it)")
 
 
 def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":

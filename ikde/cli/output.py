@@ -6,11 +6,18 @@ from contextlib import AbstractContextManager, nullcontext
 from shutil import get_terminal_size
 from typing import Any
 
+from ikde.errors import printable
+
 
 def print_result(text: str) -> None:
     """Write a result to stdout."""
     sys.stdout.write(text if text.endswith("\n") else f"{text}\n")
     sys.stdout.flush()
+
+
+def print_line(text: str) -> None:
+    """Write one line to stdout that may hold names of files and robots."""
+    print_result(printable(text))
 
 
 def print_json(data: Any) -> None:
@@ -19,8 +26,8 @@ def print_json(data: Any) -> None:
 
 
 def print_note(text: str) -> None:
-    """Write a remark to stderr."""
-    sys.stderr.write(f"{text}\n")
+    """Write a remark to stderr, on one line that gives no orders to a terminal."""
+    sys.stderr.write(f"{printable(text)}\n")
     sys.stderr.flush()
 
 
@@ -40,7 +47,14 @@ def working(text: str) -> AbstractContextManager[Any]:
         return nullcontext()
     from rich.console import Console
 
-    return Console(stderr=True).status(text)
+    return Console(stderr=True).status(as_words(text))
+
+
+def as_words(text: str) -> Any:
+    """Text for a spinner that is shown as it is."""
+    from rich.text import Text
+
+    return Text(printable(text))
 
 
 def announce_compile(takes: str = "10 s to a minute") -> None:

@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Any
 
 from ikde.cli.output import print_note
+from ikde.errors import printable
 
 if TYPE_CHECKING:
     from ikde.batch.run import Progress
@@ -30,7 +31,7 @@ def _show_bar(title: str) -> Iterator["Tell"]:
 
     pace = Pace()
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TaskProgressColumn(),
         MofNCompleteColumn(),
@@ -38,7 +39,7 @@ def _show_bar(title: str) -> Iterator["Tell"]:
         TimeRemainingColumn(),
     )
     with Bars(*columns, console=Console(stderr=True), speed_estimate_period=600.0) as bars:
-        bar = bars.add_task(title, parts="", rate="")
+        bar = bars.add_task(printable(title), parts="", rate="")
 
         def tell(now: "Progress") -> None:
             parts = f"{now.parts_done} of {now.parts}"

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ikde.cli.options import JsonOption
-from ikde.cli.output import print_json, print_result
+from ikde.cli.output import print_json, print_line
 
 
 def report(
@@ -42,4 +42,4 @@ def report(
     if as_json:
         print_json({"html": str(html), "markdown": str(markdown), "finished": answers.finished})
     else:
-        print_result(f"{html}  ({markdown.name} beside it)")
+        print_line(f"{html}  ({markdown.name} beside it)")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import AnglesOption, AngleUnit, DetectorOption, JsonOption, LengthUnit, UnitOption
-from ikde.cli.output import page_width, print_json, print_result, use_color
+from ikde.cli.output import page_width, print_json, print_line, print_result, use_color
 
 if TYPE_CHECKING:
     from ikde.model.robot import Detector, Robot
@@ -98,9 +98,7 @@ def validate(
         counts = {"joints": len(model.joints), "frames": len(model.frames)}
         print_json({"valid": True, "name": model.name, **counts, "collision": pairs_json(model, chosen)})
     else:
-        print_result(
-            f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames"
-        )
+        print_line(f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames")
         print_result(format_pairs(model, chosen, Units(unit), color=use_color(), width=page_width()))
 
 

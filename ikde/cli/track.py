@@ -10,7 +10,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q
-from ikde.cli.output import announce_compile, print_json, print_result, use_color, working
+from ikde.cli.output import announce_compile, as_words, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -101,4 +101,4 @@ def _draw(plan: "TrackPlan", motion: "TrackSummary", tell: Callable[[str], None]
 def _show_steps() -> Iterator[Callable[[str], None]]:
     """What is being done, on stderr, if somebody is looking."""
     with working("") as status:
-        yield (lambda text: None) if status is None else lambda text: status.update(f"{text} ...")
+        yield (lambda text: None) if status is None else lambda text: status.update(as_words(f"{text} ..."))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_json: JsonOption = False) -> None:
     """Compile the kernels of a robot ahead: all engines and kinds of target, and tracks; seconds if that is done."""
     from ikde.io.robots import load_robot
-    from ikde.report.render import make_table, render
+    from ikde.report.render import make_table, plain, render
     from ikde.solver.warmup import list_stages, warm_up
     from ikde.track.warmup import list_track_stages
 
@@ -29,7 +29,7 @@ def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_
         return
     table = make_table("kernels", ">compiled in")
     for stage in done:
-        table.add_row(stage.name, f"{stage.seconds:.1f} s" if stage.seconds else "was ready")
+        table.add_row(plain(stage.name), f"{stage.seconds:.1f} s" if stage.seconds else "was ready")
     table.add_row("together", f"{sum(stage.seconds for stage in done):.1f} s")
     print_result(render(table, color=use_color()))
 

@@ -9,8 +9,6 @@ from typing import Any
 
 from ikde.errors import FileError
 
-FLAGS = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0)  # a link would lead elsewhere
-
 
 def write_atomically(path: Path, data: Any) -> None:
     """Write bytes (anything with a buffer) to `path`, on the disk when this returns; raises `OSError`.
@@ -31,7 +29,7 @@ def write_together(files: Mapping[Path, Any]) -> None:
     try:
         for path, data in files.items():
             with _blame(path):
-                opened[path] = os.open(temporary_path(path), FLAGS, 0o666)
+                opened[path] = _open_new(temporary_path(path))
                 _write(opened[path], data)
         _sync_together(opened)
         for path in files:
@@ -82,6 +80,12 @@ def remove_temporaries(folder: Path) -> None:
     """Delete what a killed process left half-written."""
     for leftover in folder.glob(".*.tmp"):
         leftover.unlink()
+
+
+def _open_new(path: Path) -> int:
+    """A file that was not there: what lies in its place, be it a link that leads elsewhere, goes."""
+    path.unlink(missing_ok=True)
+    return os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
 
 
 def _write(descriptor: int, data: Any) -> None:

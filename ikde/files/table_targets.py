@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ikde.errors import FileError, InputError, nearest
+from ikde.errors import FileError, InputError, nearest, quoted
 from ikde.files.entries import ColumnsEntry, OrientationKind, UnitsEntry, chosen_orientation
 from ikde.files.placed import placed
 from ikde.files.poses import join_poses, make_orientation
-from ikde.files.tables import Column, Table, as_floats, as_names, errors_of, open_table, row_error
+from ikde.files.tables import Column, Table, as_floats, as_names, open_table, row_error
 from ikde.kernels.arrays import Floats
 from ikde.model.target import FARTHEST, POSE, Targets
 
@@ -55,10 +55,9 @@ def read_targets(path: Path, columns: ColumnsEntry, units: UnitsEntry) -> TableS
     with placed("columns"):
         kind = chosen_orientation(columns)
     keys = ["position", *([kind] if kind else []), *(["name"] if columns.name else [])]
-    with errors_of(path):
-        table = open_table(path)
-        chosen = {key: _find(table, path, columns, key) for key in keys}
-        data = table.read(list(dict.fromkeys(name for names in chosen.values() for name in names)))
+    table = open_table(path)
+    chosen = {key: _find(table, path, columns, key) for key in keys}
+    data = table.read(list(dict.fromkeys(name for names in chosen.values() for name in names)))
     _check_lengths(path, data)
     return TableSource(
         positions=_stack(path, chosen["position"], data, 3, FARTHEST / units.length_m) * units.length_m,
@@ -76,9 +75,9 @@ def _find(table: Table, path: Path, columns: ColumnsEntry, key: str) -> list[str
         where = ("columns", key) if isinstance(chosen, str) else ("columns", key, index)
         if name not in table.names:
             known = nearest(name, table.names) or f"; it has {', '.join(table.names)}"
-            raise InputError(f"{path.name} has no column {name!r}{known}", where)
+            raise InputError(f"{path.name} has no column {quoted(name)}{known}", where)
         if table.names.count(name) > 1:
-            raise InputError(f"{path.name} has more than one column {name!r}", where)
+            raise InputError(f"{path.name} has more than one column {quoted(name)}", where)
     return names
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import read_yaml
 from ikde.model.robot import Robot
@@ -61,7 +61,7 @@ def _read(text: str, key: str) -> list[float] | dict[str, float]:
     for word in words:
         name, equals, value = word.partition("=")
         if not equals:
-            raise InputError(f"expected name=value, got {word!r}", (key,))
+            raise InputError(f"expected name=value, got {quoted(word)}", (key,))
         if name in pairs:
             raise InputError("this joint is given twice", (key, name))
         pairs[name] = _number(value, (key, name))
@@ -76,7 +76,7 @@ def _read_file(path: Path) -> list[float] | dict[str, float]:
         raise document.error("expected a list of joint values, or a mapping from joint names to values")
     for where, value in items:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise document.error(f"expected a number, got {value!r}", (where,))
+            raise document.error(f"expected a number, got {quoted(value)}", (where,))
     return data
 
 
@@ -84,10 +84,12 @@ def _number(word: str, where: tuple[Any, ...]) -> float:
     try:
         return float(word)
     except ValueError:
-        raise InputError(f"expected a number, got {word!r}", where) from None
+        raise InputError(f"expected a number, got {quoted(word)}", where) from None
 
 
 def _known(name: str, names: Any, key: str) -> str:
     if name not in names:
-        raise InputError(f"no joint is called {name!r}{nearest(name, names)}; joints are {', '.join(names)}", (key,))
+        raise InputError(
+            f"no joint is called {quoted(name)}{nearest(name, names)}; joints are {', '.join(names)}", (key,)
+        )
     return name

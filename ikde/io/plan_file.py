@@ -10,6 +10,8 @@ from pydantic import ValidationError
 from ikde.batch.spec import BatchSpec
 from ikde.errors import FileError, InputError
 from ikde.files.placed import placed
+from ikde.files.reading import read_text
+from ikde.io.robot_file import parse_robot
 from ikde.io.robots import is_file_name, load_robot
 from ikde.io.schema import Given, as_file_error
 from ikde.io.yaml_file import Document, Where, read_yaml
@@ -74,6 +76,8 @@ def _load(name: str, folder: Path) -> Robot:
     if not is_file_name(name):
         return load_robot(name)
     path = folder / name
-    if not path.exists():
-        raise InputError(f"no such file: {path}")
-    return load_robot(path)
+    try:
+        text = read_text(path)
+    except FileError as error:
+        raise InputError(f"{error.message}: {path}") from None
+    return parse_robot(Document(path, text))

@@ -5,12 +5,13 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from ikde.bench.budget import Budget
-from ikde.errors import FileError
+from ikde.errors import FileError, quoted
 from ikde.files.atomic import write_atomically
-from ikde.io.yaml_file import read_text
+from ikde.files.reading import read_json
 
 RESULTS = "results.json"
 
@@ -19,9 +20,7 @@ def prepare_folder(folder: Path) -> None:
     """Make the folder if need be; raises `FileError` now rather than after minutes of work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".ikde"
-        probe.touch()
-        probe.unlink()
+        TemporaryFile(dir=folder).close()
     except FileExistsError:
         raise FileError(folder, "this is a file; expected a folder") from None
     except OSError as error:
@@ -59,10 +58,7 @@ def format_results(results: Mapping[str, Any]) -> str:
 def read_results(folder: Path) -> dict[str, Any]:
     """What an earlier `ikde bench paper` recorded; raises `FileError` if the folder holds no such record."""
     path = folder / RESULTS
-    try:
-        results = json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise FileError(path, f"not JSON: {error.msg}", line=error.lineno) from None
+    results = read_json(path)
     try:
         made, sections = results["made"], results["sections"]
         budget, _ = asdict(Budget(**made["budget"])), set(made["only"])
@@ -70,10 +66,12 @@ def read_results(folder: Path) -> dict[str, Any]:
         raise FileError(path, "not a record of this version's `ikde bench paper`") from None
     for name, size in budget.items():
         if type(size) is not int or size < 1:
-            raise FileError(path, f"expected a whole number of at least 1, got {size!r}", ("made", "budget", name))
+            raise FileError(
+                path, f"expected a whole number of at least 1, got {quoted(size)}", ("made", "budget", name)
+            )
     for where, value in {("sections",): sections, **_list_sections(sections)}.items():
         if not isinstance(value, dict):
-            raise FileError(path, f"expected a mapping, got {value!r:.40}", where)
+            raise FileError(path, f"expected a mapping, got {quoted(value)}", where)
     return results
 
 

@@ -27,6 +27,10 @@ from ikde.model.validate import NON_ADJACENT, check_robot
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Vector = tuple[Number, Number, Number]
+Pairs = tuple[tuple[str, str], ...]
+MOST_JOINTS, MOST_ENTRIES, MOST_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
+MOST_SPHERES, MOST_PAIRS = 100_000, 50_000  # of a robot's approximations together, and of a pair list
+OfLists = Field(max_length=MOST_LISTS)
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
 
@@ -135,14 +139,14 @@ class RobotFile(BaseModel):
     units: Units = Units()
     convention: Name = "own"
     sources: dict[Name, SourceEntry] = {}
-    joints: dict[Name, JointEntry]
-    frames: dict[Name, FrameEntry]
+    joints: Annotated[dict[Name, JointEntry], Field(max_length=MOST_JOINTS)]
+    frames: Annotated[dict[Name, FrameEntry], Field(max_length=MOST_ENTRIES)]
     tool: Name
-    conventions: dict[Name, ConventionEntry] = {}
-    spheres: dict[Name, list[SphereEntry]] = {}
+    conventions: Annotated[dict[Name, ConventionEntry], OfLists] = {}
+    spheres: Annotated[dict[Name, Annotated[list[SphereEntry], Field(max_length=MOST_ENTRIES)]], OfLists] = {}
     adjacent: AdjacentEntry | None = None
-    pairs: dict[Name, PairEntry] = {}
-    detectors: dict[Name, DetectorEntry] = {}
+    pairs: Annotated[dict[Name, PairEntry], OfLists] = {}
+    detectors: Annotated[dict[Name, DetectorEntry], OfLists] = {}
     default_detector: Name | None = None
     wheels: WheelsEntry | None = None
 
@@ -162,6 +166,9 @@ def parse_robot(document: Document) -> Robot:
 def _to_robot(file: RobotFile) -> Robot:
     length, angle = LENGTHS_M[file.units.length], ANGLES_RAD[file.units.angle]
     unit = {"revolute": angle, "prismatic": length}
+    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MOST_SPHERES:
+        raise InputError(f"expected at most {MOST_SPHERES:,} spheres in all", ("spheres",))
+    lists: dict[str, Pairs] = {}
     return Robot(
         name=file.name,
         title=file.title,
@@ -169,7 +176,7 @@ def _to_robot(file: RobotFile) -> Robot:
         frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
         tool=file.tool,
         approximations={name: tuple(_to_row(e, length) for e in rows) for name, rows in file.spheres.items()},
-        pair_lists={name: _to_pairs(file, name, ()) for name in file.pairs},
+        pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
         adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
         detectors={
             name: Detector(name=name, spheres=e.spheres, pairs=e.pairs, safe_distance_m=e.safe_distance * length)
@@ -221,19 +228,29 @@ def _to_wheels(entry: WheelsEntry, length: float) -> Wheels:
     return Wheels(radius_m=entry.radius * length, half_track_m=entry.half_track * length)
 
 
-def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
-    """Pairs of a list with those of the lists it includes, each once, whichever way round."""
+def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...], known: dict[str, Pairs]) -> Pairs:
+    """Pairs of a list with those of the lists it includes, each once, whichever way round.
+
+    Lists that are done are kept in `known`: each may be included again and again.
+    """
+    if name in known:
+        return known[name]
     if name in seen:
         raise InputError("this list includes itself", ("pairs", seen[0], "include"))
     if name not in file.pairs:
         raise InputError(f"no pair list is called {name!r}{nearest(name, file.pairs)}", ("pairs", seen[-1], "include"))
     entry = file.pairs[name]
-    pairs = [pair for other in entry.include for pair in _to_pairs(file, other, (*seen, name))]
-    pairs += [(a, b) for a, others in entry.pairs.items() for b in others]
     unique: dict[frozenset[str], tuple[str, str]] = {}
-    for pair in pairs:
-        unique.setdefault(frozenset(pair), pair)
-    return tuple(unique.values())
+    for other in dict.fromkeys(entry.include):
+        for pair in _to_pairs(file, other, (*seen, name), known):
+            unique.setdefault(frozenset(pair), pair)
+    for a, others in entry.pairs.items():
+        for b in others:
+            unique.setdefault(frozenset((a, b)), (a, b))
+    if len(unique) > MOST_PAIRS:
+        raise InputError(f"expected at most {MOST_PAIRS:,} pairs", ("pairs", name))
+    known[name] = tuple(unique.values())
+    return known[name]
 
 
 def _to_adjacent(pairs: dict[str, dict[str, str]]) -> tuple[AdjacentPair, ...]:

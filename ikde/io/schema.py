@@ -5,7 +5,7 @@ from typing import Annotated, Any, Protocol, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.io.yaml_file import Where
 
 EXPECTED = {
@@ -25,6 +25,7 @@ EXPECTED = {
     "finite_number": "expected a finite number",
     "string_too_short": "expected text that is not empty",
 }
+FEW = 4  # values: where there may not be more, there may not be fewer either
 LIMITS = {
     "greater_than_equal": ("at least", "ge"),
     "greater_than": ("more than", "gt"),
@@ -69,15 +70,17 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
         least = context["min_length"]
         message = f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {context['actual_length']}"
     elif kind == "too_long" and "actual_length" in context:
-        message = f"expected {context['max_length']} values, got {context['actual_length']}"
+        most, length = context["max_length"], context["actual_length"]
+        got = "more" if length is None else f"{length:,}"  # pydantic stops counting keys
+        message = f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
     elif kind == "literal_error":
-        message = f"expected {context['expected']}, got {first['input']!r}"
+        message = f"expected {context['expected']}, got {quoted(first['input'])}"
     elif kind in LIMITS:
         words, key = LIMITS[kind]
         limit = context[key]
-        message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {_shorten(first['input'])}"
-    elif kind in EXPECTED:
-        got = "" if kind == "missing" else f", got {_shorten(first['input'])}"
+        message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {quoted(first['input'])}"
+    elif kind in EXPECTED:  # a whole file that is something else is none of ours to quote
+        got = "" if kind == "missing" or not where else f", got {quoted(first['input'])}"
         message = f"{EXPECTED[kind]}{got}"
     else:
         message = first["msg"][0].lower() + first["msg"][1:]
@@ -85,11 +88,6 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
         message = f"expected 3 values, got {where[-1]}"
         where = where[:-1]
     return document.error(message, where)
-
-
-def _shorten(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 40 else f"{text[:37]}..."
 
 
 def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:

@@ -1,21 +1,22 @@
 """YAML read safely, with the line of every value, so that an error can say where it is.
 
 Numbers are read as people write them: `1e-6` and `1.5e8` are numbers here, and `on`, `no`, `y` are words (YAML 1.2's
-core schema; PyYAML alone reads the first two as text and the last three as booleans).
+core schema; PyYAML alone reads the first two as text and the last three as booleans). What a file may hold is limited,
+and the limits hold before anything larger is built: values, aliases included, and levels.
 """
 
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
-from ikde.errors import FileError, InputError
+from ikde.errors import FileError, InputError, quoted
+from ikde.files.reading import MOST_DEPTH, read_text
 
 Where = tuple[str | int, ...]
 
-MAX_DEPTH = 40
-MOST_REPEATED = 10**6  # values that aliases repeat
+MOST_VALUES = 10**6  # of a file, those that aliases repeat included
 _NUMBER = re.compile(
     r"^[-+]?(\.[0-9]+|[0-9][0-9_]*(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
 )
@@ -43,25 +44,27 @@ class Document:
     def __init__(self, path: Path, text: str) -> None:
         self.path = path
         self.lines: dict[Where, int] = {}
+        self.aliases: dict[Where, Where] = {}
+        """Path of an alias -> path of what it stands for."""
+        self.data: Any = None
         try:
-            root = yaml.compose(text, Loader=_Loader)
-            repeated = 0 if root is None else _count_repeated(root)
+            self.data = _Reader(self, text).read()
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             raise FileError(path, f"not YAML: {error.problem}", line=mark.line + 1 if mark else None) from None
         except yaml.YAMLError as error:
             raise FileError(path, f"not YAML: {' '.join(str(error).split())}") from None
-        except RecursionError:
-            raise FileError(path, "nested too deeply") from None
-        if repeated > MOST_REPEATED:
-            raise FileError(path, f"aliases repeat {repeated:,} values; expected at most {MOST_REPEATED:,}")
-        self.data = None if root is None else self._read(root, ())
+        except MemoryError:
+            raise FileError(path, "cannot be read: not enough memory") from None
 
     def line(self, where: Where) -> int | None:
-        """Line of the value at a path, or of the nearest value above it."""
-        while where and where not in self.lines:
-            where = where[:-1]
-        return self.lines.get(where)
+        """Line of the value at a path, or of the nearest value above it; behind an alias, where it was written."""
+        for end in range(len(where), 0, -1):
+            if where[:end] in self.aliases:
+                return self.line(self.aliases[where[:end]] + where[end:]) if end < len(where) else self.lines[where]
+            if where[:end] in self.lines:
+                return self.lines[where[:end]]
+        return self.lines.get(())
 
     def error(self, message: str, where: Where = ()) -> FileError:
         """An error at a path of this file."""
@@ -71,32 +74,102 @@ class Document:
         """Another floor's error, placed in this file."""
         return self.error(error.message, error.where)
 
-    def _read(self, node: yaml.Node, where: Where) -> Any:
-        self.lines[where] = node.start_mark.line + 1
-        if len(where) > MAX_DEPTH:
-            raise self.error("nested too deeply, or an alias that contains itself", where[:3])
-        if isinstance(node, yaml.MappingNode):
-            return self._read_mapping(node, where)
-        if isinstance(node, yaml.SequenceNode):
-            return [self._read(child, (*where, index)) for index, child in enumerate(node.value)]
-        return self._read_scalar(node, where)
 
-    def _read_mapping(self, node: yaml.MappingNode, where: Where) -> dict[str, Any]:
+class _Anchored(NamedTuple):
+    """What an alias stands for."""
+
+    data: Any
+    where: Where
+    values: int
+    levels: int
+
+
+class _Reader:
+    """Builds a document from the parser's events, so that a file which is too much is left off in the middle."""
+
+    def __init__(self, document: Document, text: str) -> None:
+        self._document = document
+        self._events = _Loader(text)
+        self._anchored: dict[str, _Anchored] = {}
+        self._values = 0
+        self._deepest = 0
+
+    def read(self) -> Any:
+        """The only document of the file, or None."""
+        self._next()  # the stream begins
+        if isinstance(self._next(), yaml.StreamEndEvent):
+            return None
+        data = self._read(self._next(), ())
+        self._next()  # the document ends
+        after = self._next()
+        if not isinstance(after, yaml.StreamEndEvent):
+            raise FileError(self._document.path, "expected a single document", line=after.start_mark.line + 1)
+        return data
+
+    def _next(self) -> Any:
+        return self._events.get_event()
+
+    def _read(self, event: Any, where: Where) -> Any:
+        self._document.lines[where] = event.start_mark.line + 1
+        if isinstance(event, yaml.AliasEvent):
+            return self._repeat(event, where)
+        outer, before = self._deepest, self._values
+        self._deepest = len(where)
+        self._count(where, 1, 0)
+        if isinstance(event, yaml.MappingStartEvent):
+            data: Any = self._read_mapping(where)
+        elif isinstance(event, yaml.SequenceStartEvent):
+            data = self._read_list(where)
+        else:
+            data = self._read_scalar(event, where)
+        if event.anchor:
+            levels = self._deepest - len(where)
+            self._anchored[event.anchor] = _Anchored(data, where, self._values - before, levels)
+        self._deepest = max(self._deepest, outer)
+        return data
+
+    def _repeat(self, event: Any, where: Where) -> Any:
+        known = self._anchored.get(event.anchor)
+        if known is None:
+            name = quoted(event.anchor)
+            raise self._document.error(f"the alias {name} stands for nothing before it, or contains itself", where)
+        self._count(where, known.values, known.levels)
+        self._document.aliases[where] = known.where
+        return known.data
+
+    def _count(self, where: Where, values: int, levels: int) -> None:
+        """Note so many values, so many levels deep."""
+        self._values += values
+        self._deepest = max(self._deepest, len(where) + levels)
+        if self._values > MOST_VALUES:
+            raise self._document.error(f"too many values, aliases counted; expected at most {MOST_VALUES:,}", where[:3])
+        if len(where) + levels > MOST_DEPTH:
+            raise self._document.error(f"nested too deeply; expected at most {MOST_DEPTH} levels", where[:3])
+
+    def _read_list(self, where: Where) -> list[Any]:
+        items: list[Any] = []
+        while not isinstance(event := self._next(), yaml.SequenceEndEvent):
+            items.append(self._read(event, (*where, len(items))))
+        return items
+
+    def _read_mapping(self, where: Where) -> dict[str, Any]:
         mapping: dict[str, Any] = {}
-        for key_node, value_node in node.value:
-            if not isinstance(key_node, yaml.ScalarNode):
-                raise FileError(self.path, "a key must be a word", where, key_node.start_mark.line + 1)
-            key = str(key_node.value)
+        while not isinstance(event := self._next(), yaml.MappingEndEvent):
+            line = event.start_mark.line + 1
+            if not isinstance(event, yaml.ScalarEvent):
+                raise FileError(self._document.path, "a key must be a word", where, line)
+            key = str(event.value)
             if key in mapping:
-                raise FileError(self.path, "this key is given twice", (*where, key), key_node.start_mark.line + 1)
-            mapping[key] = self._read(value_node, (*where, key))
-            self.lines[(*where, key)] = key_node.start_mark.line + 1
+                raise FileError(self._document.path, "this key is given twice", (*where, key), line)
+            mapping[key] = self._read(self._next(), (*where, key))
+            self._document.lines[(*where, key)] = line
         return mapping
 
-    def _read_scalar(self, node: yaml.Node, where: Where) -> Any:
-        text = str(node.value)
+    def _read_scalar(self, event: Any, where: Where) -> Any:
+        text = str(event.value)
+        tag = event.tag if event.tag not in (None, "!") else self._resolve(text, event.implicit)
         try:
-            match node.tag.rsplit(":", 1)[-1]:
+            match tag.rsplit(":", 1)[-1]:
                 case "int":
                     return int(text)
                 case "float":
@@ -108,39 +181,13 @@ class Document:
                 case "str":
                     return text
         except ValueError:
-            raise self.error(f"{text!r} does not fit its tag {node.tag}", where) from None
-        raise self.error(f"the tag {node.tag} is not read here", where)
+            raise self._document.error(f"{quoted(text)} does not fit its tag {quoted(tag)}", where) from None
+        raise self._document.error(f"the tag {quoted(tag)} is not read here", where)
 
-
-def _count_repeated(root: yaml.Node) -> int:
-    """Values that are there once more, or more often, through aliases; what contains itself counts once."""
-    sizes: dict[int, int] = {}
-
-    def count(node: yaml.Node) -> int:
-        if id(node) not in sizes:
-            sizes[id(node)] = 0
-            children = [value for _, value in node.value] if isinstance(node, yaml.MappingNode) else node.value
-            is_leaf = isinstance(node, yaml.ScalarNode)
-            sizes[id(node)] = 1 if is_leaf else 1 + sum([count(child) for child in children])
-        return sizes[id(node)]
-
-    return count(root) - len(sizes)
+    def _resolve(self, text: str, implicit: tuple[bool, bool]) -> str:
+        return self._events.resolve(yaml.ScalarNode, text, implicit)
 
 
 def read_yaml(path: Path) -> Document:
-    """Read a YAML file; raises `FileError` if it is missing, a folder, unreadable, not UTF-8 or not YAML."""
+    """Read a YAML file; raises `FileError` if it is missing, no regular file, too large, not UTF-8 or not YAML."""
     return Document(path, read_text(path))
-
-
-def read_text(path: Path) -> str:
-    """Text of a file; raises `FileError` in one line for everything that can go wrong with it."""
-    try:
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise FileError(path, "no such file") from None
-    except IsADirectoryError:
-        raise FileError(path, "this is a folder; expected a file") from None
-    except UnicodeDecodeError:
-        raise FileError(path, "not a UTF-8 text file") from None
-    except (OSError, ValueError) as error:
-        raise FileError(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ikde.errors import printable
 from ikde.plot.images import INK
-from ikde.plot.style import COLORS, DASHES, HATCHES, MARKERS, Axis, drawing, pick
+from ikde.plot.style import COLORS, DASHES, HATCHES, MARKERS, Axis, drawing, legend_name, pick
 
 MOST_POINTS = 500  # of a curve: more cannot be seen
 SHARE = "%"
@@ -69,7 +70,7 @@ def plot_lines(
     with drawing(x, y) as (figure, axes):
         colors = {line.label: pick(COLORS, k) for k, line in enumerate(lines)}
         for k, line in enumerate(lines):
-            axes.plot(line.x, line.y, label=line.label, color=pick(COLORS, k), linestyle=pick(DASHES, k))
+            axes.plot(line.x, line.y, label=legend_name(line.label), color=pick(COLORS, k), linestyle=pick(DASHES, k))
         if level is not None:
             axes.axhline(level[0], color=INK, linewidth=1.0, label=level[1])
         for k, event in enumerate(events):
@@ -81,7 +82,15 @@ def _draw_event(axes: Any, event: Event, color: str, marker: str) -> None:
     """A thin line with a mark on its top, by which the legend tells it from the others."""
     axes.axvline(event.x, color=color, linewidth=1.1)
     head = {"marker": marker, "markersize": 6.5, "clip_on": False, "zorder": 5}
-    axes.plot([event.x], [1.0], transform=axes.get_xaxis_transform(), color=color, label=event.label, ls="none", **head)
+    axes.plot(
+        [event.x],
+        [1.0],
+        transform=axes.get_xaxis_transform(),
+        color=color,
+        label=legend_name(event.label),
+        ls="none",
+        **head,
+    )
 
 
 def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, y: Axis) -> Any:
@@ -91,14 +100,14 @@ def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, y: Axis) -> Any:
         for k, series in enumerate(bars):
             places = np.arange(len(groups)) + (k - (len(bars) - 1) / 2) * width
             look = {"color": pick(COLORS, k), "hatch": pick(HATCHES, k), "edgecolor": "#ffffff"}
-            axes.bar(places, series.values, 0.92 * width, label=series.label, linewidth=0, **look)
+            axes.bar(places, series.values, 0.92 * width, label=legend_name(series.label), linewidth=0, **look)
             if len(series.lower):
                 _draw_whiskers(axes, places, series)
             if len(series.published):
                 label = None if any(len(earlier.published) for earlier in bars[:k]) else "published"
                 diamond = {"marker": "D", "s": 44, "color": INK, "edgecolor": "#ffffff", "zorder": 4}
                 axes.scatter(places, series.published, label=label, **diamond)
-        axes.set_xticks(range(len(groups)), groups)
+        axes.set_xticks(range(len(groups)), list(map(printable, groups)))
         axes.tick_params(axis="x", length=0)
     return figure
 
@@ -119,7 +128,7 @@ def plot_forest(estimates: Sequence[Estimate], *, x: Axis, published: float | No
         holds = np.array([published is None or e.lower <= published <= e.upper for e in estimates], dtype=bool)
         _draw_estimates(axes, rows, estimates, holds, None if published is None else "interval holds it", "full")
         _draw_estimates(axes, rows, estimates, ~holds, "interval misses it", "none")
-        axes.set_yticks(rows, [estimate.label for estimate in estimates])
+        axes.set_yticks(rows, [printable(estimate.label) for estimate in estimates])
         axes.set_ylim(count - 0.4, -0.6)
         axes.tick_params(axis="y", length=0)
         axes.spines["left"].set_visible(False)
@@ -144,7 +153,7 @@ def plot_cdf(samples: Sequence[Sample], *, x: Axis, y: str = "cases") -> Any:
         for k, (sample, values) in enumerate(zip(samples, numbers, strict=True)):
             total = len(values) if sample.total is None else sample.total
             look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "drawstyle": "steps-post"}
-            axes.plot(*_climb(values, total, end), label=sample.label, **look)
+            axes.plot(*_climb(values, total, end), label=legend_name(sample.label), **look)
     return figure
 
 
@@ -165,7 +174,7 @@ def plot_histogram(samples: Sequence[Sample], *, x: Axis, bins: int = 60) -> Any
         for k, (sample, numbers) in enumerate(zip(samples, values, strict=True)):
             counts = np.histogram(np.clip(numbers, edges[0], edges[-1]), edges)[0]
             look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "linewidth": 1.6}
-            axes.stairs(100.0 * counts / max(len(numbers), 1), edges, label=sample.label, **look)
+            axes.stairs(100.0 * counts / max(len(numbers), 1), edges, label=legend_name(sample.label), **look)
     return figure
 
 

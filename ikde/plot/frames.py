@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
+from ikde.plot.images import show_as_text
 from ikde.plot.pose import AXES
 from ikde.solver.plain import compute_frames
 
@@ -38,7 +39,7 @@ def plot_frames(robot: Robot, q: Floats, names: Sequence[str], *, title: str) ->
     axes.locator_params(axis="x", nbins=3)
     axes.locator_params(axis="y", nbins=3)
     axes.view_init(elev=14, azim=-62)
-    return figure
+    return show_as_text(figure)
 
 
 def _draw_axes(axes: Any, T_world_frame: Floats) -> None:

@@ -1,8 +1,13 @@
 """Figures as pictures: SVG that takes the colours and the type of the page around it, or PNG."""
 
 import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from typing import Any
+
+from ikde.errors import printable
 
 INK = "#010203"  # drawn with this, shown in the page's own text colour
 _SETTINGS: dict[Any, Any] = {"svg.fonttype": "none", "svg.hashsalt": "ikde"}
@@ -13,6 +18,26 @@ _ID = re.compile(r' id="([^"]*)"')
 _PATH = re.compile(r' d="([^"]*)"')
 _DIGITS = re.compile(r"(\.\d\d)\d+")  # hundredths of a point are more than a screen shows
 _REFERENCE = re.compile(r'(?:href="#|url\(#)([^")]+)')
+_TAG = re.compile(r"<[^>]*>")
+
+
+def show_as_text(figure: Any) -> Any:
+    """The figure, with every text in it as it is: names may hold what would be a formula, and worse."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
+        text.set_usetex(False)
+        text.set_text(printable(text.get_text()))
+    return figure
+
+
+@contextmanager
+def any_letters() -> Iterator[None]:
+    """Draw letters that the type does not have as boxes, without a word: SVG asks the reader's own type for them."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"(Glyph|Matplotlib currently does not support)")
+        yield
 
 
 def to_svg(figure: Any) -> str:
@@ -20,19 +45,19 @@ def to_svg(figure: Any) -> str:
     import matplotlib
 
     buffer = BytesIO()
-    with matplotlib.rc_context(_SETTINGS):
+    with any_letters(), matplotlib.rc_context(_SETTINGS):
         figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
     svg = buffer.getvalue().decode("utf-8")
     svg = _HEAD.sub(_short_head, svg[svg.index("<svg ") :], count=1)
-    svg = svg.replace("xlink:href", "href").replace(INK, "currentColor")
-    svg = _PATH.sub(lambda match: _DIGITS.sub(r"\1", match[0]), svg)
-    return _drop_unused_ids(_FONT.sub(r"\1inherit", svg))
+    used = {name for tag in _TAG.findall(svg) for name in _REFERENCE.findall(tag.replace("xlink:href", "href"))}
+    return _TAG.sub(lambda tag: _clean(tag[0], used), svg)
 
 
 def to_png(figure: Any, *, dpi: float = 160) -> bytes:
     """A figure as PNG on white."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
+    with any_letters():
+        figure.savefig(buffer, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
     return buffer.getvalue()
 
 
@@ -43,7 +68,11 @@ def _short_head(match: re.Match[str]) -> str:
     return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" style="{match["style"]}">'
 
 
-def _drop_unused_ids(svg: str) -> str:
-    """Matplotlib names every group, the same in all figures; only what is referred to needs its name."""
-    used = set(_REFERENCE.findall(svg))
-    return _ID.sub(lambda match: match[0] if match[1] in used else "", svg)
+def _clean(tag: str, used: set[str]) -> str:
+    """A tag in the page's colours and type, in few digits; text between tags stays as it is.
+
+    Matplotlib names every group, the same in all figures; only what is referred to needs its name.
+    """
+    tag = tag.replace("xlink:href", "href").replace(INK, "currentColor")
+    tag = _PATH.sub(lambda match: _DIGITS.sub(r"\1", match[0]), tag)
+    return _ID.sub(lambda match: match[0] if match[1] in used else "", _FONT.sub(r"\1inherit", tag))

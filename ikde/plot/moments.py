@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.plot.images import show_as_text
 from ikde.plot.pose import ARM, BASE, COLLIDING, TARGET, base_components, compute_bones
 from ikde.solver.plain import compute_components
 from ikde.track.summary import TrackSummary
@@ -56,7 +57,7 @@ def plot_moments(motion: TrackSummary, samples: Sequence[int] | None = None) -> 
         axes.set_title(f"t = {time:.2f} s{told}", fontsize=8, color="#b00000" if told else COLLIDING)
         axes.set(xlim=box[:, 0], ylim=box[:, 1], aspect="equal")
         axes.set_axis_off()
-    return figure
+    return show_as_text(figure)
 
 
 def _tell_collision(names: set[str]) -> str:

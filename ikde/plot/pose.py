@@ -11,6 +11,7 @@ from ikde.model.pairs import component_bodies
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.target import Target
 from ikde.model.tree import Tree, build_tree
+from ikde.plot.images import any_letters, show_as_text
 from ikde.solver.check import compute_pairs
 from ikde.solver.plain import compute_components, compute_frames, compute_sphere_gaps
 
@@ -48,13 +49,14 @@ def plot_pose(
     _set_equal(axes, robot, detector, q, target)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
-    return figure
+    return show_as_text(figure)
 
 
 def save_figure(figure: Any, path: Path) -> None:
     """Write a figure; raises `FileError` if the ending is unknown or the file cannot be written."""
     try:
-        figure.savefig(path)
+        with any_letters():
+            figure.savefig(path)
     except ValueError as error:
         raise FileError(path, f"cannot be drawn: {error}") from None
     except OSError as error:

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from ikde.plot.images import INK
+from ikde.plot.images import INK, show_as_text
 
 # Okabe and Ito's colours in the order of their contrast with both papers; their black is INK, their yellow too pale.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
@@ -83,6 +83,7 @@ def drawing_panels(
             _set_scale(axes.xaxis, axes.set_xscale, axes.set_xlim, x)
             _set_scale(axes.yaxis, axes.set_yscale, axes.set_ylim, y)
         _set_legend(figure, panels)
+        show_as_text(figure)
 
 
 @contextmanager
@@ -103,6 +104,12 @@ def drawing_space() -> Iterator[tuple[Any, Any]]:
             axis.set_tick_params(color=INK, labelcolor=INK, labelsize=8)
             axis.get_major_locator().set_params(nbins=4)
         _set_legend(figure, [axes])
+        show_as_text(figure)
+
+
+def legend_name(name: str) -> str:
+    """A name for the legend; matplotlib would leave out those that begin with an underscore."""
+    return f" {name}" if name.startswith("_") else name
 
 
 def pick(choices: Sequence[Any], index: int) -> Any:

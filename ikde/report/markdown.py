@@ -4,17 +4,19 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ikde.report.markup import parse_line, parse_text
+from ikde.errors import printable
+from ikde.report.markup import as_line, parse_line, parse_text
 from ikde.report.page import Animation, Block, Cell, Code, Facts, Figure, Gallery, Notice, Numbers, Page, Table, Text
 
 _RULES = {"left": ":--", "right": "--:"}
 _MARKS = {"": "{}", "published": "_{}_", "ours": "**{}**", "off": "≠ **{}**"}
-_SPECIAL = re.compile(r"[\\`*|~]|\b_|_\b|\](?=\()")  # a lone bracket or underscore is no mark
+_SPECIAL = re.compile(r"[\\`*|~$]|\b_|_\b|\](?=\()|:(?=//)|(?<=www)\.")  # a lone bracket or underscore is no mark
+_OPENING = re.compile(r"^(?=[#>+=-])|(?<=^\d)(?=[.)])")  # of a line, by which it would be a heading, a list, a rule
 
 
 def render_markdown(page: Page) -> str:
     """The whole file as text; the pictures are in the HTML page."""
-    parts = [f"# {_plain(page.title)}", _plain(page.subtitle), *map(_block, page.lead)]
+    parts = [f"# {_plain(page.title)}", _plain_line(page.subtitle), *map(_block, page.lead)]
     for section in page.sections:
         parts += [f"## {_plain(section.title)}", *map(_block, section.blocks)]
     parts.append(_text(page.footer))
@@ -27,22 +29,27 @@ def _block(block: Block) -> str:
 
 def _plain(text: str) -> str:
     """Text that Markdown shows as it is, also inside a table."""
-    escaped = _SPECIAL.sub(lambda match: f"\\{match[0]}", re.sub(r"\s+", " ", text))
+    escaped = _SPECIAL.sub(lambda match: f"\\{match[0]}", as_line(re.sub(r"\s+", " ", text)))
     return re.sub(r"&(?=#?\w+;)", "&amp;", escaped).replace("<", "&lt;")
+
+
+def _plain_line(text: str) -> str:
+    """The same at the beginning of a line."""
+    return _OPENING.sub(r"\\", _plain(text).lstrip())
 
 
 def _line(markup: str) -> str:
     parts = []
-    for span in parse_line(markup):
+    for number, span in enumerate(parse_line(markup)):
         match span.kind:
             case "code":
-                parts.append(f"`{span.text}`")
+                parts.append(f"`{printable(span.text)}`")
             case "bold":
                 parts.append(f"**{_plain(span.text)}**")
             case "link":
                 parts.append(f"[{_plain(span.text)}]({span.href})")
             case "plain":
-                parts.append(_plain(span.text))
+                parts.append(_plain(span.text) if number else _plain_line(span.text))
     return "".join(parts).strip()
 
 
@@ -70,7 +77,9 @@ def _facts(facts: Facts) -> str:
 
 def _code(block: Code) -> str:
     caption = f"{_line(block.caption)}\n\n" if block.caption else ""
-    return f"{caption}```\n{block.text.rstrip()}\n```"
+    text = printable(block.text.rstrip(), keep="\n")
+    fence = "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
+    return f"{caption}{fence}\n{text}\n{fence}"
 
 
 def _table(table: Table) -> str:

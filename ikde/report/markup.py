@@ -7,10 +7,12 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-_FACE = r"\\(?P<face>[\\`*\[\]])"
+from ikde.errors import printable
+
+_FACE = r"\\(?P<face>[\\`*\[\]-])"
 _CODE = r"`(?P<code>[^`]+)`"
 _BOLD = r"\*\*(?P<bold>(?:\\.|[^*\\])+)\*\*"
-_LINK = r"\[(?P<link>(?:\\.|[^\]\\])+)\]\((?P<href>[^)\s]+)\)"
+_LINK = r"\[(?P<link>(?:\\.|[^\]\\])+)\]\((?P<href>#[^)\s]+)\)"  # inside the page, and nowhere else
 _MARKS = re.compile("|".join((_FACE, _CODE, _BOLD, _LINK)))
 
 
@@ -31,14 +33,19 @@ class Paragraph:
     is_list: bool = False
 
 
+def as_line(text: str) -> str:
+    """Text on one line: line breaks are blanks in a page, and all else that is not printable is written out."""
+    return printable(re.sub(r"\s", " ", text))
+
+
 def verbatim(text: str) -> str:
-    """Markup that shows `text` as it is: names and reasons may hold brackets and stars."""
-    return re.sub(r"([\\`*\[\]])", r"\\\1", text)
+    """Markup that shows `text` as it is: names and reasons may hold brackets and stars, line breaks and worse."""
+    return re.sub(r"^-|[\\`*\[\]]", r"\\\g<0>", as_line(text))
 
 
 def code(text: str) -> str:
     """Markup that shows `text` as code, where nothing needs a backslash; a backtick cannot stand in code."""
-    return verbatim(text) if "`" in text or not text else f"`{text}`"
+    return verbatim(text) if "`" in text or not text else f"`{as_line(text)}`"
 
 
 def parse_line(markup: str) -> list[Span]:

@@ -1,4 +1,8 @@
-"""Formulas in files: arithmetic over k and N, read through a whitelist and evaluated on arrays. Nothing is executed."""
+"""Formulas in files: arithmetic over k and N, read through a whitelist and evaluated on arrays. Nothing is executed.
+
+What a formula may cost is limited before it is evaluated: all numbers are floats (a power of powers is infinite, not
+long), and so many operations may be done at so many samples. Samples are taken in pieces, so that memory stays flat.
+"""
 
 import ast
 import math
@@ -12,11 +16,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.files.placed import placed
 from ikde.kernels.arrays import Floats
 
 LONGEST = 1000  # characters of a formula
+DEEPEST = 300  # operations inside each other
+BUDGET = 2 * 10**8  # operations of one formula at all samples together: seconds
+PIECE = 2**16  # samples at a time
 OPERATORS = {
     ast.Add: np.add,
     ast.Sub: np.subtract,
@@ -57,15 +64,26 @@ class Expression:
     """A formula that has been read."""
 
     text: str
+    operations: int
+    """What there is to do at a sample."""
     _evaluate: Number
 
     def evaluate(self, k: Floats, N: int) -> Floats:
-        """Values [...] at samples `k` [...] of `N`; raises `InputError` with the first k where there is none."""
+        """Values [S] at samples `k` [S] of `N`.
+
+        Raises:
+            InputError: with the first k where there is none, or if all of them would take too long.
+        """
+        if self.operations * len(k) > BUDGET:
+            told = f"{self.operations} operations at {len(k):,} places, samples and half-way between them"
+            raise InputError(f"{_quote(self.text)} takes too long: {told}; expected at most {BUDGET:,} in all")
+        values = np.empty(len(k))
         with np.errstate(all="ignore"):
-            values = np.broadcast_to(np.asarray(self._evaluate(Sampling(k, N)), dtype=float), np.shape(k))
-        for bad in np.argwhere(~np.isfinite(values))[:1]:
-            place = tuple(bad)
-            raise InputError(f"{_quote(self.text)} is {values[place]:g} at k = {k[place]:g}; expected a finite number")
+            for first in range(0, len(k), PIECE):
+                piece = slice(first, first + PIECE)
+                values[piece] = self._evaluate(Sampling(k[piece], N))
+        for bad in np.flatnonzero(~np.isfinite(values))[:1]:
+            raise InputError(f"{_quote(self.text)} is {values[bad]:g} at k = {k[bad]:g}; expected a finite number")
         return values
 
 
@@ -78,8 +96,10 @@ def parse_expression(text: str | float) -> Expression:
         raise InputError(f"{_quote(unlisted)} is not allowed here; {ALLOWED}")
     try:
         with warnings.catch_warnings(action="ignore"):  # of Python about Python
-            tree = ast.parse(text, mode="eval")
-        return Expression(text, _number(tree.body))
+            body = ast.parse(text, mode="eval").body
+        if _depth(body) > DEEPEST:
+            raise InputError(f"nested too deeply; expected at most {DEEPEST} levels")
+        return Expression(text, sum(isinstance(node, ast.expr) for node in ast.walk(body)), _number(body))
     except (SyntaxError, ValueError) as error:
         raise InputError(f"{_quote(text)} is no formula: {getattr(error, 'msg', error)}") from None
     except (RecursionError, MemoryError):
@@ -90,6 +110,14 @@ def evaluate_formula(key: str | int, formula: float | str, k: Floats, samples: i
     """Values [S] of the formula under `key` at samples `k` [S] of so many."""
     with placed(key):
         return parse_expression(formula).evaluate(k, samples)
+
+
+def _depth(node: ast.AST) -> int:
+    """Levels of operations inside each other."""
+    depth, level = 0, [node]
+    while level:
+        depth, level = depth + 1, [child for above in level for child in ast.iter_child_nodes(above)]
+    return depth
 
 
 def _number(node: ast.expr) -> Number:
@@ -158,11 +186,10 @@ def _call(name: str, arguments: list[Number]) -> Number:
         if len(arguments) < 2:
             raise InputError(f"{name}(...) takes 2 values or more, got {len(arguments)}")
         choose = FUNCTIONS_OF_MANY[name]
-        return lambda at: reduce(choose, [value(at) for value in arguments])
+        return lambda at: reduce(choose, (value(at) for value in arguments))
     known = (*FUNCTIONS, *FUNCTIONS_OF_MANY)
     raise InputError(f"no function is called {_quote(name)}{nearest(name, known)}; there are {', '.join(known)}")
 
 
 def _quote(text: str) -> str:
-    short = " ".join(text.split())
-    return repr(short if len(short) <= 60 else f"{short[:57]}...")
+    return quoted(" ".join(text.split()))

@@ -1,6 +1,7 @@
 """Whose a folder is, and who may write to it."""
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -66,7 +67,7 @@ def test_parts_whose_columns_mean_something_else_are_not_mixed_in(run, overwrite
 
 
 def test_a_run_of_another_recipe_is_refused_with_the_difference(run):
-    with pytest.raises(FileError, match=r"holds another run: seed: 7 there, 8 now \(--overwrite replaces it\)$"):
+    with pytest.raises(FileError, match=r"holds another run \(--overwrite replaces it\): seed: 7 there, 8 now$"):
         claim(run, seed=8)
     assert (run / "solutions" / "auto-00000.parquet").exists()
 
@@ -146,9 +147,38 @@ def test_a_folder_that_cannot_be_written_is_an_error_in_one_line(tmp_path, monke
     def refuse(*arguments, **options):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("pathlib.Path.open", refuse)  # the tests may run as root, whom no mode stops
+    monkeypatch.setattr("pathlib.Path.iterdir", refuse)  # the tests may run as root, whom no mode stops
     with pytest.raises(FileError, match=f"^{tmp_path}: cannot be used: Permission denied$"):
         claim(tmp_path)
+
+
+def test_a_lock_that_is_a_link_empties_no_file_elsewhere(tmp_path):
+    precious = tmp_path / "precious"
+    precious.write_text("mine")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / LOCK).symlink_to(precious)
+    with pytest.raises(FileError, match="cannot be used"):
+        claim(tmp_path / "run")
+    assert precious.read_text() == "mine"
+
+
+def test_a_lock_that_is_none_is_left_alone(tmp_path):
+    (tmp_path / LOCK).write_text("mine")
+    with pytest.raises(FileError, match="is none of ours"):
+        claim(tmp_path)
+    assert (tmp_path / LOCK).read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["solutions", "timing", "report"])
+def test_overwriting_deletes_nothing_behind_a_link(run, tmp_path_factory, name):
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    for file in ("a.parquet", ".a.tmp", "report.html"):
+        (elsewhere / file).write_text("mine")
+    shutil.rmtree(run / name)
+    (run / name).symlink_to(elsewhere)
+    with pytest.raises(FileError, match="is a link"):
+        claim(run, overwrite=True)
+    assert len(list(elsewhere.iterdir())) == 3
 
 
 def test_two_cannot_write_one_run(tmp_path):

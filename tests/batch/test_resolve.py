@@ -91,7 +91,7 @@ def test_a_knob_at_its_default_changes_the_engine_under_auto_and_nothing_under_d
         ({"grade": ["typical", "typicl"]}, "grade[1]: qiao2021 has no detector 'typicl'"),
         ({"grade": ["typical", "typical"]}, "grade[1]: two detectors are called 'typical'"),
         ({"grade": ["none"]}, "grade[0]: expected a detector; 'none' grades nothing"),
-        ({"grade": [{"name": "a b", "spheres": "typical"}]}, "grade[0]: expected a name of letters"),
+        ({"grade": [{"name": "a b", "spheres": "typical"}]}, "grade[0]: expected a name of up to 100 letters"),
         ({"grade": [{"name": "a", "spheres": "typical", "pairs": "all"}]}, "grade[0].pairs: no pair list is called"),
         ({"repeats": 10**9, "targets": {"inline": TARGETS["inline"] * 2}}, "repeats: 2 targets make more than"),
         ({"solve": {"freeze": {"q1": 9}}}, "solve.freeze.q1: 9 is outside the limits"),

@@ -91,7 +91,7 @@ def test_a_finished_run_has_nothing_to_do(batch, tmp_path, monkeypatch):
 def test_another_batch_is_refused_and_overwrites_if_told_to(batch, tmp_path):
     ikde.run_batch(batch, tmp_path)
     other = make_batch(seed=8, chunk=30)
-    with pytest.raises(FileError, match="holds another run: seed: 7 there, 8 now"):
+    with pytest.raises(FileError, match=r"holds another run \(--overwrite replaces it\): seed: 7 there, 8 now"):
         ikde.run_batch(other, tmp_path)
     ikde.run_batch(other, tmp_path, overwrite=True)
     assert list(read_files(tmp_path)) == list(read_files(tmp_path, "timing")) == ["auto-00000.parquet"]

@@ -112,7 +112,7 @@ def test_a_run_of_another_file_is_replaced_only_if_told_to(cli, spec, tmp_path):
     spec.write_text(SPEC + "seed: 8\n")
     refused = cli("batch", spec, "--out", out)
     assert refused.code == 2
-    assert refused.err.startswith(f"ikde: {out}: holds another run: ")
+    assert refused.err.startswith(f"ikde: {out}: holds another run (--overwrite replaces it): ")
     assert "there, 8 now" in refused.err
     assert cli("batch", spec, "--out", out, "--overwrite").code == 0
     assert json.loads((out / "manifest.json").read_text())["seed"] == 8

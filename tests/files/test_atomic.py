@@ -1,6 +1,7 @@
 """Files that are whole or not there."""
 
 import os
+import threading
 
 import pytest
 
@@ -27,15 +28,6 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="No space left"):
         write_atomically(path, b"new")
     assert [(p, p.read_bytes()) for p in tmp_path.iterdir()] == [(path, b"old")]
-
-
-def test_a_link_in_the_way_is_not_followed(tmp_path):
-    (tmp_path / "precious").write_text("text")
-    temporary_path(tmp_path / "a").symlink_to("precious")
-    with pytest.raises(OSError, match=r"a"):
-        write_atomically(tmp_path / "a", b"new")
-    assert (tmp_path / "precious").read_text() == "text"
-    write_atomically(tmp_path / "a", b"new")  # it is gone, as what a killed process leaves
 
 
 def test_a_folder_holds_what_is_new_and_nothing_that_was_before(tmp_path):
@@ -103,3 +95,23 @@ def test_a_disk_that_takes_a_little_at_a_time_gets_it_all(tmp_path, monkeypatch)
     monkeypatch.setattr("os.write", lambda descriptor, data: honest(descriptor, data[:7]))
     write_atomically(tmp_path / "a", b"0123456789" * 10)
     assert (tmp_path / "a").read_bytes() == b"0123456789" * 10
+
+
+def test_a_link_in_the_way_is_not_followed(tmp_path):
+    precious = tmp_path / "precious"
+    precious.write_text("mine")
+    path = tmp_path / "out" / "a.txt"
+    path.parent.mkdir()
+    temporary_path(path).symlink_to(precious)
+    path.symlink_to(precious)
+    write_atomically(path, b"ours")
+    assert (precious.read_text(), path.read_text(), path.is_symlink()) == ("mine", "ours", False)
+
+
+def test_a_pipe_in_the_way_is_not_waited_for(tmp_path):
+    path = tmp_path / "a.txt"
+    os.mkfifo(temporary_path(path))
+    writing = threading.Thread(target=write_atomically, args=(path, b"ours"), daemon=True)
+    writing.start()
+    writing.join(20.0)
+    assert path.read_bytes() == b"ours"

@@ -6,7 +6,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from ikde.errors import FileError, InputError
-from ikde.files.tables import as_floats, as_names, errors_of, open_table
+from ikde.files.reading import errors_of
+from ikde.files.tables import as_floats, as_names, open_table
 
 ROWS = "name,x,note\na,1.5,\nb,-2e3,ok\n"
 
@@ -112,3 +113,81 @@ def test_a_csv_file_without_a_header_says_so(tmp_path, text):
     path.write_text(text)
     with pytest.raises(FileError, match=r"points.csv: the first line is empty; expected the names of the columns$"):
         open_table(path)
+
+
+def test_a_pipe_and_an_endless_device_are_no_tables(tmp_path):
+    (tmp_path / "zero.csv").symlink_to("/dev/zero")
+    with pytest.raises(InputError, match="path: this is a pipe, a device or a socket"):
+        open_table(tmp_path / "zero.csv")
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet", "npz"])
+def test_a_file_beyond_the_limit_is_refused_at_the_key_that_names_it(tmp_path, monkeypatch, kind):
+    path = write(tmp_path, kind)
+    monkeypatch.setenv("IKDE_MAX_FILE_MB", "0.00001")
+    with pytest.raises(InputError, match=r"path: \S+ MB; expected at most 1e-05 MB \(\$IKDE_MAX_FILE_MB\): /"):
+        open_table(path)
+
+
+def test_numbers_that_take_up_more_room_than_their_file_are_counted_first(tmp_path, monkeypatch):
+    pq.write_table(pa.table({"x": np.zeros(200_000)}), tmp_path / "points.parquet")
+    (tmp_path / "points.csv").write_text("x\n" + "0\n" * 200_000)
+    np.savez_compressed(tmp_path / "points.npz", x=np.zeros(200_000, np.uint8))
+    monkeypatch.setenv("IKDE_MAX_FILE_MB", "1")
+    for kind in ("csv", "parquet", "npz"):
+        assert "its columns would take up 2 MB; expected at most 1 MB" in complaint(tmp_path / f"points.{kind}")
+
+
+def test_a_long_word_that_is_written_once_and_meant_often_is_counted_first(tmp_path, monkeypatch):
+    path = tmp_path / "points.parquet"
+    pq.write_table(pa.table({"x": ["1" * 900] * 10_000}), path)
+    assert path.stat().st_size < 10_000
+    monkeypatch.setenv("IKDE_MAX_FILE_MB", "1")
+    assert "its columns would take up 9 MB" in complaint(path)
+
+
+def test_words_of_a_parquet_file_are_read_as_numbers_and_as_names(tmp_path):
+    path = tmp_path / "points.parquet"
+    words = pa.array(["1", "2", "1"])
+    pq.write_table(pa.table({"x": words, "y": words.dictionary_encode()}), path)
+    for name in ("x", "y"):
+        np.testing.assert_array_equal(as_floats(path, name, column(path, name)), [1.0, 2.0, 1.0])
+        assert as_names(path, name, column(path, name)) == ("1", "2", "1")
+
+
+@pytest.mark.parametrize("header", ["x" * 2 * 10**6, "x," * 10_001])
+def test_the_first_line_of_a_csv_file_has_an_end(tmp_path, header):
+    path = tmp_path / "points.csv"
+    path.write_text(header)
+    with pytest.raises(FileError, match=r"the first line is too long|field larger|at most 10,000 columns, got 10,002"):
+        open_table(path)
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet", "npz"])
+def test_a_name_without_end_is_no_name(tmp_path, kind):
+    path = tmp_path / f"points.{kind}"
+    names = ["a", "b" * 1001]
+    if kind == "csv":
+        path.write_text("n\n" + "\n".join(names))
+    elif kind == "npz":
+        np.savez(path, n=names)
+    else:
+        pq.write_table(pa.table({"n": names}), path)
+    with pytest.raises(FileError, match=r"row 2: n: expected at most 1,000 characters, got 1,001"):
+        as_names(path, "n", column(path, "n"))
+
+
+def test_letters_that_are_none_are_one_line(tmp_path):
+    path = tmp_path / "points.npz"
+    np.savez(path, n=np.array([0x110000], dtype="<u4").view("<U1"))
+    with pytest.raises(FileError, match="cannot be read"):
+        as_names(path, "n", column(path, "n"))
+
+
+def test_what_a_table_holds_is_quoted_as_text_and_in_few_words(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("x,y\n" + "\x1b[31m" * 1000 + ",2\n")
+    told = complaint(path)
+    assert told.startswith("points.csv: row 1: x: expected a number, got '\\x1b[31m")
+    assert len(told) < 120
+    assert "\x1b" not in told

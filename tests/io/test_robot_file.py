@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import ikde
 from ikde.errors import FileError, InputError
+from ikde.io import robot_file
 from ikde.io.robot_file import parse_robot
 from ikde.io.robots import FOLDER, load_robot
 from ikde.io.yaml_file import Document
@@ -349,3 +350,26 @@ def test_junk_anywhere_is_a_robot_or_one_line(path, junk):
         assert str(error).startswith("fuzz.yaml")
     else:
         assert np.all(np.isfinite(robot.home))
+
+
+def test_lists_that_include_lists_again_and_again_are_put_together_once(tmp_path, monkeypatch):
+    asked, put_together = [], robot_file._to_pairs
+    monkeypatch.setattr(robot_file, "_to_pairs", lambda *given: asked.append(1) or put_together(*given))
+    lists = [f"l{k}: {{include: [{', '.join([f'l{k - 1}' if k else 'all', 'all'] * 3)}]}}" for k in range(8)]
+    robot = parse(GOOD.replace("  all: {pairs", "  " + "\n  ".join(lists) + "\n  all: {pairs"), tmp_path)
+    assert robot.pair_lists["l7"] == robot.pair_lists["all"]
+    assert len(asked) == 9 + 2 * 8 - 1  # each list of the file, and for each of eight the two that it includes
+
+
+BARS = "    - {component: bar, from: arm, radius: 1, count: 10000}\n"
+MANY = {
+    "frames": ("  tip:  {", "".join(f"  f{k}: {{parent: world}}\n" for k in range(2000)), "at most 2,000 values"),
+    "spheres": ("    - {component: box", BARS * 10, "at most 100,000 spheres"),
+    "pairs": ("  all: {", "".join(f"  l{k}: {{}}\n" for k in range(100)), "at most 100 values"),
+}
+
+
+@pytest.mark.parametrize("section", MANY)
+def test_a_robot_has_an_end(tmp_path, section):
+    before, lines, words = MANY[section]
+    assert words in complaint(before, lines + before, tmp_path)

@@ -1,5 +1,7 @@
 """YAML: numbers as people write them, the line of every value, and never a traceback."""
 
+import os
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -85,7 +87,7 @@ def make_bomb(levels):
 
 @pytest.mark.parametrize("levels", [5, 12, 30])
 def test_aliases_of_aliases_are_refused_at_once(levels, tmp_path):
-    with pytest.raises(FileError, match=r"a.yaml: aliases repeat [\d,]+ values; expected at most 1,000,000"):
+    with pytest.raises(FileError, match=r"a.yaml:6 → a5\[\d\]: too many values, aliases counted"):
         load(make_bomb(levels), tmp_path)
 
 
@@ -93,6 +95,50 @@ def test_aliases_in_reason_are_read(tmp_path):
     data = load("a: &a [1, 2]\nb: [*a, *a]\nc: {d: *a}\n", tmp_path).data
     assert data == {"a": [1, 2], "b": [[1, 2], [1, 2]], "c": {"d": [1, 2]}}
     assert len(load(make_bomb(2), tmp_path).data["a2"]) == 10
+
+
+def test_an_error_behind_an_alias_is_where_it_was_written(tmp_path):
+    document = load("a: &a\n  x: 1\nb:\n  c: *a\n", tmp_path)
+    assert document.line(("b", "c", "x")) == 2
+    assert document.line(("b", "c")) == 4
+
+
+def test_aliases_that_pile_up_levels_are_refused(tmp_path):
+    lines = ["a0: &a0 [1]", *(f"a{k}: &a{k} [*a{k - 1}]" for k in range(1, 100))]
+    with pytest.raises(FileError, match=r"a.yaml:\d+ → a\d+\[0\]: nested too deeply; expected at most 40 levels"):
+        load("\n".join(lines), tmp_path)
+
+
+@pytest.mark.parametrize("text", ["*a", "a: *b", "a: &a {b: *a}", "{*a : 1}", "1\n---\n2"])
+def test_aliases_of_nothing_and_second_documents_are_one_line(text, tmp_path):
+    with pytest.raises(FileError, match=r"a\.yaml:\d"):
+        load(text, tmp_path)
+
+
+def test_values_are_counted_while_they_are_read(tmp_path, monkeypatch):
+    monkeypatch.setattr("ikde.io.yaml_file.MOST_VALUES", 100)
+    assert len(load("[" + "1," * 99 + "]", tmp_path).data) == 99
+    with pytest.raises(FileError, match=r"too many values"):
+        load("[" + "1," * 100 + "]" * 10_000, tmp_path)  # the end, which is no YAML, is not reached
+
+
+def test_a_text_beyond_the_limit_is_not_read(tmp_path, monkeypatch):
+    monkeypatch.setenv("IKDE_MAX_FILE_MB", "1")
+    with pytest.raises(FileError, match=r"a\.yaml: 0\.124 MB; expected at most 0\.1 MB"):
+        load("#" * 124_000, tmp_path)
+
+
+def test_a_pipe_is_no_file(tmp_path):
+    os.mkfifo(tmp_path / "a.yaml")
+    with pytest.raises(FileError, match="this is a pipe"):
+        read_yaml(tmp_path / "a.yaml")
+
+
+def test_a_number_without_end_is_quoted_in_few_words(tmp_path):
+    with pytest.raises(FileError) as caught:
+        load("x: " + "9" * 10_000, tmp_path)
+    assert "does not fit its tag" in str(caught.value)
+    assert len(str(caught.value)) < 300
 
 
 def test_missing_file_folder_and_binary_are_refused(tmp_path):

@@ -127,3 +127,8 @@ def test_bars_and_estimates_may_have_no_value():
     assert ">one</text>" in to_svg(plot_bars(["one"], bars, y=MM))
     assert ">rate</text>" in to_svg(plot_forest([], x=Axis(label="rate")))
     assert ">one</text>" in to_svg(plot_forest([Estimate(label="one", value=nan[0], lower=0, upper=1)], x=MM))
+
+
+def test_a_name_that_begins_with_an_underscore_is_in_the_legend():
+    figure = plot_lines([Line(label="_fast", x=[0, 1], y=[0, 1])], x=TIME, y=MM)
+    assert labels(figure) == [" _fast"]

@@ -1,13 +1,18 @@
 """Figures as pictures."""
 
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
 
+from ikde.errors import printable
 from ikde.plot.charts import Bars, Line, plot_bars, plot_lines
 from ikde.plot.images import INK, to_png, to_svg
+from ikde.plot.panels import Panel, plot_panels
+from ikde.plot.pose import plot_pose, save_figure
 from ikde.plot.style import Axis
+from tests.hostile import EVERYTHING
 
 
 def chart():
@@ -56,3 +61,34 @@ def test_a_photograph_is_on_white_and_the_same_every_time():
     assert png.startswith(b"\x89PNG")
     assert b"Software" not in png
     assert to_png(chart(), dpi=40) == png
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_a_name_is_text_in_a_drawing(name):
+    bars = [Bars(label=name, values=[1.0])]
+    lines = [Line(label=name, x=[0, 1], y=[0, 1])]
+    figures = [plot_bars([name], bars, y=Axis(label=name)), plot_lines(lines, x=Axis(label=name), y=Axis(label="y"))]
+    for figure in [*figures, plot_panels([Panel(y=Axis(label="y"), lines=lines, title=name)], x=Axis(label="x"))]:
+        svg = to_svg(figure)
+        texts = [element.text for element in ElementTree.fromstring(svg).iter() if element.tag.endswith("text")]
+        assert texts.count(printable(name)) >= 2
+        assert "<script" not in svg
+
+
+def test_what_looks_like_a_part_of_a_drawing_is_text():
+    name = f'id="a" url(#b) {INK} xlink:href'
+    svg = to_svg(plot_lines([Line(label=name, x=[0, 1], y=[0, 1])], x=Axis(label="x"), y=Axis(label="y")))
+    assert name in [element.text for element in ElementTree.fromstring(svg).iter()]
+
+
+def test_a_formula_that_is_none_is_drawn_as_text():
+    figure = plot_bars([r"$\frac{$"], [Bars(label=r"$\frac{$", values=[1.0])], y=Axis(label=r"$\frac{$"))
+    assert to_png(figure, dpi=40).startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+def test_a_robot_of_any_name_is_drawn(tmp_path, qiao, kind):
+    robot = replace(qiao, name="手臂 $\\frac{ <b>")
+    figure = plot_pose(robot, robot.home, detector=replace(robot.detectors["improved"], name="$x$"))
+    save_figure(figure, tmp_path / f"a.{kind}")
+    assert (tmp_path / f"a.{kind}").stat().st_size > 1000

@@ -1,6 +1,7 @@
 """A page with every kind of block, and a drawing small enough to read; and pages of tracks without their figures."""
 
 from ikde.report import track_page
+from ikde.report.markup import code, verbatim
 from ikde.report.page import (
     Animation,
     Cell,
@@ -55,3 +56,18 @@ def make_page():
         ),
         footer="ikde `0.1`",
     )
+
+
+def make_page_of(text):
+    """A page in which everything that somebody else may have written is this text."""
+    svg, moving = Figure(image=DRAWING, alt=text, caption=verbatim(text)), Animation(data='{"names":["<b>"]}', alt=text)
+    blocks = (
+        Text(f"{verbatim(text)} **{verbatim(text)}** {code(text)}"),
+        Notice(verbatim(text)),
+        Numbers((Number(text, text, text),)),
+        Facts(((text, verbatim(text)),)),
+        Code(text, verbatim(text)),
+        Table(columns=(Column(text, text, group=text),), rows=((text,), (Cell(text, "off"),)), caption=verbatim(text)),
+        Gallery((svg, moving)),
+    )
+    return Page(title=text, subtitle=text, sections=(Section(text, blocks),), footer=verbatim(text))

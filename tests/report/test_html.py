@@ -1,14 +1,18 @@
 """A page as one HTML file that needs nothing else."""
 
+import base64
+import hashlib
 import re
 from collections import Counter
 from html.parser import HTMLParser
 
 import pytest
 
+from ikde.errors import printable
 from ikde.report.html import render_html
-from ikde.report.page import Column, Figure, Gallery, Page, Section, Table, Text
-from tests.report.pages import DRAWING, make_page
+from ikde.report.page import Column, Figure, Gallery, Page, Section, Table, Text, slug
+from tests.hostile import EVERYTHING
+from tests.report.pages import DRAWING, make_page, make_page_of
 
 VOID = {"meta", "img", "br", "path", "use", "input"}
 
@@ -18,12 +22,13 @@ class Reader(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.ids, self.references, self.seen, self.open = [], [], Counter(), []
+        self.ids, self.references, self.seen, self.open, self.attributes = [], [], Counter(), [], Counter()
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
         self.seen[tag] += 1
         self.open += [] if tag in VOID else [tag]
+        self.attributes.update(name for name, _ in attrs)
         for name, value in attrs:
             if name == "id":
                 self.ids.append(value)
@@ -105,3 +110,29 @@ def test_a_page_without_lead_and_footer_has_none():
 
 def test_the_same_page_gives_the_same_text(text):
     assert render_html(make_page()) == text
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_a_name_is_text_wherever_it_stands(name):
+    text, ours = render_html(make_page_of(name)), Reader(render_html(make_page_of("a name")))
+    reader = Reader(text)
+    assert reader.open == []
+    assert reader.seen | {"code": 0} == ours.seen | {"code": 0}  # a backtick cannot stand in code
+    assert reader.attributes == ours.attributes
+    assert set(reader.references) - set(ours.references) <= {f"#{slug(name)}"}
+    assert printable(re.sub(r"\s+", " ", text)).isprintable()
+    assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u2028\u202e]", text)
+    text.encode()
+
+
+def test_halves_of_letters_are_written_out():
+    assert "\\ud800" in render_html(make_page_of("\ud800")).encode().decode()
+
+
+def test_only_the_script_of_the_page_may_run(text, reader):
+    script = re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"script-src 'sha256-{digest}';" in text
+    assert "script-src 'unsafe-inline'" not in text
+    assert "motion" in script
+    assert not [name for name in reader.attributes if name.startswith("on")]

@@ -6,8 +6,11 @@ import pytest
 
 from ikde.report.markdown import render_markdown
 from ikde.report.markup import verbatim
-from ikde.report.page import Column, Facts, Page, Section, Table
-from tests.report.pages import make_page
+from ikde.report.page import Code, Column, Facts, Page, Section, Table, Text
+from tests.hostile import EVERYTHING
+from tests.report.pages import make_page, make_page_of
+
+OPENINGS = ("# ", "- ", "> ", "##", "| ", "==", "--", "1.")
 
 
 @pytest.fixture(scope="module")
@@ -80,3 +83,37 @@ def test_a_page_ends_with_one_newline_and_is_the_same_every_time(text):
     assert text.endswith("\n")
     assert "\n\n\n" not in text
     assert render_markdown(make_page()) == text
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_a_name_changes_no_line_around_it(name):
+    text, ours = render_markdown(make_page_of(name)), render_markdown(make_page_of("a name"))
+    outside, theirs = (re.sub(r"(?s)```.*?```", "```", page).splitlines() for page in (text, ours))
+    assert [line[:2] for line in outside if line[:2] in OPENINGS] == [
+        line[:2] for line in theirs if line[:2] in OPENINGS
+    ]
+    assert len(outside) == len(theirs)
+    assert "<s" not in re.sub(r"```.*?```|`[^`]*`", "", text, flags=re.DOTALL)
+    assert all(line.isprintable() for line in text.splitlines())
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("# a", r"\# a"),
+        ("- a", r"\- a"),
+        ("1. a", r"1\. a"),
+        ("> a", r"\> a"),
+        ("===", r"\==="),
+        ("$x$", r"\$x\$"),
+        ("http://a", r"http\://a"),
+    ],
+)
+def test_the_beginning_of_a_paragraph_is_text(text, shown):
+    page = Page(title="t", sections=(Section("s", (Text(verbatim(text)),)),))
+    assert shown in render_markdown(page).splitlines()
+
+
+def test_code_cannot_end_before_its_end():
+    page = Page(title="t", sections=(Section("s", (Code("a\n```\n# b\n````\nc"),)),))
+    assert "\n`````\na\n```\n# b\n````\nc\n`````\n" in render_markdown(page)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ikde.report.markup import Paragraph, Span, code, parse_line, parse_text, verbatim
+from ikde.report.markup import Paragraph, Span, as_line, code, parse_line, parse_text, verbatim
 
 
 def shown(markup):
@@ -30,7 +30,7 @@ def test_a_mark_without_its_partner_is_text():
 
 @given(st.text())
 def test_verbatim_text_is_shown_as_it_is(text):
-    assert shown(verbatim(text)) == text
+    assert shown(verbatim(text)) == as_line(text)
     assert {span.kind for span in parse_line(verbatim(text))} <= {"plain"}
 
 
@@ -46,7 +46,7 @@ def test_code_needs_no_backslash(text):
 
 @given(st.text())
 def test_code_shows_any_text_as_it_is(text):
-    assert shown(code(text)) == text
+    assert shown(code(text)) == as_line(text)
 
 
 def test_a_mark_at_its_face_value_is_part_of_the_text_around_it():

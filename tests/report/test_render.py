@@ -1,10 +1,15 @@
 """Rich renderables as plain text."""
 
+import re
+
 import pytest
 
-from ikde.report.render import make_table, render
+from ikde.errors import printable
+from ikde.report.render import make_table, plain, render
+from tests.hostile import EVERYTHING
 
 ESCAPE = "\x1b"
+RED = re.compile(r"\x1b\[[\d;]*m")
 
 
 def test_plain_text_has_no_colour():
@@ -39,3 +44,25 @@ def test_no_line_ends_in_blanks_and_no_two_lines_are_empty():
 
 def test_long_lines_are_folded_at_the_width():
     assert max(map(len, render("word " * 100, width=40).splitlines())) <= 40
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+@pytest.mark.parametrize("color", [False, True])
+def test_a_name_is_shown_as_it_is_whatever_stands_around_it(name, color):
+    shown = printable(name)
+    text = render(f"[bold]{plain(name)}[/]: {plain(name)} [red]x[/]", color=color, width=300)
+    assert RED.sub("", text) == f"{shown}: {shown} x"
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_a_name_is_shown_as_it_is_in_a_table(name):
+    shown = printable(name)
+    table = make_table(name, ">of it", title=name)
+    table.add_row(plain(name), "1")
+    lines = render(table, width=300).splitlines()
+    assert [line.strip().startswith(shown) for line in lines if shown in line] == [True] * 3  # title, head and row
+    assert all(line.isprintable() for line in lines)
+
+
+def test_two_names_make_no_markup_together():
+    assert render(f"{plain('a[red')} and {plain('b]')}") == "a[red and b]"

@@ -139,3 +139,29 @@ WORDS = [
 def test_any_words_are_a_formula_or_one_line(words):
     result = parse("".join(words))
     assert "\n" not in str(result) if isinstance(result, InputError) else np.isfinite(result)
+
+
+def test_a_formula_that_costs_too_much_is_refused_before_it_is_evaluated():
+    dear, many = "+".join(["sin(k)"] * 100), np.zeros(2 * 10**6 + 1)
+    with pytest.raises(InputError, match=r"takes too long: 399 operations at 2,000,001 places, .*at most 200,000,000"):
+        parse_expression(dear).evaluate(many, 10**6)
+    assert parse_expression("+".join(["k"] * 30)).evaluate(many, 10**6).shape == many.shape
+
+
+def test_long_sums_are_evaluated_and_deeper_ones_are_refused():
+    assert value("+".join(["k"] * 280)) == 280 * value("k")
+    with pytest.raises(InputError, match="nested too deeply; expected at most 300 levels"):
+        parse_expression("+".join(["k"] * 320))
+
+
+def test_samples_are_taken_in_pieces_that_do_not_show(monkeypatch):
+    k, text = np.linspace(0.0, 9.0, 1000), "sin(k) ** 2 + (k % 3 if k <= 4 else min(k, 7))"
+    whole = parse_expression(text).evaluate(k, 10)
+    monkeypatch.setattr("ikde.track.expression.PIECE", 7)
+    np.testing.assert_array_equal(parse_expression(text).evaluate(k, 10), whole)
+
+
+def test_powers_of_powers_are_floats_and_cost_no_more_than_others():
+    assert parse_expression("2 ** 3 ** 2").evaluate(K, 10)[0] == 512.0
+    with pytest.raises(InputError, match="is inf at k = 0"):
+        parse_expression("9 ** 9 ** 9 ** 9 ** 9 ** 9").evaluate(K, 10)

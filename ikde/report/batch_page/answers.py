@@ -14,6 +14,7 @@ from ikde.batch.manifest import ArmFacts, Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part
 from ikde.batch.read import list_finished, read_part, read_verdicts
 from ikde.batch.statistics import Rate
+from ikde.errors import FileError
 from ikde.solver.verify import MaskedBools
 
 MOST_MISSED = 50  # targets that are listed with a reason
@@ -121,10 +122,10 @@ def gather_answers(folder: str | PathLike[str]) -> RunAnswers:
     done = list(list_finished(folder, manifest))
     names: dict[int, str] = {}
     for part in done:
-        solutions = piles[part.arm].add(folder, part, manifest.graders)
+        solutions = piles[part.arm].add(folder, part, manifest)
         if manifest.targets <= MOST_NAMED and "target_name" in solutions.column_names:
             names.update(_find_names(solutions))
-    arms = tuple(piles[arm.name].answers(arm, manifest.graders) for arm in manifest.arms)
+    arms = tuple(piles[arm.name].answers(folder, arm, manifest.graders) for arm in manifest.arms)
     return RunAnswers(folder=folder, manifest=manifest, parts_done=len(done), arms=arms, names=names)
 
 
@@ -137,12 +138,13 @@ class _Pile:
     words: dict[str, Counter[str]] = field(default_factory=lambda: {name: Counter() for name in WORDS})
     missed: dict[int, dict[str, Any]] = field(default_factory=dict)
 
-    def add(self, folder: Path, part: Part, graders: tuple[str, ...]) -> pa.Table:
+    def add(self, folder: Path, part: Part, manifest: Manifest) -> pa.Table:
         """Put one part on the pile; returns what was read of its solutions."""
+        graders = manifest.graders
         listing = MISSED if len(self.missed) < MOST_MISSED else ()
         wanted = [*NUMBERS, *_verdicts(graders), *WORDS, "target_name", *listing]
-        solutions = read_part(folder, part, SOLUTIONS, wanted)
-        timing = read_part(folder, part, TIMING, ["solve_seconds"])
+        solutions = read_part(folder, manifest, part, SOLUTIONS, wanted)
+        timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
         for table, names in ((solutions, NUMBERS), (timing, ("solve_seconds",))):
             for name in names:
                 if name in table.column_names:
@@ -167,9 +169,11 @@ class _Pile:
             if target not in self.missed and len(self.missed) < MOST_MISSED:
                 self.missed[target] = solutions.slice(numbers[index], 1).to_pylist()[0]
 
-    def answers(self, facts: ArmFacts, graders: tuple[str, ...]) -> ArmAnswers:
+    def answers(self, folder: Path, facts: ArmFacts, graders: tuple[str, ...]) -> ArmAnswers:
         """The pile as arrays."""
         numbers = {name: np.concatenate(pieces) for name, pieces in self.numbers.items()}
+        if len(set(map(len, numbers.values()))) > 1:
+            raise FileError(folder, f"its parts of arm {facts.name} hold different columns")
         nothing = np.ma.masked_array(np.empty(0, dtype=bool))
         verdicts = {name: np.ma.concatenate(self.verdicts.get(name, [nothing])) for name in _verdicts(graders)}
         return ArmAnswers(

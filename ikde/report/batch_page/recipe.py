@@ -40,7 +40,7 @@ def _state_facts(manifest: Manifest) -> Facts:
         ("graded again by", ", ".join(manifest.graders) or "none"),
         ("run file", manifest.file or "none, made in Python"),
         ("started", manifest.started),
-        ("machine", f"{machine['processor']}, {machine['cores']} cores, {machine['system']}"),
+        ("machine", f"{machine.get('processor')}, {machine.get('cores')} cores, {machine.get('system')}"),
         ("versions", ", ".join(f"{name} {version}" for name, version in manifest.versions.items())),
         ("recipe", manifest.hash),
     )
@@ -106,12 +106,13 @@ def make_again(run: RunAnswers) -> Section:
 
 def _read_on(folder: str) -> str:
     files = f"{folder}/solutions/*.parquet".replace("'", "''")
+    query = f"select arm, avg(reached::int) from '{files}' group by arm"
     return "\n".join(
         (
             "import duckdb, ikde, polars",
             "",
             f"frame = ikde.read_batch({folder!r}).to_pandas()               # pandas",
             f"frame = polars.from_arrow(ikde.read_batch({folder!r}))        # polars",
-            f"duckdb.sql(\"select arm, avg(reached::int) from '{files}' group by arm\")",
+            f"duckdb.sql({query!r})",
         )
     )
