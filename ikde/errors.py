@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 LONGEST = 300  # characters of an error; file, line and key are kept, the message is cut
-LONGEST_FILE, LONGEST_KEYS, LONGEST_KEY, LONGEST_QUOTE = 140, 80, 40, 60
+LONGEST_FILE, LONGEST_KEYS, LONGEST_QUOTE = 140, 100, 60
 MOST_COMPARED = 1000  # names that a misspelt one is compared with
 
 
@@ -48,7 +48,7 @@ class VerificationError(IkdeError):
 
 def format_path(where: tuple[str | int, ...]) -> str:
     """Write `("spheres", "typical", 2, "radius")` as `spheres.typical[2].radius`."""
-    text = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(str(key), LONGEST_KEY)}" for key in where)
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(str(key), LONGEST_KEYS)}" for key in where)
     return shorten(printable(text.removeprefix(".")), LONGEST_KEYS, keep_end=True)
 
 

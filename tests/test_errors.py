@@ -37,6 +37,10 @@ def test_a_long_message_is_cut_and_its_place_is_kept():
     assert len(text) == 300
 
 
+def test_a_name_as_long_as_names_may_be_is_kept():
+    assert str(InputError("wrong", ("x" * 100,))) == f"{'x' * 100}: wrong"
+
+
 def test_of_a_long_place_the_end_is_kept():
     deep = "/".join(["folder"] * 100) + "/a.yaml"
     text = str(FileError(deep, "wrong", ("k" * 10**6,) * 20 + ("x",), 14))

@@ -1,7 +1,6 @@
 """Whose a folder is, and who may write to it."""
 
 import os
-import shutil
 import subprocess
 import sys
 
@@ -152,33 +151,11 @@ def test_a_folder_that_cannot_be_written_is_an_error_in_one_line(tmp_path, monke
         claim(tmp_path)
 
 
-def test_a_lock_that_is_a_link_empties_no_file_elsewhere(tmp_path):
-    precious = tmp_path / "precious"
-    precious.write_text("mine")
-    (tmp_path / "run").mkdir()
-    (tmp_path / "run" / LOCK).symlink_to(precious)
-    with pytest.raises(FileError, match="cannot be used"):
-        claim(tmp_path / "run")
-    assert precious.read_text() == "mine"
-
-
 def test_a_lock_that_is_none_is_left_alone(tmp_path):
     (tmp_path / LOCK).write_text("mine")
     with pytest.raises(FileError, match="is none of ours"):
         claim(tmp_path)
     assert (tmp_path / LOCK).read_text() == "mine"
-
-
-@pytest.mark.parametrize("name", ["solutions", "timing", "report"])
-def test_overwriting_deletes_nothing_behind_a_link(run, tmp_path_factory, name):
-    elsewhere = tmp_path_factory.mktemp("elsewhere")
-    for file in ("a.parquet", ".a.tmp", "report.html"):
-        (elsewhere / file).write_text("mine")
-    shutil.rmtree(run / name)
-    (run / name).symlink_to(elsewhere)
-    with pytest.raises(FileError, match="is a link"):
-        claim(run, overwrite=True)
-    assert len(list(elsewhere.iterdir())) == 3
 
 
 def test_two_cannot_write_one_run(tmp_path):

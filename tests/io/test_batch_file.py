@@ -120,7 +120,7 @@ def test_a_detector_of_a_run_file_is_never_run(tmp_path, monkeypatch):
         ("name: task 1", f"name: {'x' * 101}", ":5 → targets.inline[0].name:", "1 to 100 characters, got 101"),
         ("name: mine", r'name: "a\n"', ":9 → solve.detector.name:", "expected a name of printable characters"),
         ("name: mine", r'name: "a\u202e"', ":9 → solve.detector.name:", "expected a name of printable characters"),
-        ("few:", f"{'x' * 101}:", f":13 → arms.{'x' * 101}:", "1 to 100 characters, got 101"),
+        ("few:", f"{'x' * 101}:", ":13 → ...xxx", "1 to 100 characters, got 101"),
         (TASK_2, "[540, -131]", ":6 → targets.inline[1].position:", "expected 3 values, got 2"),
         (TASK_2, "[1, 2, 3, 4]", ":6 → targets.inline[1].position:", "expected 3 values, got 4"),
         (TASK_2, "[1, 2, .nan]", ":6 → targets.inline[1].position[2]:", "expected a finite number"),
