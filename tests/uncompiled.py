@@ -26,6 +26,18 @@ def plain_module(module):
     return SimpleNamespace(**{name: plain(value) for name, value in vars(module).items()})
 
 
+def reachable(kernel, seen=None):
+    """Names of all functions that run when a kernel is called, itself among them; a generated one has no module."""
+    seen, function = set() if seen is None else seen, getattr(kernel, "py_func", kernel)
+    name = f"{function.__module__}.{function.__name__}"
+    if name not in seen:
+        seen.add(name)
+        for used in map(function.__globals__.get, function.__code__.co_names):
+            if isinstance(getattr(used, "py_func", used), FunctionType):
+                reachable(used, seen)
+    return seen
+
+
 def run_text(text):
     """The functions that a generated text defines, not compiled."""
     space = {"math": math, "np": np, "LANES": LANES, "sin_cos": plain(sin_cos)}

@@ -19,16 +19,10 @@ def pack_seeds(robot, Q, base=NO_BASE, first_box=1.0, rotation_length=0.2):
         order = np.argsort(cells, kind="stable")
         Q, T = np.ascontiguousarray(Q[order]), np.ascontiguousarray(T[:, order])
         starts = np.array([np.sum(np.array(cells) < cell) for cell in range(len(starts))])
-    return SeedArrays(
-        q=np.array(Q),
-        T_world_tool=T,
-        base=np.array(base),
-        grid=GRID,
-        grid_scale=scale,
-        cell_start=starts,
-        rotation_length=rotation_length,
-        first_box=first_box,
-    )
+    arrays = (np.array(Q), T, np.array(base), GRID.copy(), scale, starts)
+    for array in arrays:  # as those of a pool: numba tells the two apart
+        array.setflags(write=False)
+    return SeedArrays(*arrays, rotation_length=rotation_length, first_box=first_box)
 
 
 def cell_of(T, scale):

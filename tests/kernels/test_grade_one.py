@@ -6,9 +6,12 @@ import pytest
 import ikde
 from ikde.kernels.blocks import Terms, flatten_grader
 from ikde.kernels.grade_one import grade_one
+from ikde.model.generate.assemble import format_module
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.target import KINDS
 from tests.conftest import random_q
 from tests.kernels.test_figures import ROBOTS, run, targets_near, terms_of
+from tests.uncompiled import reachable, run_text
 
 
 @pytest.mark.parametrize("robot", ROBOTS[::3], ids=lambda robot: robot.name)
@@ -23,6 +26,17 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
             *errors, pair, verdict = grade_one(*block, *pack_targets(targets.take(np.array([row]))), q)
             assert np.array(errors).tobytes() == figures[row].tobytes()
             assert (pair, verdict) == (pairs[row], accepted[row])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_it_shares_no_code_with_what_searches_by_written_kernels(qiao, kind):
+    """Sines, cosines and arc tangents excepted; arguments are taken apart by functions that compute nothing."""
+    module = run_text(format_module(qiao, qiao.detector(None), kind))
+    search = reachable(module.solve_target) | reachable(module.solve_targets) | reachable(module.fill_pool)
+    shared = {name for name in reachable(grade_one) & search if not name.startswith("ikde.kernels.trig.")}
+    assert shared == set()
+    assert {"ikde.kernels.seeds.draw_seed", "ikde.kernels.trig.sin_cos"} <= search
+    assert {"ikde.kernels.clearance.compute_clearance", "ikde.kernels.frames.compute_tool"} <= reachable(grade_one)
 
 
 def test_what_is_outside_the_limits_is_not_accepted(qiao):

@@ -9,9 +9,13 @@ import pytest
 import ikde
 from ikde.errors import VerificationError
 from ikde.kernels.arrays import COUNTS, REACHED
+from ikde.model.target import Targets
 from ikde.solver import referee as module
+from ikde.solver.engines.found import make_found
 from ikde.solver.figures import AGREEMENT, compute_figures
-from ikde.solver.grade import confirm
+from ikde.solver.forward import forward
+from ikde.solver.grade import confirm, grade
+from ikde.solver.problem import make_problem
 from ikde.solver.search import Found
 from ikde.solver.verify import verify
 
@@ -90,6 +94,20 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
     assert not result.reached
     assert result.verified
     assert result.position_error_m > 0.1
+
+
+@pytest.mark.parametrize("verify_rows", ["all", "sample"])
+def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
+    """Its figures are true and its verdicts are not: those of plain numpy count as well."""
+    problem, detector = make_problem(qiao, QUICK, detector=None, near=None, freeze=None), qiao.detector(None)
+    outside = qiao.home + np.where(qiao.slides, 0.0, 9.0)
+    for q, asked in ((qiao.home, TARGETS[0]), (outside, ikde.Target(forward(qiao, outside)[qiao.tool][:3, 3]))):
+        targets = Targets.of([asked])
+        figures = compute_figures(qiao, detector, targets, q[None], QUICK)
+        found = replace(make_found(problem, 1), q=q[None], figures=replace(figures, accepted=np.ones(1, dtype=bool)))
+        graded = grade(problem, targets, found, seed=0, strict=False, probe=False, verify=verify_rows)
+        assert graded.verified.all()
+        assert not graded.reached.any()
 
 
 def test_the_figures_are_of_exactly_the_returned_q(qiao):
