@@ -12,6 +12,7 @@ from ikde.kernels.arrays import Floats
 
 WORLD = "world"
 NO_DETECTOR = "none"
+FARTHEST = 1e5  # m or rad, of all that a robot is made of: beyond it an angle has lost its last digits
 
 JointKind = Literal["revolute", "prismatic"]
 Spacing = Literal["touching", "even"]
@@ -170,8 +171,8 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
     ):
         if name not in known:
             raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
-    if not 0.0 <= detector.safe_distance_m < np.inf:
-        raise InputError("expected a distance of at least 0", (*where, "safe_distance"))
+    if not 0.0 <= detector.safe_distance_m <= FARTHEST:
+        raise InputError(f"expected a distance of at least 0, up to {FARTHEST:g} m", (*where, "safe_distance"))
     described = robot.components(detector.spheres)
     for component in {c for pair in robot.pair_lists[detector.pairs] for c in pair}:
         if component not in described:
