@@ -84,9 +84,9 @@ def test_the_figures_are_of_exactly_the_returned_q(qiao):
 
 def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
     result = ikde.solve(qiao, TARGETS[0], seed=7)
-    assert confirm(result) is result
+    assert confirm(qiao, result) is result
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         with pytest.raises(VerificationError, match="disagree by"):
-            confirm(replace(result, **{name: getattr(result, name) + 1e-9}))
+            confirm(qiao, replace(result, **{name: getattr(result, name) + 1e-9}))
     with pytest.raises(VerificationError, match="disagree by"):
-        confirm(replace(result, q=result.q + 1e-3))
+        confirm(qiao, replace(result, q=result.q + 1e-3))
