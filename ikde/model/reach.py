@@ -12,12 +12,14 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
+from ikde.model.rotation import measure_skew
 from ikde.model.tree import Body, build_tree
 
 PARALLEL = 1e-9  # between axes of one run; by how far they are not is added to what the run can reach
 SWEEPS = 60  # of the search for the nearest point; two are enough where slides are at right angles
 CONVERGED, ROUNDING = 1e-13, 2e-15  # of all lengths
 TINY_M = 1e-300
+SKEW = 3.0  # rad: how far a matrix may turn directions, times what it lacks of a rotation
 
 Slide = tuple[Floats, float, float]
 """A direction [3] of length 1, and how far along it something can be at least and at most, m."""
@@ -57,7 +59,7 @@ def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Flo
     `lower`, `upper` [N]: the joint ranges that hold, after `freeze`; those of turns do not count. Sound for any tree;
     sharp for the usual ones.
     """
-    chain, p_body_tool = _chain_to_tool(robot)
+    chain, p_body_tool, _ = chain_to_tool(robot)
     first = next((i for i, body in enumerate(chain) if _is_revolute(robot, body)), len(chain))
     lead, rest = chain[:first], chain[first:]
     R, centre, slides = np.eye(3), np.zeros(3), []
@@ -65,12 +67,14 @@ def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Flo
         centre = centre + R @ body.T_parent_body[:3, 3]
         R = R @ body.T_parent_body[:3, :3]
         slides.append((R @ body.axis, lower[body.joint], upper[body.joint]))
+    skew = SKEW * sum(float(measure_skew(body.T_parent_body[:3, :3])) for body in chain)
+    askew = skew * sum(max(abs(low), abs(high)) for _, low, high in slides)
     if not rest:
-        return _bound_distance(p_world_tool - centre - R @ p_body_tool, slides, np.zeros(3), 0.0, 0.0)
+        return _bound_distance(p_world_tool - centre - R @ p_body_tool, slides, np.zeros(3), 0.0, askew)
     centre = centre + R @ rest[0].T_parent_body[:3, 3]
     axis = R @ rest[0].T_parent_body[:3, :3] @ rest[0].axis
     runs = _runs(robot, rest, p_body_tool, lower, upper)
-    askew = 2.0 * sum(run.tilt for run in runs) * sum(run.total for run in runs)
+    askew += (2.0 * sum(run.tilt for run in runs) + skew) * sum(run.total for run in runs)
     ball = sum(run.length for run in runs[1:]) + askew
     slides.append((axis, runs[0].low, runs[0].high))
     return _bound_distance(p_world_tool - centre, slides, axis, runs[0].across, ball)
@@ -107,7 +111,7 @@ def _parting_plane(offset: Floats, normal: Floats, slides: list[Slide], axis: Fl
 
 def arm_length_m(robot: Robot) -> float:
     """Length of the chain from the first joint that turns to the tool, stretched, in m; slides at zero."""
-    chain, p_body_tool = _chain_to_tool(robot)
+    chain, p_body_tool, _ = chain_to_tool(robot)
     first = next((i for i, body in enumerate(chain) if _is_revolute(robot, body)), len(chain))
     offsets = [body.T_parent_body[:3, 3] for body in chain[first + 1 :]]
     return float(sum(np.linalg.norm(offset) for offset in [*offsets, p_body_tool]))
@@ -117,14 +121,16 @@ def _length(vectors: Floats) -> Floats:
     return np.linalg.norm(vectors, axis=-1)
 
 
-def _chain_to_tool(robot: Robot) -> tuple[list[Body], Floats]:
+def chain_to_tool(robot: Robot) -> tuple[list[Body], Floats, Floats]:
+    """Bodies from the world to the tool, and the tool's place [3] and rotation [3, 3] in the last of them."""
     tree = build_tree(robot)
     index = tree.frame_body[robot.tool]
     chain = []
     while index != 0:
         chain.append(tree.bodies[index])
         index = tree.bodies[index].parent
-    return chain[::-1], tree.T_body_frame[robot.tool][:3, 3]
+    T_body_tool = tree.T_body_frame[robot.tool]
+    return chain[::-1], T_body_tool[:3, 3], T_body_tool[:3, :3]
 
 
 def _is_revolute(robot: Robot, body: Body) -> bool:
