@@ -54,10 +54,11 @@ def _find_turns(robot: Robot, lower: Floats, upper: Floats) -> _Turns:
     for body in chain:
         slack += ROUNDING_RAD + SKEW * float(measure_skew(body.T_parent_body[:3, :3]))
         R = R @ body.T_parent_body[:3, :3]
-        if robot.joints[body.joint].kind == "prismatic":
+        joint = body.joint
+        if joint is None or robot.joints[joint].kind == "prismatic":
             continue
-        if lower[body.joint] == upper[body.joint]:
-            R = R @ rotation_about(body.axis, lower[body.joint])
+        if lower[joint] == upper[joint]:
+            R = R @ rotation_about(body.axis, lower[joint])
             continue
         axes.append(R @ body.axis)
         own.append(body.axis)

@@ -84,6 +84,7 @@ def _bound_distance(offset: Floats, slides: list[Slide], axis: Floats, disc: flo
     """At least how far offsets [..., 3] are from all sums of slides, a disc across `axis`, and a ball (radii in m)."""
     left, taken, flat = np.array(offset), [np.zeros(offset.shape[:-1]) for _ in slides], np.zeros_like(offset)
     lengths = _length(offset) + disc + ball + sum(max(abs(low), abs(high)) for _, low, high in slides)
+    bound = np.zeros(offset.shape[:-1])
     for _ in range(SWEEPS):
         for k, (direction, low, high) in enumerate(slides):
             left = left + taken[k][..., None] * direction
@@ -147,7 +148,7 @@ def _runs(robot: Robot, chain: list[Body], p_body_tool: Floats, lower: Floats, u
             axis = R_run_body @ body.axis
             apart = float(np.linalg.norm(np.cross(axis, runs[-1].axis)))
             if not _is_revolute(robot, body):
-                runs[-1].slide(axis, lower[body.joint], upper[body.joint])
+                runs[-1].slide(axis, float(lower[body.joint]), float(upper[body.joint]))
             elif apart <= PARALLEL:
                 runs[-1].tilt += apart
             else:

@@ -82,7 +82,9 @@ def grade(
         if probe:
             for place in np.flatnonzero((verified & ~reached)[rows]).tolist():
                 row, graded = int(rows[place]), verdicts.row(place)
-                explanations[row] = explain(problem, targets[row], found.row(row), graded, seed)
+                explanations[row] = explain(
+                    problem, targets[row], found.row(row), graded, seed=seed, stream=int(streams[row])
+                )
     return Graded(
         figures=figures,
         verified=verified,

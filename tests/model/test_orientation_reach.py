@@ -50,9 +50,9 @@ def test_an_orientation_that_the_tool_has_is_never_out_of_reach(seed):
         assert orientation_excess_rad(robot, target, lower, upper) == 0.0
 
 
-def make_scara():
+def make_scara(quill_m=1.0):
     """Two links and a wrist about the vertical, a quill along it; the tool points down."""
-    return make_robot(
+    robot = make_robot(
         {"j1": "revolute", "j2": "revolute", "quill": "prismatic", "wrist": "revolute"},
         [
             make_frame("a", "world", joint="j1", axis=(0, 0, 1)),
@@ -62,6 +62,8 @@ def make_scara():
             make_frame("tool", "d", rpy=(np.pi, 0, 0)),
         ],
     )
+    quill = replace(robot.joints[2], lower=-quill_m, upper=quill_m, home=0.0)
+    return replace(robot, joints=(*robot.joints[:2], quill, robot.joints[3]))
 
 
 @pytest.mark.parametrize(("axis", "off"), [((0, 0, -1), 0.0), ((1, 0, -1), np.pi / 4), ((0, 0, 1), np.pi)])
