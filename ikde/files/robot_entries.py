@@ -5,8 +5,7 @@ from dataclasses import replace
 
 from ikde.errors import InputError, nearest
 from ikde.files.entries import DetectorEntry, UnitsEntry
-from ikde.model.robot import NO_DETECTOR, Detector, Joint, Robot, check_detector
-from ikde.solver.joints import FARTHEST
+from ikde.model.robot import FARTHEST, NO_DETECTOR, Detector, Joint, Robot, check_detector
 
 
 def read_detector(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> Detector | None:

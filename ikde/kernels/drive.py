@@ -41,6 +41,29 @@ def take_drive_step(drive, q, step, out_q):
 
 
 @inline_kernel
+def arc_is_inside(drive, ranges, q, step):
+    """True unless the arc of a base with wheels, a `step` [D] from `q` [N], leaves the ranges of x or y on its way.
+
+    Along x it is farthest out where the heading is along y, and along y where it is along x.
+    """
+    x, y, heading = drive.base[0], drive.base[1], q[drive.base[2]]
+    distance, angle = drive.largest[0] * step[0], drive.largest[1] * step[1]
+    for k in range(2):
+        quarter = 0.5 if k == 0 else 0.0
+        turn = (math.ceil(heading / math.pi - quarter) + quarter) * math.pi - heading
+        if angle < 0.0:
+            turn -= math.pi
+        if abs(turn) >= abs(angle):
+            continue
+        chord = distance * (turn / angle) * chord_share(0.5 * turn)[0]
+        s, c = sin_cos(heading + 0.5 * turn)
+        place = q[x] + chord * c if k == 0 else q[y] + chord * s
+        if not ranges[0, drive.base[k]] <= place <= ranges[1, drive.base[k]]:
+            return False
+    return True
+
+
+@inline_kernel
 def fold_row(drive, q, step, row, out):
     """Turn d/dq at the end of a step, `row` [N], into d/dstep, `out` [D]."""
     first = step.size - drive.others.size

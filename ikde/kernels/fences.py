@@ -14,9 +14,10 @@ from ikde.kernels.clearing import add_chain, fill_contact, find_contact
 from ikde.kernels.drive import fold_row
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
+from ikde.kernels.trig import sin_cos
 
 MOST_PAIRS = 8  # the nearest
-MOST_FENCES = MOST_PAIRS + 9  # and four of the base's place, four of its wheels, one of the tool's distance
+MOST_FENCES = MOST_PAIRS + 13  # and eight of the base's place, four of its wheels, one of the tool's distance
 INSIDE = 2e-9  # m: where a curved fence is set, so that meeting it to 1e-9 is meeting it
 
 
@@ -81,22 +82,33 @@ def fence_pairs(robot, detector, drive, track, T_world_body, q, step, fences):
 
 @inline_kernel
 def fence_place(drive, track, q, q_end, step, count, fences):
-    """Rows that keep a base with wheels inside the ranges of x and y; returns how many rows there are then."""
-    inside = INSIDE + 0.125 * drive.largest[0] * drive.largest[1]  # an arc bulges by its sagitta
+    """Rows that keep a base with wheels inside the ranges of x and y on its whole arc; returns how many there are then.
+
+    Where an arc goes out of a range and comes back it stays on this side of the point where the tangents of both ends
+    meet, which is half of the distance ahead of its start, and a little more.
+    """
+    s, c = sin_cos(0.5 * drive.largest[1])
+    ahead = 0.5 * drive.largest[0] * (s / (0.5 * drive.largest[1] * c) if drive.largest[1] > 0.0 else 1.0)
+    s, c = sin_cos(q[drive.base[2]])
     for k in range(2):
-        coordinate = drive.base[k]
+        coordinate, along = drive.base[k], ahead * (c if k == 0 else s)
         for side in range(2):
-            room = q_end[coordinate] - track.ranges[0, coordinate]
-            if side == 1:
-                room = track.ranges[1, coordinate] - q_end[coordinate]
-            if room > 4.0 * drive.largest[0]:
-                continue
-            for i in range(q.size):
-                fences.row[i] = 0.0
-            fences.row[coordinate] = 1.0 if side == 0 else -1.0
-            fold_row(drive, q, step, fences.row, fences.slope[count])
-            fences.slack[count], fences.pair[count] = room - inside, -1
-            count += 1
+            sign = 1.0 if side == 0 else -1.0
+            room = sign * (q_end[coordinate] - track.ranges[side, coordinate])
+            if room <= 4.0 * drive.largest[0]:
+                for i in range(q.size):
+                    fences.row[i] = 0.0
+                fences.row[coordinate] = sign
+                fold_row(drive, q, step, fences.row, fences.slope[count])
+                fences.slack[count], fences.pair[count] = room - INSIDE, -1
+                count += 1
+            room = sign * (q[coordinate] - track.ranges[side, coordinate])
+            if room <= ahead:
+                for i in range(step.size):
+                    fences.slope[count, i] = 0.0
+                fences.slope[count, 0] = sign * along
+                fences.slack[count], fences.pair[count] = room + sign * along * step[0], -1
+                count += 1
     return count
 
 

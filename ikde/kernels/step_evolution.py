@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Indices, Ints
 from ikde.kernels.clearance import find_colliding_pair
-from ikde.kernels.drive import set_step_box, take_drive_step
+from ikde.kernels.drive import arc_is_inside, set_step_box, take_drive_step
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.lanes import is_inside
@@ -81,11 +81,11 @@ def compute_fitness(robot, drive, target, index, search, q, step, work):
 
 
 @inline_kernel
-def keeps_rest(drive, track, step, work):
-    """True if a step keeps what the box does not: the base's place, both wheels, the tool's distance (18)."""
+def keeps_rest(drive, track, q, step, work):
+    """True if a step from `q` [N] keeps what the box does not: base's place, both wheels, the tool's distance (18)."""
     if drive.base[0] >= 0:
         rolled = abs(drive.largest[0] * step[0]) + abs(drive.half_track * drive.largest[1] * step[1])
-        if rolled > drive.wheel_travel:
+        if rolled > drive.wheel_travel or not arc_is_inside(drive, track.ranges, q, step):
             return False
     square = 0.0
     for i in range(3):
@@ -105,7 +105,7 @@ def judge_step(robot, detector, drive, track, target, index, search, q, step, wo
             return MISSED, NO_PAIR
     if compute_orientation_error(target, index, work.T_world_tool) > search.orientation_tolerance:
         return MISSED, NO_PAIR
-    if not keeps_rest(drive, track, step, work):
+    if not keeps_rest(drive, track, q, step, work):
         return LIMITED, NO_PAIR
     compute_bounds(detector, work.T_world_body, work.bounds)
     compute_centres(detector, work.T_world_body, work.centres)

@@ -15,6 +15,7 @@ from ikde.model.names import check_printable
 WORLD = "world"
 NO_DETECTOR = "none"
 TOOL = "tool"  # what the tool's frame is called beside its own name
+FARTHEST = 1e5  # m or rad, of all that a robot is made of: beyond it an angle has lost its last digits
 
 JointKind = Literal["revolute", "prismatic"]
 Spacing = Literal["touching", "even"]
@@ -212,8 +213,8 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
         if name not in known:
             raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
     check_printable(detector.name, (*where, "name"))
-    if not 0.0 <= detector.safe_distance_m < np.inf:
-        raise InputError("expected a distance of at least 0", (*where, "safe_distance"))
+    if not 0.0 <= detector.safe_distance_m <= FARTHEST:
+        raise InputError(f"expected a distance of at least 0, up to {FARTHEST:g} m", (*where, "safe_distance"))
     described = robot.components(detector.spheres)
     if not described:
         raise InputError(f"this detector compares nothing: {detector.spheres!r} has no spheres", (*where, "spheres"))

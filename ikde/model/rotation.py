@@ -98,8 +98,12 @@ def check_rotation(R: Floats) -> None:
 
 def are_rotations(R: Floats) -> NDArray[np.bool_]:
     """Whether finite matrices [..., 3, 3] are rotations [...]."""
-    skew = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(-1, -2))
-    return (skew <= TOLERANCE) & (np.linalg.det(R) >= 0.0)
+    return (measure_skew(R) <= TOLERANCE) & (np.linalg.det(R) >= 0.0)
+
+
+def measure_skew(R: Floats) -> Floats:
+    """Largest entry [...] of R R^T - 1, of matrices [..., 3, 3]: 0 for rotations."""
+    return np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(-1, -2))
 
 
 def rotation_angle(R: Floats) -> Floats:

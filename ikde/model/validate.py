@@ -9,7 +9,7 @@ from ikde.errors import InputError, nearest
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
 from ikde.model.planar_base import find_planar_base
-from ikde.model.robot import NO_DETECTOR, TOOL, WORLD, Frame, Pairs, Robot, SphereRow, check_detector
+from ikde.model.robot import FARTHEST, NO_DETECTOR, TOOL, WORLD, Frame, Joint, Pairs, Robot, SphereRow, check_detector
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
 
@@ -88,10 +88,15 @@ def _check_joints(robot: Robot) -> None:
     for joint in robot.joints:
         where = ("joints", joint.name)
         for key in ("lower", "upper", "home"):
-            _require(bool(np.isfinite(getattr(joint, key))), "expected a finite number", *where, key)
+            _require(bool(abs(getattr(joint, key)) <= FARTHEST), _too_far(joint, getattr(joint, key)), *where, key)
         _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
         _require(inside, "home is outside the limits", *where, "home")
+
+
+def _too_far(joint: Joint, value: float) -> str:
+    unit = "m" if joint.kind == "prismatic" else "rad"
+    return f"expected a finite number, at most {FARTHEST:g} {unit} from 0, got {float(value)}"
 
 
 def _sort_frames(robot: Robot) -> tuple[Frame, ...]:
@@ -134,7 +139,8 @@ def _check_frame(robot: Robot, frame: Frame, frames: Mapping[str, Frame]) -> Non
     where = ("frames", frame.name)
     _require(frame.name != WORLD, f"{WORLD!r} is the root and cannot be defined", *where)
     _check_name(frame.parent, [WORLD, *frames], (*where, "parent"), "frame")
-    _require(bool(np.all(np.isfinite(frame.p_parent_frame))), "expected finite numbers", *where, "xyz")
+    is_near = bool(np.all(np.abs(frame.p_parent_frame) <= FARTHEST))  # False for NaN
+    _require(is_near, f"expected finite numbers, at most {FARTHEST:g} m from 0", *where, "xyz")
     check_rotation(frame.R_parent_frame)
     if frame.joint is None:
         _require(frame.axis is None, "an axis needs a joint", *where, "axis")
@@ -158,7 +164,7 @@ def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int,
         here = (*where, index)
         _check_name(row.start, tree.frame_body, (*here, "from"), "frame")
         _check_name(row.end, tree.frame_body, (*here, "to"), "frame")
-        _require(0.0 < row.radius_m < np.inf, "expected a radius above 0", *here, "radius")
+        _require(0.0 < row.radius_m <= FARTHEST, f"expected a radius above 0, up to {FARTHEST:g} m", *here, "radius")
         _require(row.count >= 1, "expected a count of at least 1", *here, "count")
         body = tree.frame_body[row.start]
         _require(
@@ -213,9 +219,11 @@ def _check_conventions(robot: Robot) -> None:
     kinds = {joint.name: joint.kind for joint in robot.joints}
     for name, offsets in robot.conventions.items():
         _require(name != robot.convention, "this is the convention the file is written in", "conventions", name)
-        for joint in offsets:
+        for joint, offset in offsets.items():
             _check_name(joint, kinds, ("conventions", name, joint), "joint")
             _require(kinds[joint] == "revolute", "only a revolute joint can be shifted", "conventions", name, joint)
+            is_near = bool(abs(offset) <= FARTHEST)
+            _require(is_near, f"expected at most {FARTHEST:g} rad either way", "conventions", name, joint)
 
 
 def _check_wheels(robot: Robot) -> None:
@@ -227,4 +235,4 @@ def _check_wheels(robot: Robot) -> None:
     needed = "wheels need a base that slides along x, then y, turns about z, and carries all that can collide"
     _require(drives, needed, "wheels")
     for key, what, value in (("radius", "radius", wheels.radius_m), ("half_track", "distance", wheels.half_track_m)):
-        _require(0.0 < value < np.inf, f"expected a {what} above 0", "wheels", key)
+        _require(0.0 < value <= FARTHEST, f"expected a {what} above 0, up to {FARTHEST:g} m", "wheels", key)

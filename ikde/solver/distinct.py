@@ -68,7 +68,7 @@ def solve_distinct(
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
     options = {"seed": check_seed(seed), "strict": True, "announce_compile": announce_compile}
     told = {"seed": seed, "detector": detector, "near": near, "freeze": freeze, "announce_compile": announce_compile}
-    first = confirm(solve(robot, target, chosen, **told))
+    first = confirm(robot, solve(robot, target, chosen, **told))
     if not first.reached or count == 1:
         return [first]
     look = _go_on if chosen.evolves or chosen.method == "memetic" else _sample
@@ -155,8 +155,8 @@ def _go_on(
 
 
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
-    """True if a revolute joint differs by more than 0.1 rad (around the circle) or the slides by more than 50 mm."""
+    """True if a revolute joint differs by more than 0.1 rad (around the circle) or a slide by more than 50 mm."""
     difference = np.abs(q - other)
     turns = difference[~robot.slides] % (2.0 * np.pi)
     turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
-    return bool(np.any(turned) or np.linalg.norm(difference[robot.slides]) > SLIDE_APART_M)
+    return bool(np.any(turned) or np.any(difference[robot.slides] > SLIDE_APART_M))

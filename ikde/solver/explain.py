@@ -1,26 +1,33 @@
-"""Why there is no solution, and what would help: found by trying, not by guessing."""
+"""Why there is no solution: proved by a bound, or as far as trying tells."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
-from ikde.model.reach import reach_excess_m
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.robot import Pairs
 from ikde.model.target import Target
+from ikde.solver.digits import at_least
 from ikde.solver.engines.found import Found
+from ikde.solver.hints import (
+    Probe,
+    excess_of_bounds,
+    hint_at_bounds,
+    hint_at_stream,
+    hint_at_tolerance,
+    try_freeing,
+    try_longer,
+    try_widening,
+)
 from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, StopReason
 from ikde.solver.search import search
-from ikde.solver.touching import AlwaysTouching, find_always_touching
+from ikde.solver.touching import find_always_touching
 from ikde.solver.verify import Verification
 
-PROBE_ATTEMPTS = {True: 24, False: 2}  # of the DE, of other engines
 COUNTED = 64  # attempts whose collisions are counted pair by pair
-WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
-GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
 
 MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and looks into what is in the way"
 
@@ -38,6 +45,14 @@ class Explanation:
     reason: str
     hint: str | None
     blocking_pairs: Mapping[tuple[str, str], int]
+
+
+@dataclass(frozen=True, slots=True)
+class _Met:
+    """How many attempts met the target in collision, and how often each pair was to blame."""
+
+    colliding: int
+    blocking: Mapping[tuple[str, str], int]
 
 
 def count_blocking_pairs(pairs: Pairs, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
@@ -68,69 +83,74 @@ def reason_from_counts(
     return f"{_count(attempts)} spent"
 
 
-def explain(problem: Problem, target: Target, found: Found, graded: Verification, seed: int) -> Explanation:
-    """Explain an unreached target from its counts, a proved bound, and short searches that change one thing."""
-    if found.excess_m[0] > 0.0:
-        reason, hint = _out_of_reach(float(found.excess_m[0])), _reach_hint(problem, target)
-        return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
-    colliding, pairs = int(found.counts[0, COLLIDING]), problem.robot.pairs(problem.detector)
-    blocking, timeout_s = count_blocking_pairs(pairs, found.pair_counts[0]), problem.settings.timeout_s
+def explain(
+    problem: Problem, target: Target, found: Found, graded: Verification, *, seed: int, stream: int
+) -> Explanation:
+    """Explain an unreached target from its counts, proved bounds, and short searches that change one thing."""
+    proof = _prove(problem, target)
+    if proof is not None:
+        return proof
+    met, timeout_s = _read_counts(problem, found), problem.settings.timeout_s
     if stop_from_counts(found, timeout_s)[0] == _TIMED_OUT:
-        return _timed_out(found, graded, timeout_s, blocking)
-    if colliding > 0 and not problem.settings.evolves and timeout_s is None:
-        counted = _count_pairs(problem, target, seed)
-        colliding, blocking = counted if counted[0] else (colliding, blocking)
-    probe = _Probe(target, seed, float(found.seconds[0]))
-    if colliding == 0 and problem.detector is not None and problem.settings.evolves:
-        tested = probe.run(problem.with_settings(collision="reject"))
-        colliding, blocking = int(tested.counts[0, COLLIDING]), count_blocking_pairs(pairs, tested.pair_counts[0])
-        if tested.counts[0, REACHED]:
-            return _spent(found, graded, "more restarts: a search that only tests the best (reject) found a solution")
-    touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
-    if touching is not None:
-        return _never_free(touching, blocking)
-    return _explain_by_remedies(problem, probe, found, graded, colliding, blocking)
+        return _timed_out(found, graded, timeout_s, met.blocking)
+    probe = Probe(target, seed, stream, float(found.seconds[0]))
+    met, hint = _look_closer(problem, probe, met)
+    hint = hint or try_longer(problem, probe)
+    if hint:
+        return _spent(found, graded, hint)
+    return _never_free(problem, met) or _explain_by_remedies(problem, target, probe, met, found, graded)
 
 
 def _explain_by_remedies(
-    problem: Problem,
-    probe: "_Probe",
-    found: Found,
-    graded: Verification,
-    colliding: int,
-    blocking: Mapping[tuple[str, str], int],
+    problem: Problem, target: Target, probe: Probe, met: _Met, found: Found, graded: Verification
 ) -> Explanation:
-    remedy = _try_remedies(problem, probe)
-    if colliding > 0:
-        worst = ", ".join(f"{a}-{b} ({n} of {colliding})" for (a, b), n in list(blocking.items())[:3])
-        return Explanation(
-            stop_reason=StopReason.SELF_COLLISION,
-            reason=f"only colliding solutions found: {colliding} met the target, each in collision; blocked by {worst}",
-            hint=remedy or "a detector with tighter spheres, or another target",
-            blocking_pairs=blocking,
-        )
+    remedy = try_freeing(problem, probe) or try_widening(problem, probe)
+    if met.colliding > 0:
+        return _colliding(met, remedy)
     if remedy:
-        return Explanation(
-            stop_reason=StopReason.LIMITS,
-            reason=f"no configuration inside the joint ranges meets the target; {_best(graded)}",
-            hint=remedy,
-            blocking_pairs={},
-        )
-    return _spent(found, graded, _tolerance_hint(problem, graded))
+        reason = f"no solution inside the joint ranges found in {_count(found.counts[0, ATTEMPTS])}; {_best(graded)}"
+        return Explanation(stop_reason=StopReason.LIMITS, reason=reason, hint=remedy, blocking_pairs={})
+    return _spent(found, graded, hint_at_tolerance(problem, target, found.q[0], graded))
 
 
-def _never_free(touching: AlwaysTouching, blocking: Mapping[tuple[str, str], int]) -> Explanation:
+def _never_free(problem: Problem, met: _Met) -> Explanation | None:
+    """That some pairs touch in every configuration, if they do."""
+    touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
+    if touching is None:
+        return None
     lines = f": {' and '.join(touching.lines)}" if touching.lines else ""
     return Explanation(
         stop_reason=StopReason.SELF_COLLISION,
         reason=f"{touching}; if that is meant, {touching.remedy}{lines}",
         hint="leave out pairs that may touch, or give the others smaller spheres",
-        blocking_pairs=blocking,
+        blocking_pairs=met.blocking,
     )
 
 
-def _out_of_reach(excess_m: float) -> str:
-    return f"out of reach: at least {excess_m:.3f} m beyond the stretched arm at the nearest base position"
+def _prove(problem: Problem, target: Target) -> Explanation | None:
+    """That no joint values bring the tool there, if bounds say so."""
+    far_m, off_rad = excess_of_bounds(problem, target, problem.lower, problem.upper)
+    if far_m == 0.0 and off_rad == 0.0:
+        return None
+    reason, hint = _out_of_reach(far_m, off_rad), hint_at_bounds(problem, target)
+    return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
+
+
+def _out_of_reach(far_m: float, off_rad: float = 0.0) -> str:
+    told = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
+    told += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
+    return f"out of reach: at least {' and '.join(told)}, whatever the joints do"
+
+
+def _colliding(met: _Met, remedy: str | None) -> Explanation:
+    worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
+    told = f"{met.colliding} met the target, each in collision; blocked by {worst}"
+    return Explanation(
+        stop_reason=StopReason.SELF_COLLISION,
+        reason=f"only colliding solutions found: {told}",
+        hint=remedy,
+        blocking_pairs=met.blocking,
+    )
 
 
 def _spent(found: Found, graded: Verification, hint: str | None) -> Explanation:
@@ -159,85 +179,39 @@ def _best(graded: Verification) -> str:
     return f"the best is off by {graded.position_error_m:.3g} m and {graded.orientation_error_rad:.3g} rad"
 
 
-@dataclass(slots=True)
-class _Probe:
-    """Short searches for one target, within what is left of its time."""
-
-    target: Target
-    seed: int
-    spent_s: float
-
-    def run(self, problem: Problem) -> Found:
-        """A few attempts at a question that may have been changed."""
-        brief = problem.with_settings(restarts=PROBE_ATTEMPTS[problem.settings.evolves])
-        found = search(brief, [self.target], seed=self.seed, streams=[0], spent_s=self.spent_s)
-        self.spent_s += float(found.seconds[0])
-        return found
+def _read_counts(problem: Problem, found: Found) -> _Met:
+    pairs = problem.robot.pairs(problem.detector)
+    return _Met(int(found.counts[0, COLLIDING]), count_blocking_pairs(pairs, found.pair_counts[0]))
 
 
-def _count_pairs(problem: Problem, target: Target, seed: int) -> tuple[int, dict[tuple[str, str], int]]:
-    """How many of some attempts met the target in collision, and how often each pair was to blame."""
-    begin = 0 if problem.near is None else 1  # attempt 0 is `near` itself, on every stream
-    found = search(problem, [target] * COUNTED, seed=seed, streams=range(COUNTED), first_attempt=begin, attempts=1)
+def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str | None]:
+    """Collisions counted pair by pair, where the search did not; and what helps, if that finds a solution."""
+    if problem.settings.evolves:
+        if met.colliding > 0 or problem.detector is None or problem.settings.knob("collision") == "reject":
+            return met, None
+        rejecting = problem.with_settings(collision="reject")
+        tested = probe.run(rejecting)
+        hint = "collision reject: a solution was found by testing the best of each population only"
+        return _read_counts(problem, tested), hint if probe.confirms(rejecting, tested) else None
+    if met.colliding == 0 or problem.settings.timeout_s is not None:
+        return met, None
+    often = _search_often(problem, probe)
+    counted = _count_pairs(problem, often)
+    return counted if counted.colliding else met, hint_at_stream(problem, probe.target, often)
+
+
+def _search_often(problem: Problem, probe: Probe) -> Found:
+    """One attempt on each of many streams; attempt 0 with `near` is `near` itself, on every stream."""
+    begin = 0 if problem.near is None else 1
+    told = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
+    return search(problem, [probe.target] * COUNTED, **told)
+
+
+def _count_pairs(problem: Problem, found: Found) -> _Met:
     met = found.q[(found.score[:, 0] == 0.0) & (found.counts[:, REACHED] == 0)]
     detector = problem.detector
     if detector is None or not len(met):
-        return 0, {}
+        return _Met(0, {})
     pairs = problem.robot.pairs(detector)
     gaps = compute_gaps(problem.robot, detector.spheres, pairs, met)
-    return len(met), count_blocking_pairs(pairs, (gaps <= detector.safe_distance_m).sum(axis=0))
-
-
-def _widened(problem: Problem) -> tuple[Floats, Floats]:
-    """Slides four times as wide, revolute joints free to turn once around."""
-    slides, lower, upper = problem.robot.slides, problem.robot.lower, problem.robot.upper
-    grow = 0.5 * (WIDER - 1.0) * (upper - lower)
-    wide_lower = np.where(slides, lower - grow, np.minimum(lower, -np.pi))
-    wide_upper = np.where(slides, upper + grow, np.maximum(upper, np.pi))
-    return wide_lower, wide_upper
-
-
-def _try_remedies(problem: Problem, probe: _Probe) -> str | None:
-    """The first single change with which a short search succeeds."""
-    robot = problem.robot
-    if problem.frozen:
-        free = problem.with_ranges(robot.lower, robot.upper)
-        if probe.run(free).counts[0, REACHED]:
-            return f"free {', '.join(problem.frozen)}: a solution was found without freezing"
-    lower, upper = _widened(problem)
-    found = probe.run(problem.with_ranges(lower, upper))
-    if found.counts[0, REACHED]:
-        outside = (found.q[0] < problem.lower) | (found.q[0] > problem.upper)
-        names = [joint.name for joint, out in zip(robot.joints, outside, strict=True) if out]
-        if names:
-            return f"a wider range for {', '.join(names)}: a solution was found beyond the limits"
-    return None
-
-
-def _reach_hint(problem: Problem, target: Target) -> str:
-    robot = problem.robot
-    if problem.frozen and reach_excess_m(robot, target.p_world_tool, robot.lower, robot.upper) == 0.0:
-        return f"free {', '.join(problem.frozen)}: then the bound no longer excludes the target"
-    names = [joint.name for joint in robot.joints if joint.kind == "prismatic"]
-    far = np.where(robot.slides, 1e3, 0.0)  # m; what turns may do does not enter the bound
-    if names and reach_excess_m(robot, target.p_world_tool, -far, far) == 0.0:
-        return f"a larger range for {', '.join(names)} would bring it into reach"
-    return "a target closer to the robot; no joint range brings the tool there"
-
-
-def _tolerance_hint(problem: Problem, graded: Verification) -> str | None:
-    settings = problem.settings
-    close = graded.position_error_m <= GENEROUS * settings.position_tolerance_m
-    close = close and graded.orientation_error_rad <= GENEROUS * settings.orientation_tolerance_rad
-    if not close or graded.self_collision:
-        return "more generations or restarts, or another target"
-    wanted = f"{_round_up(graded.position_error_m)} m"
-    if graded.orientation_error_rad > 0.0:
-        wanted += f" and {_round_up(graded.orientation_error_rad)} rad"
-    return f"a tolerance of {wanted} would accept the best"
-
-
-def _round_up(value: float) -> str:
-    """Two digits, never below the value."""
-    step = 10.0 ** (np.floor(np.log10(value)) - 1)
-    return f"{np.ceil(value / step) * step:.2g}"
+    return _Met(len(met), count_blocking_pairs(pairs, (gaps <= detector.safe_distance_m).sum(axis=0)))

@@ -23,7 +23,8 @@ from ikde.solver.verify import Bools, MaskedBools, Verdicts
 Limits = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper, m or rad."""
 
-AGREEMENT = 1e-11  # m, rad: kernels and plain numpy must agree to this; for a target beyond 1 m relative to it
+AGREEMENT = 1e-11  # m, rad: kernels and plain numpy must agree to this, times `measure_scale`
+LARGE = 0.01  # of the lengths that a pose is made of: beyond 100 m of them rounding grows with them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -112,7 +113,8 @@ def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearance
     """
     figures = compute_figures(robot, detector, Targets(np.zeros((len(Q), 3))), Q)
     plain = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q).min(axis=1, initial=np.inf)
-    gap = float(_difference(figures.clearance_m, plain).max(initial=0.0))
+    gaps = _difference(figures.clearance_m, plain)
+    gap = float((gaps / measure_scale(robot, np.zeros((len(Q), 3)), Q)).max(initial=0.0))
     if not gap <= AGREEMENT:
         raise VerificationError(f"kernels and plain numpy disagree by {gap:.3g} m on a clearance")
     return Clearances(
@@ -129,14 +131,29 @@ def judge_clearances(figures: Figures, detector: Detector | None) -> MaskedBools
 
 
 def compute_disagreement(targets: Targets | Sequence[Target], figures: Figures, verdicts: Verdicts) -> Floats:
-    """Largest gap [T] between the kernels' figures and plain numpy's in m or rad; beyond 1 m relative to the target."""
+    """Largest gap [T] between the kernels' figures and plain numpy's, m or rad, relative to `measure_scale`."""
     gaps = [
         _difference(figures.position_error_m, verdicts.position_error_m),
         _difference(figures.orientation_error_rad, verdicts.orientation_error_rad),
         _difference(figures.clearance_m, verdicts.clearance_m),
     ]
-    farthest = np.abs(Targets.of(targets).p_world_tool).max(axis=1)
-    return np.max(gaps, axis=0) / np.maximum(1.0, farthest)
+    return np.max(gaps, axis=0) / measure_scale(verdicts.robot, Targets.of(targets).p_world_tool, verdicts.Q)
+
+
+def measure_scale(robot: Robot, p_world_tool: Floats, Q: Floats) -> Floats:
+    """By how much more than 1e-11 two graders may differ [T], through rounding alone: at least 1.
+
+    As the target `p_world_tool` [T, 3] is beyond 1 m, or a hundredth of the robot's lengths at `Q` [T, N] is.
+    """
+    lengths = _sum_lengths(robot) + np.abs(Q) @ robot.slides
+    return np.maximum(np.maximum(1.0, np.abs(p_world_tool).max(axis=1)), LARGE * lengths)
+
+
+@lru_cache(maxsize=64)
+def _sum_lengths(robot: Robot) -> float:
+    """All that can add up in a coordinate at q = 0, m: the frames' places and the largest sphere."""
+    radii = [row.radius_m for rows in robot.approximations.values() for row in rows]
+    return float(sum(np.abs(frame.p_parent_frame).max() for frame in robot.frames)) + max(radii, default=0.0)
 
 
 def _difference(kernel: Floats, plain: Floats) -> Floats:

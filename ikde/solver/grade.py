@@ -12,10 +12,11 @@ import numpy as np
 
 from ikde.errors import InputError, VerificationError
 from ikde.kernels.arrays import Floats, Ints
+from ikde.model.robot import Robot
 from ikde.model.target import Targets
 from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, explain, stop_from_counts
-from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, judge_clearances
+from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, judge_clearances, measure_scale
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
 from ikde.solver.verify import Bools, MaskedBools, verify_many
@@ -83,7 +84,9 @@ def grade(
         if probe:
             for place in np.flatnonzero(agrees & ~reached[rows]).tolist():
                 row, graded = int(rows[place]), verdicts.row(place)
-                explanations[row] = explain(problem, targets[row], found.row(row), graded, seed)
+                explanations[row] = explain(
+                    problem, targets[row], found.row(row), graded, seed=seed, stream=int(streams[row])
+                )
     return Graded(
         figures=figures,
         self_collision=judge_clearances(figures, problem.detector),
@@ -94,11 +97,11 @@ def grade(
     )
 
 
-def confirm(result: SolveResult) -> SolveResult:
+def confirm(robot: Robot, result: SolveResult) -> SolveResult:
     """The result, verified; raises `VerificationError` if plain numpy does not see on its `q` what it says."""
-    plain, farthest = result.verification, max(1.0, float(np.abs(result.target.p_world_tool).max()))
+    plain, scale = result.verification, measure_scale(robot, result.target.p_world_tool[None], result.q[None])[0]
     names = ["position_error_m", "orientation_error_rad", *(["clearance_m"] if result.clearance_m is not None else [])]
-    gap = float(np.max([abs(getattr(result, name) - getattr(plain, name)) for name in names])) / farthest  # keeps NaN
+    gap = float(np.max([abs(getattr(result, name) - getattr(plain, name)) for name in names]) / scale)  # keeps NaN
     if not gap <= AGREEMENT or (result.reached and plain.outside_limits):
         raise _disagreement(gap, result.q)
     split = {"reached": False, "stop_reason": StopReason.BUDGET, "reason": SPLIT, "hint": None}

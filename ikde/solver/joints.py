@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
-from ikde.model.robot import Robot
+from ikde.model.robot import FARTHEST, Robot
 
-FARTHEST = 1e5  # m or rad: beyond it an angle has lost its last digits
 JointValues = ArrayLike | Mapping[str, float]
 
 

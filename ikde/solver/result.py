@@ -17,11 +17,11 @@ class StopReason(StrEnum):
 
     REACHED = "reached"
     OUT_OF_REACH = "out_of_reach"
-    """A bound proves that no joint values bring the tool there."""
+    """A bound proves that no joint values bring the tool there, or turn it so."""
     SELF_COLLISION = "self_collision"
-    """The pose was met, but only by configurations that collide with themselves."""
+    """The pose was met, but only by configurations that collide with themselves, as far as trying tells."""
     LIMITS = "limits"
-    """The pose was met only outside the joint limits (or with a frozen joint set free)."""
+    """As far as trying tells, the pose is met only outside the joint limits (or with a frozen joint set free)."""
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
     TIMED_OUT = "timed_out"
@@ -44,7 +44,7 @@ class SolveResult:
     reason: str
     """One line: what happened."""
     hint: str | None
-    """One line: what would help, found by trying it; None if nothing was found or nothing is needed."""
+    """One line: what would help, proved by a bound or found by trying it; None if nothing was, or nothing is needed."""
     q: Floats
     """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
     joint_names: tuple[str, ...]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ikde.kernels.arrays import DRIFT, Floats
-from ikde.solver.joints import FARTHEST
+from ikde.model.robot import FARTHEST
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
 from ikde.track.certify import bound_segments

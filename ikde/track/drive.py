@@ -21,7 +21,7 @@ from ikde.track.spec import DRIVES, Drive
 MOST_M, MOST_RAD = 0.5, 0.5 * np.pi  # of one sample, whatever the speed limits: a step is found near its start
 
 
-def step_base(start: Floats, v: Floats, omega: Floats, dt_s: float) -> Floats:
+def step_base(start: Floats, v: Floats, omega: Floats, dt_s: Floats | float) -> Floats:
     """Where a base [..., 3] is after `dt_s` of constant `v` m/s and `omega` rad/s [...]: the end of the exact arc."""
     angle = omega * dt_s
     chord, middle = v * dt_s * np.sinc(0.5 * angle / np.pi), start[..., 2] + 0.5 * angle

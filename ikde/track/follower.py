@@ -11,9 +11,8 @@ from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, TargetArrays, TrackA
 from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.model.planar_base import base_carries
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import FARTHEST, Detector, Robot
 from ikde.solver.engines.pool import rotation_length_m
-from ikde.solver.joints import FARTHEST
 from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath

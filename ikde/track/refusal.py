@@ -10,7 +10,7 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.tracking import REACHED, track_sample
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import reach_excess_m
-from ikde.solver.joints import FARTHEST
+from ikde.model.robot import FARTHEST
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
 from ikde.track.drive import largest_steps, wheel_speeds

@@ -2,7 +2,7 @@
 
 Everything is computed again from `q` alone: the base's twist from its places, speeds from differences. Between samples
 joints run linearly and a base with wheels along its arc, so speeds are constant there and joint values lie between
-those of the samples; how far the base's arc leaves the chord is added to what its ranges must hold.
+those of the samples, but for the base's x and y, which its ranges must hold all along the arc.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.robot import Detector, Robot
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import Bools, compute_orientation_errors
-from ikde.track.drive import base_twist, find_wheels, wheel_speeds
+from ikde.track.drive import base_twist, find_wheels, step_base, wheel_speeds
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 
@@ -28,7 +28,7 @@ class Breaches:
     error: int
     """Samples beyond the error per axis, or the orientation error."""
     range: int
-    """Joint values outside their range."""
+    """Joint values outside their range at samples; and arcs of a base that leave that of x or y on their way."""
     speed: int
     """Speeds of joints, or of a base with wheels along its heading, in a segment."""
     acceleration: int
@@ -137,7 +137,7 @@ def verify_track(
         distance_m=distance,
         breaches=Breaches(
             error=int(wrong.sum()),
-            range=int(_leaves_range(robot, q, base, v, omega, dt_s).sum()) if limits.ranges else 0,
+            range=_count_outside(robot, q, base, v, omega, dt_s) if limits.ranges else 0,
             speed=_count_above(driven, limits.speed),
             acceleration=_count_above(np.diff(driven, axis=0) / dt_s, limits.acceleration),
             wheel=_count_above(wheels, limits.wheel_speed_rad_s),
@@ -160,11 +160,22 @@ def _count_above(values: Floats, limit: Floats | float | None) -> int:
     return 0 if limit is None else int((np.abs(values) > np.asarray(limit) * (1.0 + ROUNDING)).sum())
 
 
-def _leaves_range(robot: Robot, q: Floats, base: Ints, v: Floats, omega: Floats, dt_s: float) -> Bools:
-    """Which joint values [M + 1, N] are outside; x and y of an arc by its sagitta, |v omega| dt^2 / 8, earlier."""
-    extra = np.zeros_like(q)
-    if base[0] >= 0 and len(q) > 1:
-        sagitta = np.abs(v * omega) * dt_s**2 / 8.0
-        rows = np.maximum(np.append(sagitta, 0.0), np.insert(sagitta, 0, 0.0))
-        extra[:, base[0]] = extra[:, base[1]] = rows
-    return (q - extra < robot.lower - ROUNDING) | (q + extra > robot.upper + ROUNDING)
+def _count_outside(robot: Robot, q: Floats, base: Ints, v: Floats, omega: Floats, dt_s: float) -> int:
+    """Joint values of `q` [M + 1, N] outside their range, and arcs that leave that of x or y on their way."""
+    count = int(np.count_nonzero(_is_outside(robot, np.arange(q.shape[1]), q)))
+    if base[0] < 0:
+        return count
+    turn, heading = omega * dt_s, q[:-1, base[2]]
+    for k, quarter in ((0, 0.5), (1, 0.0)):  # x is farthest out where the heading is along y, y where it is along x
+        quarters = heading / np.pi - quarter
+        first = np.where(turn > 0.0, np.ceil(quarters), np.floor(quarters))
+        for further in (0.0, 1.0):
+            ahead = (first + np.sign(turn) * further + quarter) * np.pi - heading
+            share = np.divide(ahead, turn, out=np.zeros_like(turn), where=np.abs(ahead) < np.abs(turn))
+            place = step_base(q[:-1, base], v, omega, share * dt_s)[:, k]
+            count += int(np.count_nonzero(_is_outside(robot, base[k], place) & (share > 0.0)))
+    return count
+
+
+def _is_outside(robot: Robot, joint: Ints, values: Floats) -> Bools:
+    return (values < robot.lower[joint] - ROUNDING) | (values > robot.upper[joint] + ROUNDING)

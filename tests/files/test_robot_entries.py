@@ -39,3 +39,9 @@ def test_ranges_replace_those_of_the_robot(qiao):
     assert with_ranges(qiao, {}, SI) is qiao
     with pytest.raises(InputError, match=r"^ranges\.d_x: this range is upside down"):
         with_ranges(qiao, {"d_x": [1, -1]}, SI)
+
+
+@pytest.mark.parametrize("interval", [[-1.01e5, 0], [0, 1.01e5]])
+def test_ranges_end_where_joint_values_do(qiao, interval):
+    with pytest.raises(InputError, match=r"^ranges\.d_x: expected at most 100000 m or rad"):
+        with_ranges(qiao, {"d_x": interval}, SI)

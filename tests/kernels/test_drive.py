@@ -46,6 +46,25 @@ def test_the_arc_and_its_series_meet():
         assert slope == pytest.approx(np.cos(x) / x - np.sin(x) / x**2 if x > 0.1 else -x / 3 + x**3 / 30, rel=1e-7)
 
 
+def test_an_arc_leaves_a_range_where_a_fine_walk_along_it_does(qiao, rng):
+    drive = make_drive(qiao, speed=np.full(9, 20.0))
+    is_inside, found = plain(kernels.arc_is_inside), []
+    for _ in range(1500):
+        q, step = np.zeros(9), rng.uniform(-1, 1, 8)
+        q[2] = 0.5 * np.pi * rng.integers(-3, 4) + rng.uniform(-0.4, 0.4)
+        step[1] *= rng.choice([0.0, 1e-9, 1.0], p=[0.1, 0.1, 0.8])
+        walk = np.array([step_from(drive, q, share * step)[:2] for share in np.linspace(0.0, 1.0, 80)])
+        ends = walk[[0, -1]]
+        room = rng.choice([1e-4, 1e-3, 1e-2])
+        ranges, side, axis = np.full((2, 9), [[-9.0], [9.0]]), rng.integers(2), rng.integers(2)
+        ranges[side, axis] = ends[:, axis].max() + room if side else ends[:, axis].min() - room
+        beyond = np.maximum(ranges[0, :2] - walk, walk - ranges[1, :2]).max()
+        if abs(beyond) > 5e-5:  # the walk's own coarseness
+            found.append(bool(beyond > 0.0))
+            assert is_inside(drive, ranges, q, step) is not found[-1]
+    assert 10 < sum(found) < len(found) - 10
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_rows_follow_the_step(qiao, rng, name):
     drive = make_drive(qiao, name)

@@ -8,6 +8,7 @@ from ikde.kernels.drive import take_drive_step
 from ikde.kernels.fences import MOST_PAIRS, make_fences
 from ikde.kernels.tracking import pose
 from ikde.solver.plain import compute_frames, compute_gaps
+from ikde.track.drive import step_base
 from tests.conftest import random_q
 from tests.kernels.driving import Stand
 from tests.uncompiled import plain
@@ -64,12 +65,31 @@ def test_a_base_keeps_its_place(qiao, rng):
     step = rng.uniform(-1, 1, 8)
     slack, slope, _ = rows_at(stand, step)
     x, y, _ = end_of(stand, step)[:3]
-    inside = kernels.INSIDE + 0.125 * stand.drive.largest[0] * stand.drive.largest[1]
-    np.testing.assert_allclose(slack, [5.0 - x - inside, y + 5.0 - inside], atol=1e-12)
+    np.testing.assert_allclose(slack, [5.0 - x - kernels.INSIDE, y + 5.0 - kernels.INSIDE], atol=1e-12)
     for k in range(8):
         move = DIFFERENCE * np.eye(8)[k]
         change = (end_of(stand, step + move) - end_of(stand, step - move)) / (2 * DIFFERENCE)
         np.testing.assert_allclose(slope[:, k], [-change[0], change[1]], atol=1e-8)
+
+
+def test_an_arc_from_the_end_of_a_range_stays_inside_on_its_way(qiao, rng):
+    """Arcs that the rows allow never leave the range; arcs that end inside but leave it before do not pass them."""
+    stand = Stand(qiao, qiao.home, speed=np.full(9, 20.0))
+    stand.track = stand.track._replace(reach=-np.inf)
+    passed, refused, shares = 0, 0, np.linspace(0.0, 1.0, 60)
+    for _ in range(1200):
+        axis, side, step = rng.integers(2), rng.choice([-1.0, 1.0]), rng.uniform(-1, 1, 8)
+        stand.q[:2], stand.q[2] = 0.0, (axis + 1 + 2 * rng.integers(2)) * np.pi / 2 + rng.uniform(-0.4, 0.4)
+        stand.q[axis] = side * (5.0 - rng.choice([0.0, 1.0]) * rng.uniform(0.0, 0.06))
+        slack, slope, _ = rows_at(stand, step)
+        np.testing.assert_allclose(slack[1:] - slope[1:] @ step, 5.0 - side * stand.q[axis], atol=1e-12)
+        twist = (np.full(60, largest * share) for largest, share in zip(stand.drive.largest[:2], step[:2], strict=True))
+        way = side * step_base(stand.q[:3], *twist, shares)[:, axis]
+        leaves = (way > 5.0 + 1e-9).any()
+        passed += (slack >= -1e-12).all()
+        assert not (leaves and (slack >= -1e-12).all())
+        refused += leaves and way[-1] <= 5.0
+    assert (passed > 200, refused > 20) == (True, True)
 
 
 def test_wheels_keep_their_speed(qiao, rng):

@@ -157,6 +157,18 @@ def test_what_the_box_does_not_keep_is_judged(qiao, limits):
     assert Case(qiao, **limits).judge(step)[0] == LIMITED
 
 
+def test_an_arc_that_leaves_the_bases_range_on_its_way_is_judged_too(qiao):
+    case = Case(qiao, changes={"position_tolerance": 1e3, "orientation_tolerance": 1e3})
+    step = np.array([1.0, 1.0, *np.zeros(6)])
+    distance, angle = case.follower.drive.largest[:2]
+    case.q[2] = 0.5 * (np.pi - angle)  # along y half-way
+    farthest = case.q[0] + distance / angle * (1.0 - np.cos(0.5 * angle))
+    for beyond, verdict in ((1e-9, SOLVED), (-1e-9, LIMITED)):
+        ranges = case.follower.track.ranges.copy()
+        ranges[1, 0] = farthest + beyond
+        assert case.judge(step, ranges=ranges)[0] == verdict
+
+
 def test_what_no_population_solves_is_tried_as_often_as_told(qiao):
     case = Case(qiao, changes={"attempts": 3, "generations": 5})
     case.detector = case.detector._replace(safe_distance=10.0)

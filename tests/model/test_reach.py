@@ -166,6 +166,96 @@ def test_oblique_slides_are_sound(slant, rng):
         assert reach_excess_m(robot, tool_position(robot, q), lower, upper) <= ROUNDING
 
 
+def make_scara():
+    """Two links about z, a quill along z between them and the tool."""
+    return make_robot(
+        {"j1": "revolute", "j2": "revolute", "quill": "prismatic"},
+        [
+            make_frame("a", "world", joint="j1", axis=(0, 0, 1)),
+            make_frame("b", "a", (0.5, 0, 0), joint="j2", axis=(0, 0, 1)),
+            make_frame("c", "b", (0.3, 0, 0), joint="quill", axis=(0, 0, -1)),
+            make_frame("tool", "c", (0, 0, -0.1)),
+        ],
+    )
+
+
+def test_a_slide_along_the_axes_of_its_run_adds_height_and_nothing_else():
+    robot = make_scara()
+    lower, upper = robot.lower, robot.upper
+    for far in (1.0, 1e5):
+        upper[2] = far
+        assert reach_excess_m(robot, np.array([2.0, 0.0, -0.3]), lower, upper) == pytest.approx(1.2)
+        assert reach_excess_m(robot, np.array([0.4, 0.0, -1.4 - far]), lower, upper) == pytest.approx(1.3, abs=1e-9)
+        assert reach_excess_m(robot, np.array([0.4, 0.0, 1.5]), lower, upper) == pytest.approx(0.6)
+
+
+def test_a_slide_across_the_axes_of_its_run_adds_width():
+    robot = make_robot(
+        {"turn": "revolute", "out": "prismatic"},
+        [
+            make_frame("a", "world", joint="turn", axis=(0, 0, 1)),
+            make_frame("b", "a", joint="out", axis=(1, 0, 0)),
+            make_frame("tool", "b", (0.2, 0, 0.3)),
+        ],
+    )
+    assert reach_excess_m(robot, np.array([0.0, 2.0, 0.3]), robot.lower, robot.upper) == pytest.approx(0.8)
+    assert reach_excess_m(robot, np.array([0.0, 1.0, 0.8]), robot.lower, robot.upper) == pytest.approx(0.5)
+
+
+def test_two_slides_one_behind_the_other_add_up_along_their_direction_only():
+    robot = make_robot(
+        {"rail": "prismatic", "reach": "prismatic", "turn": "revolute"},
+        [
+            make_frame("a", "world", joint="rail", axis=(1, 0, 0)),
+            make_frame("b", "a", joint="reach", axis=(1, 0, 0)),
+            make_frame("c", "b", joint="turn", axis=(0, 0, 1)),
+            make_frame("tool", "c", (0.5, 0, 0)),
+        ],
+    )
+    assert reach_excess_m(robot, np.array([3.0, 0.0, 0.0]), robot.lower, robot.upper) == pytest.approx(0.5)
+    assert reach_excess_m(robot, np.array([0.0, 3.0, 0.0]), robot.lower, robot.upper) == pytest.approx(2.5)
+
+
+def test_oblique_slides_are_sharp():
+    """Where two slides span a parallelogram its sides are the bound."""
+    robot = make_robot(
+        {"x": "prismatic", "s": "prismatic"},
+        [
+            make_frame("a", "world", joint="x", axis=(1, 0, 0)),
+            make_frame("b", "a", joint="s", axis=(3, 4, 0)),
+            make_frame("tool", "b"),
+        ],
+    )
+    assert reach_excess_m(robot, np.array([0.6, 1.8, 0.0]), robot.lower, robot.upper) == pytest.approx(1.0)
+    assert reach_excess_m(robot, np.array([4.0, 0.8, 0.0]), robot.lower, robot.upper) == pytest.approx(2.4)
+    assert reach_excess_m(robot, np.array([1.5, 0.7, 0.0]), robot.lower, robot.upper) == 0.0
+
+
+def test_axes_that_are_only_nearly_parallel_are_no_proof_of_a_plane():
+    """The second link leaves the plane by the little that its axis is askew."""
+    askew = (5e-10, 0, 1)
+    frames = [
+        make_frame("a", "world", joint="j0", axis=(0, 0, 1)),
+        make_frame("b", "a", (1e4, 0, 0), joint="j1", axis=askew),
+        make_frame("tool", "b", (1e4, 0, 0)),
+    ]
+    robot = make_robot(TURNS, frames, lower=-np.pi, upper=np.pi)
+    p = tool_position(robot, np.array([0.0, np.pi]))
+    assert abs(p[2]) > 9e-6
+    assert reach_excess_m(robot, p, robot.lower, robot.upper) == 0.0
+
+
+@few
+@given(seed=st.integers(0, 10_000))
+def test_far_out_what_can_be_reached_is_not_called_out_of_reach_for_its_rounding(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    far = np.where(robot.slides, 5e4, 1.0)
+    lower, upper = far * robot.lower, far * robot.upper
+    q = rng.uniform(lower, upper)
+    q = np.where(robot.slides, rng.choice([lower, upper]), q)
+    assert reach_excess_m(robot, tool_position(robot, q), lower, upper) == 0.0
+
+
 def test_a_robot_of_slides_only_reaches_its_box_and_no_more():
     robot = make_robot(
         {"x": "prismatic", "y": "prismatic"},

@@ -142,6 +142,16 @@ def test_limits_and_home_are_finite(key, value):
     reject("expected a finite number", "joints", "turn", key, joints=joints)
 
 
+@pytest.mark.parametrize("key", ["lower", "upper", "home"])
+@pytest.mark.parametrize(("kind", "unit"), [("prismatic", "m"), ("revolute", "rad")])
+def test_limits_and_home_lie_where_joint_values_may(key, kind, unit):
+    ends = {"lower": -1e5, "upper": 1e5, "home": 0.0}
+    check_robot(make_draft(joints=(make_joint("slide", kind="prismatic"), make_joint("turn", **ends))))
+    beyond = {**ends, key: np.nextafter(-1e5 if key == "lower" else 1e5, np.inf if key != "lower" else -np.inf)}
+    joints = (make_joint("slide", kind="prismatic"), make_joint("turn", **{"kind": kind, **beyond}))
+    reject(f"expected a finite number, at most 100000 {unit} from 0, got", "joints", "turn", key, joints=joints)
+
+
 def test_limits_upside_down():
     joints = (make_joint("slide", kind="prismatic"), make_joint("turn", lower=1.0, upper=-1.0))
     reject("limits are upside down", "joints", "turn", "upper", joints=joints)
@@ -180,10 +190,11 @@ def test_an_unknown_parent_names_the_nearest_frame():
     reject("no frame is called 'tol' (did you mean 'tool'?)", "frames", "tool", "parent", frames=frames)
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_a_place_is_finite(value):
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1.01e5, -1.01e5])
+def test_a_place_is_within_100_km(value):
+    check_robot(make_draft(frames=replace_frame("tool", p_parent_frame=np.array([1e5, -1e5, 0.0]))))
     frames = replace_frame("tool", p_parent_frame=np.array([0.0, value, 0.0]))
-    reject("expected finite numbers", "frames", "tool", "xyz", frames=frames)
+    reject("expected finite numbers, at most 100000 m from 0", "frames", "tool", "xyz", frames=frames)
 
 
 def test_an_axis_needs_a_joint():
@@ -235,10 +246,10 @@ def test_a_row_between_unknown_frames(key, name):
     reject("no frame is called 'tol'", "spheres", "fine", 2, name, approximations=replace_rows(**{key: "tol"}))
 
 
-@pytest.mark.parametrize("radius", [0.0, -0.1, np.nan, np.inf])
-def test_a_radius_is_above_zero(radius):
+@pytest.mark.parametrize("radius", [0.0, -0.1, np.nan, np.inf, 1.01e5])
+def test_a_radius_is_above_zero_and_within_100_km(radius):
     approximations = replace_rows(radius_m=radius)
-    reject("expected a radius above 0", "spheres", "fine", 2, "radius", approximations=approximations)
+    reject("expected a radius above 0, up to 100000 m", "spheres", "fine", 2, "radius", approximations=approximations)
 
 
 @pytest.mark.parametrize("count", [0, -1])
@@ -349,10 +360,10 @@ def test_a_detector_with_unknown_pairs():
     reject("no pair list is called 'all'", "detectors", "d", "pairs", detectors=make_detector(pairs="all"))
 
 
-@pytest.mark.parametrize("distance", [-0.1, np.nan, np.inf])
-def test_a_safe_distance_is_at_least_zero(distance):
+@pytest.mark.parametrize("distance", [-0.1, np.nan, np.inf, 1.01e5])
+def test_a_safe_distance_is_at_least_zero_and_within_100_km(distance):
     detectors = make_detector(safe_distance_m=distance)
-    reject("expected a distance of at least 0", "detectors", "d", "safe_distance", detectors=detectors)
+    reject("expected a distance of at least 0, up to 100000 m", "detectors", "d", "safe_distance", detectors=detectors)
 
 
 def test_every_approximation_describes_the_same_components():
@@ -419,6 +430,12 @@ def test_a_slide_cannot_be_shifted():
     reject(message, "conventions", "other", "slide", conventions={"other": {"slide": 1.0}})
 
 
+@pytest.mark.parametrize("offset", [np.nan, np.inf, 1.01e5])
+def test_a_shift_keeps_the_digits_of_an_angle(offset):
+    message = "expected at most 100000 rad either way"
+    reject(message, "conventions", "other", "turn", conventions={"other": {"turn": offset}})
+
+
 # ---- wheels
 
 
@@ -427,9 +444,10 @@ def test_wheels_need_a_base():
     reject(message, "wheels", wheels=Wheels(radius_m=0.1, half_track_m=0.2))
 
 
-@pytest.mark.parametrize("value", [0.0, -0.1, np.nan, np.inf])
+@pytest.mark.parametrize("value", [0.0, -0.1, np.nan, np.inf, 1.01e5])
 def test_wheels_have_a_size(qiao, value):
-    for key, message in (("radius", "expected a radius above 0"), ("half_track", "expected a distance above 0")):
+    for key, what in (("radius", "radius"), ("half_track", "distance")):
+        message = f"expected a {what} above 0, up to 100000 m"
         wheels = Wheels(**{"radius_m": 0.1, "half_track_m": 0.2, f"{key}_m": value})
         with pytest.raises(InputError) as caught:
             check_robot(unchecked(replace(qiao, wheels=wheels)))

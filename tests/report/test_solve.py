@@ -88,7 +88,9 @@ def test_text_says_the_verdict_first(qiao, result, blocked):
     assert format_solve(qiao, result, Units()).startswith("reached: ")
     text = format_solve(qiao, blocked, Units())
     assert text.startswith("not reached: only colliding solutions")
-    assert "what would help: " in text
+    helped, helpless = (format_solve(qiao, replace(blocked, hint=hint), Units()) for hint in ("free d_x: so", None))
+    assert "what would help: free d_x: so" in helped
+    assert "what would help" not in helpless
 
 
 def test_text_shows_every_joint_in_its_unit(qiao, result):

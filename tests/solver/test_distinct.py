@@ -89,6 +89,14 @@ def test_distinct_is_0_1_rad_around_the_circle_or_50_mm(qiao, joint, difference,
         assert are_apart(qiao, *pair) is distinct
 
 
+@pytest.mark.parametrize(("apart_m", "distinct"), [((0.04, 0.04), False), ((0.051, 0.0), True), ((0.0, 0.051), True)])
+def test_each_slide_counts_by_itself(qiao, apart_m, distinct):
+    q, other = np.zeros(9), np.zeros(9)
+    other[:2] = apart_m
+    assert are_distinct(qiao, q, other) is distinct
+    assert are_apart(qiao, q, other) is distinct
+
+
 def test_the_least_motion_from_home_or_near_comes_first(qiao):
     widths = qiao.upper - qiao.lower
     for near in (None, qiao.home + 0.2):

@@ -1,14 +1,17 @@
 """The kernels' figures in bulk: plain numpy confirms them, on every robot."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import ikde
 from ikde.errors import VerificationError
 from ikde.solver import figures as module
-from ikde.solver.figures import AGREEMENT, compute_clearances, compute_disagreement, compute_figures
+from ikde.solver.figures import AGREEMENT, compute_clearances, compute_disagreement, compute_figures, measure_scale
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
+from tests.random_robots import random_robot
 
 SETTINGS = ikde.SolveSettings()
 
@@ -48,6 +51,35 @@ def test_far_from_the_origin_agreement_is_relative(qiao):
     verdicts = verify_many(qiao, target, q[None], SETTINGS, None)
     absolute = abs(figures.position_error_m[0] - verdicts.position_error_m[0])
     assert compute_disagreement(target, figures, verdicts)[0] == pytest.approx(absolute / 5e4)
+
+
+def stretch(robot, share):
+    """The robot with slides, places and spheres so many times as large, at most what a robot may be."""
+    joints = [
+        replace(joint, **{end: share * getattr(joint, end) for end in ("lower", "upper", "home")})
+        for joint in robot.joints
+    ]
+    slides = tuple(new if new.kind == "prismatic" else old for new, old in zip(joints, robot.joints, strict=True))
+    frames = tuple(replace(frame, p_parent_frame=share * frame.p_parent_frame) for frame in robot.frames)
+    return replace(robot, joints=slides, frames=frames)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_largest_robot_that_loads_is_graded_wherever_its_target_is(seed):
+    robot, rng = stretch(random_robot(seed), 5e4), np.random.default_rng(seed)
+    Q, targets = random_q(robot, rng, 60), targets_of_every_kind(random_robot(seed), 60)
+    detector = robot.detector(None)
+    figures, verdicts = (
+        compute_figures(robot, detector, targets, Q),
+        verify_many(robot, targets, Q, SETTINGS, detector),
+    )
+    assert np.all(compute_disagreement(targets, figures, verdicts) <= 0.1 * AGREEMENT)
+    assert len(compute_clearances(robot, detector, Q).clearance_m) == 60
+
+
+def test_a_small_robot_is_graded_to_the_last_digit(qiao):
+    """What a robot below 100 m is graded by does not grow with it."""
+    assert measure_scale(qiao, np.zeros((1, 3)), qiao.upper[None]) == 1.0
 
 
 def test_clearances_are_what_check_says(qiao, rng):

@@ -51,7 +51,7 @@ def test_a_quick_result_is_verified_once_plain_numpy_has_confirmed_it_and_not_be
     assert (result.reached, result.self_collision, result.verified) == (True, False, None)
     assert result.verification.accepted
     assert result.verified is None
-    confirmed = confirm(result)
+    confirmed = confirm(qiao, result)
     assert (confirmed.verified, result.verified) == (True, None)
     assert confirmed.q.tobytes() == result.q.tobytes()
 

@@ -12,9 +12,11 @@ from ikde.errors import InputError
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import certify
+from ikde.track.courses import ContinuationSettings
 from ikde.track.follow_path import follow_path
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
+from ikde.track.optimized import OptimizedSettings
 from ikde.track.path import ToolPath
 from ikde.track.starts import draw_starts
 from ikde.track.trajectory import TrackStopReason
@@ -123,6 +125,36 @@ def test_a_path_out_of_the_workspace_ends_at_its_rim(drive):
     at, height = motion.stop.sample, 1.64 + 0.06 / 240 * np.arange(241)
     assert ikde.solve(robot(), ikde.Target([0.9, 0, height[at - 1]])).reached
     assert not ikde.solve(robot(), ikde.Target([0.9, 0, height[at]])).reached
+
+
+def random_task(seed):
+    """A broken line near a base that has little room, at one of three speeds."""
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform([-1, -1, 0.4], [1, 1, 1.5]) + np.cumsum(rng.normal(size=(4, 3)) * [0.3, 0.3, 0.1], axis=0)
+    at = np.linspace(0.0, 3.0, int(rng.integers(20, 80)))
+    path = ToolPath.through(np.transpose([np.interp(at, range(4), line) for line in corners.T]), dt_s=0.02)
+    half = float(rng.choice([0.05, 0.1, 0.3, 1.0]))
+    slides = [replace(joint, lower=-half, upper=half) for joint in robot().joints[:2]]
+    small = replace(robot(), joints=(*slides, *robot().joints[2:]))
+    return small, path, [None, MotionLimits.of(small).speed, np.full(9, 5.0)][int(rng.integers(3))]
+
+
+def test_a_path_is_followed_to_its_end_or_a_reason_is_given():
+    """A base that begins at the end of its range, as the solver likes to put it, must not leave it on its first arc."""
+    reached = 0
+    for seed in (1, 4, 12, 25, 28, 31, 38, 60):
+        small, path, speed = random_task(seed)
+        told = {"limits": MotionLimits.of(small, speed=speed), "drive": "differential"}
+        motion = follow_path(small, path, settings=ContinuationSettings(returns=0), **told)
+        motions = [motion]
+        if len(motion.q):
+            few = OptimizedSettings(returns=1, generations=100)
+            motions.append(follow_path(small, path, method="optimized", start=motion.q[0], settings=few, **told))
+        for motion in motions:
+            assert motion.breaches.total == 0
+            assert motion.reached is (motion.stop is None)
+            reached += motion.reached
+    assert reached >= 8
 
 
 def test_what_is_proved_to_be_out_of_reach_is_told_at_its_sample():

@@ -1,5 +1,7 @@
 """The judge of motions: made ones keep all limits, and each limit is broken on purpose, once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -100,8 +102,46 @@ def test_an_arc_bulges_beyond_its_ends(qiao):
     q = np.tile(qiao.home, (2, 1))
     q[0, :3], q[1, :3] = start, step_base(start, np.array(0.5), np.array(1.5), DT_S)
     q[:, 0] += qiao.upper[0] - q[:, 0].max()
-    assert judge(qiao, q).breaches.range == 2
+    assert judge(qiao, q).breaches.range == 1
     assert judge(qiao, q, drive="omnidirectional").breaches.range == 0
+
+
+def test_an_arc_that_only_might_bulge_does_not(qiao):
+    """Along the end of its range a base may drive as long as it turns inwards."""
+    start = np.array([qiao.upper[0], 0.0, 0.5 * np.pi])
+    q = np.tile(qiao.home, (2, 1))
+    for omega, breaches in ((1.5, 0), (-1.5, 1)):
+        q[0, :3], q[1, :3] = start, step_base(start, np.array(0.5), np.array(omega), DT_S)
+        assert judge(qiao, q).breaches.range == breaches
+
+
+def test_a_place_outside_is_counted_once(qiao):
+    q = make_q(qiao)
+    robot = replace(qiao, joints=(replace(qiao.joints[0], upper=float(q[-2, 0])), *qiao.joints[1:]))
+    assert judge(robot, q).breaches.range == 1
+    assert judge(robot, q[::-1], speed=None).breaches.range == 1
+
+
+def test_arcs_leave_a_range_where_a_fine_walk_along_them_does(qiao, rng):
+    found = []
+    for _ in range(300):
+        start, v, omega = rng.uniform(-4, 4, 3), rng.uniform(-20, 20), rng.uniform(-300, 300) * rng.choice([1, 1e-9])
+        q = np.tile(qiao.home, (2, 1))
+        q[0, :3], q[1, :3] = start, step_base(start, np.array(v), np.array(omega), DT_S)
+        walk = step_base(start, np.full(300, v), np.full(300, omega), np.linspace(0.0, DT_S, 300))[:, :2]
+        lower, upper, axis, room = np.full(2, -99.0), np.full(2, 99.0), rng.integers(2), rng.choice([1e-3, 1e-2])
+        if rng.random() < 0.5:
+            lower[axis] = q[:, axis].min() - room
+        else:
+            upper[axis] = q[:, axis].max() + room
+        slides = [replace(j, lower=lower[k], upper=upper[k]) for k, j in enumerate(qiao.joints[:2])]
+        turns = [replace(j, lower=-20.0, upper=20.0) for j in qiao.joints[2:]]
+        beyond = np.maximum(lower - walk, walk - upper).max()
+        if abs(beyond) > 2e-4:  # the walk's own coarseness
+            found.append(beyond > 0.0)
+            robot = replace(qiao, joints=(*slides, *turns))
+            assert (judge(robot, q, speed=None, detector="none").breaches.range > 0) is bool(found[-1])
+    assert 20 < sum(found) < len(found) - 20
 
 
 def test_sliding_sideways_is_a_breach_of_wheels_only(qiao):

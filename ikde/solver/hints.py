@@ -1,0 +1,185 @@
+"""What would help where a target was not reached. Each hint is proved by a bound, or was found by trying it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikde.kernels.arrays import REACHED, Floats
+from ikde.model.orientation_reach import orientation_excess_rad
+from ikde.model.reach import reach_excess_m
+from ikde.model.robot import FARTHEST
+from ikde.model.target import Target
+from ikde.solver.digits import round_up
+from ikde.solver.engines.found import Found
+from ikde.solver.problem import Problem
+from ikde.solver.search import search
+from ikde.solver.settings import SolveSettings
+from ikde.solver.verify import Verification, verify_many
+
+PROBE_ATTEMPTS = {True: 24, False: 2}  # of the DE, of other engines
+WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
+GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
+
+Names = Sequence[str]
+"""Of joints."""
+
+
+@dataclass(slots=True)
+class Probe:
+    """Short searches for one target, within what is left of its time."""
+
+    target: Target
+    seed: int
+    stream: int
+    spent_s: float
+
+    def run(self, problem: Problem, **told: int) -> Found:
+        """A few attempts at a question that may have been changed, at most as many as were asked for."""
+        few = PROBE_ATTEMPTS[problem.settings.evolves]
+        brief = problem.with_settings(restarts=min(few, problem.settings.restarts or few))
+        found = search(brief, [self.target], seed=self.seed, streams=[self.stream], spent_s=self.spent_s, **told)
+        self.spent_s += float(found.seconds[0])
+        return found
+
+    def confirms(self, problem: Problem, found: Found) -> bool:
+        """Whether the question was answered, in the eyes of plain numpy, too."""
+        return bool(found.counts[0, REACHED]) and meets(problem, self.target, found.q[0])
+
+
+def meets(problem: Problem, target: Target, q: Floats) -> bool:
+    """Whether plain numpy accepts `q` [N] as an answer inside the question's own ranges."""
+    graded = verify_many(problem.robot, [target], q[None], problem.settings, problem.detector).row(0)
+    is_inside = bool(np.all((problem.lower <= q) & (q <= problem.upper)))
+    return is_inside and graded.within_tolerance and not graded.colliding_pairs
+
+
+def excess_of_bounds(problem: Problem, target: Target, lower: Floats, upper: Floats) -> tuple[float, float]:
+    """By how much bounds prove a target to be out of reach inside ranges [N], m and rad; 0 within the tolerances."""
+    far_m = float(reach_excess_m(problem.robot, target.p_world_tool, lower, upper))
+    off_rad = orientation_excess_rad(problem.robot, target, lower, upper)
+    settings = problem.settings
+    return far_m * (far_m > settings.position_tolerance_m), off_rad * (off_rad > settings.orientation_tolerance_rad)
+
+
+def hint_at_bounds(problem: Problem, target: Target) -> str:
+    """What opens the bounds that exclude a target, or that nothing does."""
+    frozen, slides = problem.frozen, [joint.name for joint in problem.robot.joints if joint.kind == "prismatic"]
+
+    def excess(freed: Names, widened: Names) -> tuple[float, float]:
+        return excess_of_bounds(problem, target, *_open_ranges(problem, freed, widened))
+
+    def is_open(freed: Names, widened: Names) -> bool:
+        return excess(freed, widened) == (0.0, 0.0)
+
+    ways = [f"free {_name(freed)}" for freed in _find_fewest(frozen, lambda names: is_open(names, ()))]
+    if not ways:
+        ways = [f"a larger range for {_name(wide)}" for wide in _find_fewest(slides, lambda names: is_open((), names))]
+    if not ways:
+        for wide in _find_fewest(slides, lambda names: is_open(frozen, names)):
+            freed = _find_fewest(frozen, lambda names, wide=wide: is_open(names, wide))[0]
+            ways.append(f"free {_name(freed)} and a larger range for {_name(wide)}")
+    if ways:
+        return f"{', or '.join(ways)}: then the bound no longer excludes the target"
+    far_m, off_rad = excess(frozen, slides)
+    asked = " and ".join(["a target closer to the robot"] * (far_m > 0.0) + ["another orientation"] * (off_rad > 0.0))
+    return f"{asked}; no joint range brings the tool there"
+
+
+def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Verification) -> str | None:
+    """The tolerances that would accept the best `q` [N], where they are not much larger than those asked for."""
+    asked = problem.settings
+    position_m = max(asked.position_tolerance_m, _rounded(graded.position_error_m))
+    orientation_rad = max(asked.orientation_tolerance_rad, _rounded(graded.orientation_error_rad))
+    is_near = position_m <= GENEROUS * asked.position_tolerance_m
+    if not is_near or orientation_rad > min(np.pi, GENEROUS * asked.orientation_tolerance_rad):
+        return None
+    wider = asked.with_changes(position_tolerance_m=position_m, orientation_tolerance_rad=orientation_rad)
+    told = _tell_tolerances(asked, wider)
+    if not told or not verify_many(problem.robot, [target], q[None], wider, problem.detector).accepted[0]:
+        return None
+    return f"a tolerance of {told} would accept the best"
+
+
+def hint_at_stream(problem: Problem, target: Target, found: Found) -> str | None:
+    """The first of the streams 0, 1 .. that were `found` to lead to a solution, if one does."""
+    for stream in np.flatnonzero(found.counts[:, REACHED]).tolist():
+        if meets(problem, target, found.q[stream]):
+            return f"other random numbers: with this seed and stream {stream} a solution was found"
+    return None
+
+
+def try_longer(problem: Problem, probe: Probe) -> str | None:
+    """Whether the search, gone on with, finds a solution."""
+    last = "memetic" if problem.settings.method == "auto" else problem.settings.method
+    told = {"first_attempt": problem.settings.budget(last), "attempts": PROBE_ATTEMPTS[problem.settings.evolves]}
+    found = probe.run(problem, **told)
+    return "more restarts: a solution was found by going on" if probe.confirms(problem, found) else None
+
+
+def try_freeing(problem: Problem, probe: Probe) -> str | None:
+    """Whether a short search finds a solution if frozen joints are free."""
+    if not problem.frozen:
+        return None
+    free = problem.with_ranges(problem.robot.lower, problem.robot.upper)
+    if not probe.confirms(free, probe.run(free)):
+        return None
+    return f"free {', '.join(problem.frozen)}: a solution was found without freezing"
+
+
+def try_widening(problem: Problem, probe: Probe) -> str | None:
+    """Whether a short search finds a solution beyond the limits of the joints that may move."""
+    wide = problem.with_ranges(*_widen(problem))
+    found = probe.run(wide)
+    outside = (found.q[0] < problem.lower) | (found.q[0] > problem.upper)
+    if not (outside.any() and probe.confirms(wide, found)):
+        return None
+    names = [joint.name for joint, is_out in zip(problem.robot.joints, outside, strict=True) if is_out]
+    return f"a wider range for {', '.join(names)}: a solution was found beyond the limits"
+
+
+def _open_ranges(problem: Problem, freed: Names, widened: Names) -> tuple[Floats, Floats]:
+    """The ranges with some frozen joints free, and some of the joints that may move as wide as can be."""
+    robot, is_free = problem.robot, np.isin(problem.robot.joint_names, freed)
+    is_wide = np.isin(robot.joint_names, widened) & (is_free | ~np.isin(robot.joint_names, problem.frozen))
+    lower, upper = np.where(is_free, robot.lower, problem.lower), np.where(is_free, robot.upper, problem.upper)
+    return np.where(is_wide, -FARTHEST, lower), np.where(is_wide, FARTHEST, upper)
+
+
+def _widen(problem: Problem) -> tuple[Floats, Floats]:
+    """Slides four times as wide, revolute joints free to turn once around; what is frozen stays."""
+    slides, is_frozen = problem.robot.slides, np.isin(problem.robot.joint_names, problem.frozen)
+    grow = 0.5 * (WIDER - 1.0) * (problem.upper - problem.lower)
+    lower = np.where(slides, np.maximum(problem.lower - grow, -FARTHEST), np.minimum(problem.lower, -np.pi))
+    upper = np.where(slides, np.minimum(problem.upper + grow, FARTHEST), np.maximum(problem.upper, np.pi))
+    return np.where(is_frozen, problem.lower, lower), np.where(is_frozen, problem.upper, upper)
+
+
+def _find_fewest(names: Names, helps: Callable[[Names], bool]) -> list[Names]:
+    """Each of `names` that is enough alone; else one set that is and could spare none; none if not even all are."""
+    alone: list[Names] = [(name,) for name in names if helps((name,))]
+    if alone or not helps(names):
+        return alone
+    together = tuple(names)
+    for name in names:
+        fewer = tuple(other for other in together if other != name)
+        together = fewer if helps(fewer) else together
+    return [together]
+
+
+def _name(names: Names) -> str:
+    return " and ".join(names)
+
+
+def _rounded(error: float) -> float:
+    return round_up(error) if error > 0.0 else 0.0
+
+
+def _tell_tolerances(asked: SolveSettings, wider: SolveSettings) -> str:
+    """Those that are wider than what was asked for."""
+    told = []
+    if wider.position_tolerance_m > asked.position_tolerance_m:
+        told.append(f"{wider.position_tolerance_m:.2g} m")
+    if wider.orientation_tolerance_rad > asked.orientation_tolerance_rad:
+        told.append(f"{wider.orientation_tolerance_rad:.2g} rad")
+    return " and ".join(told)
