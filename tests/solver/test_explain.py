@@ -184,6 +184,8 @@ def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, mon
     def unlucky(problem, targets, **options):
         found = make_found(problem, len(targets))
         found.counts[:, [ATTEMPTS, COLLIDING]] = 3
+        figures = compute_figures(qiao, qiao.detector(None), targets, found.q)
+        found.figures.put(np.arange(len(targets)), figures)
         return found
 
     monkeypatch.setattr("ikde.solver.rows.search", unlucky)
