@@ -23,6 +23,42 @@ PRINTABLE = {
 HIDDEN = tuple("\n\r\t\x00\x1b\x7f\x85\xa0\u200b\u2028\u202e\u2066\ufeff")
 """What no name may hold."""
 
+INTERPRETED = (
+    "[red]",
+    "[/]",
+    "[link=https://x.example]here[/link]",
+    "a[bold",
+    "]b",
+    "ends in \\",
+    "ends in \\\\",
+    ":warning:",
+    "<script>alert(1)</script>",
+    "</script><svg onload=alert(1)>",
+    "\"' onmouseover='x",
+    "{{ 7 * 7 }} {% raw %}",
+    "$x^2$ $\\frac{",
+    "**b** _i_ `c` [l](javascript:x) ![i](http://x.example/y.png)",
+    "https://x.example www.x.example",
+    "# a heading | - a list",
+    "&lt;b&gt; &#0;",
+    '"""\\nimport os',
+    "手臂" * 20,
+    "=HYPERLINK(1)",
+)
+"""What rich, a browser, Markdown, matplotlib, Jinja or a spreadsheet would take for more than text."""
+ORDERS = (
+    "\x1b[31mred\x1b[0m",
+    "\x1b]0;title\x07",
+    "\x9b2J",
+    "a\r\nikde: all is well",
+    "a\tb",
+    "\u202etfel",
+    "a\u2028b",
+    "\x00",
+)
+"""What a terminal would obey, or what turns and breaks lines: in titles and in names of targets."""
+EVERYTHING = (*INTERPRETED, *ORDERS)
+
 
 def rename_in_file(text, new, names):
     """The text of a YAML file with `new(name)` for all of `names`, as keys and as values."""

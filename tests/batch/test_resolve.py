@@ -124,7 +124,9 @@ def test_the_two_kinds_of_kernels_are_never_mixed_in_a_run(qiao, monkeypatch, tm
         pass
     monkeypatch.delenv("IKDE_KERNELS")
     with (
-        pytest.raises(FileError, match=r"holds another run: kernels.kind: 'tables' there, 'written' now \(--overwrite"),
+        pytest.raises(
+            FileError, match=r"holds another run \(--overwrite replaces it\): kernels.kind: 'tables' there, 'w"
+        ),
         claim_folder(tmp_path, make(qiao), overwrite=False),
     ):
         pass

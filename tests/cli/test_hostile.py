@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import printable
-from tests.hostile import EVERYTHING, NAMES, ORDERS
+from tests.hostile_names import EVERYTHING, INTERPRETED, ORDERS
 
 ROBOT = """
 name: {name}
@@ -42,7 +42,7 @@ def assert_plain(outcome):
     assert outcome.code != 2 or outcome.err.count("\n") == 1
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", INTERPRETED)
 def test_a_robot_of_any_name_is_shown_by_its_name(cli, tmp_path, name):
     path = write_robot(tmp_path, name, name)
     for command in (["robots", "show", path], ["fk", "--robot", path], ["check", "--robot", path]):

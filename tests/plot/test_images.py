@@ -12,7 +12,7 @@ from ikde.plot.images import INK, to_png, to_svg
 from ikde.plot.panels import Panel, plot_panels
 from ikde.plot.pose import plot_pose, save_figure
 from ikde.plot.style import Axis
-from tests.hostile import EVERYTHING
+from tests.hostile_names import EVERYTHING
 
 
 def chart():

@@ -11,7 +11,7 @@ import pytest
 from ikde.errors import printable
 from ikde.report.html import render_html
 from ikde.report.page import Column, Figure, Gallery, Page, Section, Table, Text, slug
-from tests.hostile import EVERYTHING
+from tests.hostile_names import EVERYTHING
 from tests.report.pages import DRAWING, make_page, make_page_of
 
 VOID = {"meta", "img", "br", "path", "use", "input"}

@@ -7,7 +7,7 @@ import pytest
 from ikde.report.markdown import render_markdown
 from ikde.report.markup import verbatim
 from ikde.report.page import Code, Column, Facts, Page, Section, Table, Text
-from tests.hostile import EVERYTHING
+from tests.hostile_names import EVERYTHING
 from tests.report.pages import make_page, make_page_of
 
 OPENINGS = ("# ", "- ", "> ", "##", "| ", "==", "--", "1.")

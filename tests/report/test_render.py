@@ -6,7 +6,7 @@ import pytest
 
 from ikde.errors import printable
 from ikde.report.render import make_table, plain, render
-from tests.hostile import EVERYTHING
+from tests.hostile_names import EVERYTHING
 
 ESCAPE = "\x1b"
 RED = re.compile(r"\x1b\[[\d;]*m")

@@ -1,6 +1,5 @@
 """The whole page of a run."""
 
-import shlex
 from collections.abc import Sequence
 
 from ikde.batch.manifest import Manifest
@@ -10,7 +9,7 @@ from ikde.report.batch_page.clearance import make_clearance
 from ikde.report.batch_page.cost import make_cost
 from ikde.report.batch_page.graders import make_graders
 from ikde.report.batch_page.missed import make_missed
-from ikde.report.batch_page.recipe import make_again, make_recipe
+from ikde.report.batch_page.recipe import make_again, make_recipe, run_command
 from ikde.report.batch_page.success import make_success
 from ikde.report.markup import code, verbatim
 from ikde.report.numbers import fixed, significant
@@ -59,8 +58,7 @@ def say_how_to_go_on(run: RunAnswers) -> str:
     """The command that finishes a run, if its file is known."""
     if not run.manifest.file:
         return "The same call of `run_batch` goes on."
-    command = f"ikde batch {shlex.quote(run.manifest.file)} --out {shlex.quote(str(run.folder))}"
-    return f"{code(command)} goes on."
+    return f"{code(run_command(run))} goes on."
 
 
 def _headline(run: RunAnswers) -> list[Block]:

@@ -91,9 +91,7 @@ def _show(value: Any) -> str:
 def make_again(run: RunAnswers) -> Section:
     """The commands that make run and page again, and the answers in three libraries."""
     folder = str(run.folder)
-    commands = [f"ikde report {shlex.quote(folder)}"]
-    if run.manifest.file:
-        commands.insert(0, f"ikde batch {shlex.quote(run.manifest.file)} --out {shlex.quote(folder)}")
+    commands = [*([run_command(run)] if run.manifest.file else []), f"ikde report {shlex.quote(folder)}"]
     return Section(
         "Do it again, read on",
         (
@@ -102,6 +100,12 @@ def make_again(run: RunAnswers) -> Section:
         ),
         anchor="again",
     )
+
+
+def run_command(run: RunAnswers) -> str:
+    """What makes the answers again; the name of a file is no option, whatever it begins with."""
+    file = run.manifest.file or ""
+    return shlex.join(["ikde", "batch", f"./{file}" if file.startswith("-") else file, "--out", str(run.folder)])
 
 
 def _read_on(folder: str) -> str:

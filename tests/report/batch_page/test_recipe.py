@@ -79,8 +79,13 @@ def test_commands_make_run_and_page_again(answers):
     assert codes(answers)[0] == f"ikde report {answers.folder}"  # made in Python, from no file
 
 
+def test_a_file_whose_name_looks_like_an_option_is_a_file(answers):
+    run = replace(answers, folder=Path("a"), manifest=replace(answers.manifest, file="--out=elsewhere"))
+    assert codes(run)[0].splitlines()[0] == "ikde batch ./--out=elsewhere --out a"
+
+
 def test_reading_on_is_python_whatever_the_folder_is_called(answers):
-    for name in ("runs/a", "it's"):
+    for name in ("runs/a", "it's", 'a"b'):
         text = codes(replace(answers, folder=Path(name)))[1]
         ast.parse(text)
         for library in ("pandas", "polars", "duckdb"):
