@@ -117,7 +117,7 @@ def test_only_kernels_know_numba(path):
 def test_a_kernel_is_known_by_its_decorator():
     files = [path for path in SOURCES if inside(path, "kernels") and path.name != "jit.py"]
     used = {ast.unparse(mark) for path in files for f in functions(path) for mark in f.decorator_list}
-    assert used == KERNEL_DECORATORS
+    assert {name for name in used if "kernel" in name} == KERNEL_DECORATORS
 
 
 @every_file

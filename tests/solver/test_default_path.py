@@ -5,6 +5,7 @@ Answers are judged by the naive twins of `tests/reference.py`, which share no co
 
 from itertools import combinations
 
+import numba
 import numpy as np
 import pytest
 
@@ -19,6 +20,7 @@ from tests.written import written_kernels
 ENGINES = ("auto", "lm", "memetic", "de")
 COUNT = 6  # targets: more than are solved one after the other
 
+pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 each_kind = pytest.mark.parametrize("kind", KINDS)
 each_engine = pytest.mark.parametrize("engine", ENGINES)
 
