@@ -48,9 +48,14 @@ def certify(robot: Robot, q: Floats, detector: Detector | None) -> Certificate |
 
 def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> Floats:
     """Lower bound [M] of the clearance in each segment between rows of `q` [M + 1, N]; inf without a pair."""
+    return bound_pairs(robot, detector, q).min(axis=1, initial=np.inf)
+
+
+def bound_pairs(robot: Robot, detector: Detector | None, q: Floats) -> Floats:
+    """The same of each pair [M, P]."""
     pairs = robot.pairs(detector)
-    lower = np.full(max(len(q) - 1, 0), np.inf)
-    if detector is None or not pairs or not len(lower):
+    lower = np.full((max(len(q) - 1, 0), len(pairs)), np.inf)
+    if detector is None or not lower.size:
         return lower
     radii = travel_radii(robot, detector, np.abs(q).max(axis=0))
     gaps = compute_gaps(robot, detector.spheres, pairs, q)
@@ -60,8 +65,8 @@ def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> Floats
     before, after = gaps[:-1], gaps[1:]
     for halving in range(MOST_HALVINGS + 1):
         travel = np.abs(end - start) @ radii.T
-        bound = (0.5 * (before + after - travel)).min(axis=1)
-        weak = bound < goal if halving < MOST_HALVINGS else np.zeros(len(bound), dtype=bool)
+        bound = 0.5 * (before + after - travel)
+        weak = (bound.min(axis=1) < goal) & (halving < MOST_HALVINGS)
         np.minimum.at(lower, which[~weak], bound[~weak])
         if not weak.any():
             break

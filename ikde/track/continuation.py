@@ -8,7 +8,7 @@ from ikde.kernels.arrays import DRIFT, Floats
 from ikde.model.robot import FARTHEST
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
-from ikde.track.certify import bound_segments
+from ikde.track.certify import bound_pairs
 from ikde.track.courses import ContinuationSettings, choose_course
 from ikde.track.follower import Course, Follower
 from ikde.track.refusal import (
@@ -129,9 +129,11 @@ class Continuation:
 
 def cut_at_doubt(found: Found) -> Found:
     """The same up to the first segment that may touch on its way."""
-    bounds = bound_segments(found.follower.robot, found.follower.detector, found.q)
-    doubtful = next((k for k, bound in enumerate(bounds) if not bound > 0.0), None)
+    follower = found.follower
+    bounds = bound_pairs(follower.robot, follower.detector, found.q)
+    doubtful = next((k for k, bound in enumerate(bounds.min(axis=1, initial=np.inf)) if not bound > 0.0), None)
     if doubtful is None:
         return found
-    stop = tell_uncertified(found.follower, doubtful + 1, found.q[doubtful : doubtful + 2])
+    pair = follower.robot.pairs(follower.detector)[int(np.argmin(bounds[doubtful]))]
+    stop = tell_uncertified(follower, doubtful + 1, pair)
     return replace(found, course=replace(found.course, last=doubtful), stop=stop)

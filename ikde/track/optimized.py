@@ -137,7 +137,7 @@ def tell_unsolved(
     when = tell_when(follower, sample)
     told = f"the best of {1 + settings.returns} populations"
     if verdict == NO_BOX:
-        text = f"{when}: no step keeps the joint ranges and the accelerations"
+        text = f"{when}: no step within the accelerations stays inside the joint ranges and can brake before they end"
         return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text)
     if verdict == COLLIDES:
         names = follower.robot.pairs(follower.detector)[pair]  # type: ignore[arg-type]  # a pair has a detector
@@ -146,7 +146,7 @@ def tell_unsolved(
     if verdict == LIMITED:
         reason, what, limit = find_broken(follower, q, steps[1])
         return TrackStop(sample=sample, reason=reason, text=f"{when}: {told} breaks {what}", limit=limit)
-    beyond = first_out_of_reach(follower, follower.robot.lower, follower.robot.upper)
+    beyond = first_out_of_reach(follower, *follower.track.ranges)
     if beyond is not None and beyond[0] == sample:
         return tell_out_of_reach(follower, *beyond)
     far = f"{told} is {_measure_miss(follower, sample, q)} away"

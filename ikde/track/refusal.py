@@ -1,7 +1,7 @@
 """Why a course ends before its path does.
 
-Every limit is taken away in turn. The one without which the step is possible is what stands in the way, and that step
-tells by how much.
+Every limit is taken away in turn. The one without which a step is found is what stands in the way, and that step tells
+by how much. Only what is out of reach is proved; all else is what trying found, and is said as such.
 """
 
 import numpy as np
@@ -11,10 +11,12 @@ from ikde.kernels.tracking import REACHED, track_sample
 from ikde.model.pack import pack_detector, pack_robot
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import FARTHEST
+from ikde.solver.digits import at_least
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
 from ikde.track.drive import largest_steps, wheel_speeds
 from ikde.track.follower import Course, Follower
+from ikde.track.starts import keeps_distance
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
 FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
@@ -24,6 +26,8 @@ OF_SOLVER = {
     StopReason.LIMITS: TrackStopReason.JOINT_LIMIT,
 }
 
+IN_STEP = "in the step that was found"
+
 Finding = tuple[Floats, Floats]
 """The end [N] and the step [D] that is possible without a limit."""
 
@@ -31,34 +35,34 @@ Finding = tuple[Floats, Floats]
 def first_out_of_reach(follower: Follower, lower: Floats, upper: Floats) -> tuple[int, float] | None:
     """The first sample that is proved to be out of reach of the ranges [N], and by how many m; None if none is."""
     excess = reach_excess_m(follower.robot, follower.path.p_world_tool, lower, upper)
-    beyond = np.flatnonzero(excess > follower.limits.position_error_m)
+    beyond = np.flatnonzero(excess > np.sqrt(3.0) * follower.limits.position_error_m)  # which is allowed per axis
     return (int(beyond[0]), float(excess[beyond[0]])) if len(beyond) else None
 
 
 def tell_out_of_reach(follower: Follower, sample: int, excess_m: float) -> TrackStop:
     """A stop at what is proved to be out of reach."""
-    text = f"{tell_when(follower, sample)}: at least {1e3 * excess_m:.3g} mm out of reach, whatever the joints do"
+    text = f"{tell_when(follower, sample)}: at least {at_least(1e3 * excess_m)} mm out of reach, whatever the joints do"
     return TrackStop(sample=sample, reason=TrackStopReason.OUT_OF_REACH, text=text)
 
 
 def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackStop:
-    """A stop at a pose that no configuration meets, in the solver's words."""
+    """A stop at a pose that the solver did not meet, in its words."""
     pair = next(iter(result.blocking_pairs), None)
     reason, text = OF_SOLVER.get(result.stop_reason), result.reason
     if reason is None:
-        reason = TrackStopReason.OUT_OF_REACH
+        reason = TrackStopReason.BUDGET
         off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
-        text = f"no configuration was found that comes nearer than {off}"
+        text = f"no configuration was found in {result.attempts} attempts; the best is off by {off}"
     return TrackStop(sample=sample, reason=reason, text=f"{tell_when(follower, sample)}: {text}", pair=pair)
 
 
-def tell_too_far(follower: Follower, sample: int = 0) -> TrackStop:
-    """A stop at a pose that is met only with the platform's centre too far away."""
-    far = f"the tool would be farther than {follower.limits.farthest_m:.4g} m from {follower.limits.center}"
+def tell_too_far(follower: Follower, sample: int = 0, where: str = "every start") -> TrackStop:
+    """A stop at a pose that was met only with the platform's centre too far away."""
+    far = f"the tool is farther than {follower.limits.farthest_m:.4g} m from {follower.limits.center}"
     return TrackStop(
         sample=sample,
         reason=TrackStopReason.DISTANCE_LIMIT,
-        text=f"{tell_when(follower, sample)}: {far}",
+        text=f"{tell_when(follower, sample)}: in {where} that was found {far}",
         limit=follower.limits.center,
     )
 
@@ -79,11 +83,8 @@ def explain_stop(follower: Follower, course: Course, static: SolveResult | None)
     return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
 
 
-def tell_uncertified(follower: Follower, sample: int, q: Floats) -> TrackStop:
-    """A stop before a segment, between the rows of `q` [2, N], that may touch on its way; names its nearest pair."""
-    assert follower.detector is not None  # without one nothing is in doubt
-    pairs = follower.robot.pairs(follower.detector)
-    pair = pairs[int(np.argmin(compute_gaps(follower.robot, follower.detector.spheres, pairs, q).min(axis=0)))]
+def tell_uncertified(follower: Follower, sample: int, pair: tuple[str, str]) -> TrackStop:
+    """A stop before a segment in which a pair may touch on its way."""
     text = f"{tell_when(follower, sample)}: contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
@@ -118,8 +119,10 @@ def _without_collision(follower: Follower, course: Course, sample: int) -> Track
     worst = int(np.argmin(gaps))
     pair, gap = pairs[worst], 1e3 * float(gaps[worst])
     least = 1e3 * follower.track.margin
+    if gap > least:
+        return None
     how = f"are {gap:.3g} mm apart, not {least:.3g} mm," if gap > 0.0 else f"overlap by {-gap:.3g} mm"
-    text = f"{tell_when(follower, sample)}: {pair[0]} and {pair[1]} {how} in the only step that was found"
+    text = f"{tell_when(follower, sample)}: {pair[0]} and {pair[1]} {how} {IN_STEP}"
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
 
@@ -134,7 +137,8 @@ def _without_ranges(follower: Follower, course: Course, sample: int) -> TrackSto
         return None
     name = follower.robot.joint_names[joint]
     limits = f"[{ranges[0, joint]:.4g}, {ranges[1, joint]:.4g}]"
-    text = f"{tell_when(follower, sample)}: {name} would have to be at {found[0][joint]:.4g}, its range is {limits}"
+    unit = "m" if follower.robot.joints[joint].kind == "prismatic" else "rad"
+    text = f"{tell_when(follower, sample)}: {name} is {beyond[joint]:.3g} {unit} outside its range {limits} {IN_STEP}"
     return TrackStop(sample=sample, reason=TrackStopReason.JOINT_LIMIT, text=text, limit=name)
 
 
@@ -145,12 +149,14 @@ def _without_acceleration(follower: Follower, course: Course, sample: int) -> Tr
         return None
     change = np.abs(found[1] - course.steps[course.last])
     worst = int(np.argmax(change / drive.change))
-    per_second = drive.largest[worst] / follower.path.dt_s**2
-    name = entry_name(follower, worst)
-    needed, limit = change[worst] * per_second, drive.change[worst] * per_second
-    unit = f"{_unit(follower, worst)}/s\u00b2"
-    needed, limit = (f"{value:.4g} {unit}" for value in (needed, limit))
-    text = f"{tell_when(follower, sample)}: {name} would need an acceleration of {needed}, its limit is {limit}"
+    name, when = entry_name(follower, worst), tell_when(follower, sample)
+    if change[worst] <= drive.change[worst] or sample == 1:
+        brakes = "with them every joint must be able to brake before its range ends"
+        text = f"{when}: a step was found only without acceleration limits; {brakes}"
+        return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text)
+    per_second, unit = drive.largest[worst] / follower.path.dt_s**2, f"{_unit(follower, worst)}/s\u00b2"
+    needed, limit = (f"{value[worst] * per_second:.4g} {unit}" for value in (change, drive.change))
+    text = f"{when}: {name} needs an acceleration of {needed} {IN_STEP}, its limit is {limit}"
     return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text, limit=name)
 
 
@@ -164,14 +170,17 @@ def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackSto
     v, omega = found[1][:2] * follower.drive.largest[:2] / follower.path.dt_s
     needed = float(np.abs(wheel_speeds(wheels, v, omega)).max())
     limit = follower.limits.wheel_speed_rad_s
-    text = f"{tell_when(follower, sample)}: a wheel would have to turn at {needed:.4g} rad/s, its limit is {limit:.4g}"
+    if limit is None or needed <= limit:
+        return None
+    text = f"{tell_when(follower, sample)}: a wheel turns at {needed:.4g} rad/s {IN_STEP}, its limit is {limit:.4g}"
     return TrackStop(sample=sample, reason=TrackStopReason.WHEEL_LIMIT, text=text, limit="wheels")
 
 
 def _without_distance(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    if np.isinf(follower.drive.farthest) or _try(follower.with_drive(farthest=np.inf), course, sample) is None:
+    found = None if np.isinf(follower.drive.farthest) else _try(follower.with_drive(farthest=np.inf), course, sample)
+    if found is None or keeps_distance(follower, found[0][None])[0]:
         return None
-    return tell_too_far(follower, sample)
+    return tell_too_far(follower, sample, "the step")
 
 
 def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop | None:
@@ -185,7 +194,7 @@ def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop
         worst = int(np.argmax(np.abs(found[1])))
         if factor * abs(found[1][worst]) > 1.0:
             name, needed = entry_name(follower, worst), factor * abs(found[1][worst]) * usual[worst]
-            text = f"{tell_when(follower, sample)}: {name} would have to move {_tell_speed(follower, worst, needed)}"
+            text = f"{tell_when(follower, sample)}: {name} moves {_tell_speed(follower, worst, needed)}"
             return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
     return None
 
@@ -195,8 +204,9 @@ def _tell_speed(follower: Follower, entry: int, needed: float) -> str:
     most, unit = follower.drive.largest[entry], _unit(follower, entry)
     if most < largest_steps(follower.robot)[_entry_joint(follower, entry)]:
         dt_s = follower.path.dt_s
-        return f"at {needed / dt_s:.4g} {unit}/s, its limit is {most / dt_s:.4g} {unit}/s"
-    return f"by {needed:.4g} {unit} in one sample, at most {most:.4g} {unit} are tried: shorter samples would help"
+        limit = f"its limit is {most / dt_s:.4g} {unit}/s"
+        return f"at {needed / dt_s:.4g} {unit}/s in the slowest step that was found, {limit}"
+    return f"by {needed:.4g} {unit} in the shortest step that was found, at most {most:.4g} {unit} a sample are tried"
 
 
 def _without_frozen(follower: Follower, course: Course, sample: int) -> TrackStop | None:
@@ -206,10 +216,11 @@ def _without_frozen(follower: Follower, course: Course, sample: int) -> TrackSto
     frozen = usual <= 0.0
     freed = [largest_steps(follower.robot)[_entry_joint(follower, entry)] for entry in entries]
     found = _try(follower.with_drive(largest=np.where(frozen, freed, usual)), course, sample) if frozen.any() else None
-    if found is None:
+    moved = np.zeros(follower.size) if found is None else np.abs(found[1]) * frozen
+    if not moved.any():
         return None
-    name = entry_name(follower, int(np.argmax(np.abs(found[1]) * frozen)))
-    text = f"{tell_when(follower, sample)}: {name} would have to move, and may not"
+    name = entry_name(follower, int(np.argmax(moved)))
+    text = f"{tell_when(follower, sample)}: {name} moves {IN_STEP}, and may not"
     return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
 
 

@@ -14,22 +14,22 @@ from ikde.track.verify_track import Breaches, TrackVerification
 
 
 class TrackStopReason(StrEnum):
-    """What stands in the way of the rest of a path."""
+    """What stands in the way of the rest of a path: proved out of reach, or what trying found without a limit."""
 
     OUT_OF_REACH = "out_of_reach"
-    """No joint values bring the tool there."""
+    """A bound proves that no joint values bring the tool there, or turn it so."""
     SPEED_LIMIT = "speed_limit"
-    """A joint or the base would have to move faster than it may."""
+    """A joint or the base moves faster than it may in the step that was found."""
     ACCELERATION_LIMIT = "acceleration_limit"
-    """It would have to change its speed faster than it may."""
+    """It changes its speed faster than it may."""
     WHEEL_LIMIT = "wheel_limit"
-    """A wheel would have to turn faster than it may."""
+    """A wheel turns faster than it may."""
     JOINT_LIMIT = "joint_limit"
-    """A joint would have to leave its range."""
+    """A joint leaves its range."""
     DISTANCE_LIMIT = "distance_limit"
-    """The tool would be too far from the platform's centre."""
+    """The tool is too far from the platform's centre."""
     SELF_COLLISION = "self_collision"
-    """What is fast enough collides."""
+    """Components collide, or it can't be excluded that they do between samples."""
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
 

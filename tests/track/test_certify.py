@@ -9,7 +9,7 @@ import pytest
 import ikde
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
-from ikde.track.certify import bound_segments, certify, halfway, measure_deviation, travel_radii
+from ikde.track.certify import bound_pairs, bound_segments, certify, halfway, measure_deviation, travel_radii
 from ikde.track.drive import step_base
 from ikde.track.path import ToolPath
 from tests.conftest import random_q
@@ -41,6 +41,17 @@ def test_it_never_promises_too_much_and_hardly_too_little(qiao, rng, size):
         seen = sample_densely(qiao, detector, q)
         assert (lower <= seen + 1e-12).all()
         assert lower.min() > seen.min() - max(2e-4, 0.03 * abs(seen.min())) - 1e-3 * size
+
+
+def test_each_pair_has_a_bound_of_its_own(qiao, rng):
+    detector = qiao.detector(None)
+    q = walk(qiao, rng, 6, 0.3)
+    lower = bound_pairs(qiao, detector, q)
+    np.testing.assert_array_equal(lower.min(axis=1), bound_segments(qiao, detector, q))
+    shares = np.linspace(0, 1, DENSE + 1)[:, None]
+    for row, (a, b) in zip(lower, pairwise(q), strict=True):
+        seen = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), a + shares * (b - a)).min(axis=0)
+        assert (row <= seen + 1e-12).all()
 
 
 @pytest.mark.parametrize("beyond", [0.0, 10.0])

@@ -49,13 +49,13 @@ def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
     course = looking.follower.follow(looking.follower.begin(motion.q[0], np.array([0.3, 0.3, 0.3])), 100)
     found = Found(course=course, follower=looking.follower, stop=None)
     assert cut_at_doubt(found) is found
-    bounds = np.ones(100)
-    bounds[63] = 0.0
-    monkeypatch.setattr(continuation, "bound_segments", lambda *_: bounds)
+    pairs = found.follower.robot.pairs(found.follower.detector)
+    bounds = np.ones((100, len(pairs)))
+    bounds[63, 5:7], bounds[70, 2] = (0.0, -0.1), -1.0
+    monkeypatch.setattr(continuation, "bound_pairs", lambda *_: bounds)
     cut = cut_at_doubt(found)
     assert (cut.course.last, len(cut.q), cut.stop.sample) == (63, 64, 64)
-    assert cut.stop.reason == TrackStopReason.SELF_COLLISION
-    assert cut.stop.pair in found.follower.robot.pairs(found.follower.detector)
+    assert (cut.stop.reason, cut.stop.pair) == (TrackStopReason.SELF_COLLISION, pairs[6])
 
 
 @pytest.mark.parametrize("safe_m", [0.0, 0.01])

@@ -1,14 +1,18 @@
 """Why a course ends: each limit, standing in the way by itself, is named with what it would take."""
 
+import re
+
 import numpy as np
 import pytest
 
 import ikde
+from ikde.model.reach import reach_excess_m
+from ikde.track import refusal
 from ikde.track.follow_path import follow_path
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
-from ikde.track.refusal import explain_stop, first_out_of_reach, tell_static
+from ikde.track.refusal import LOOKS, explain_stop, first_out_of_reach, tell_static
 from ikde.track.trajectory import TrackStopReason
 from tests.track.tracks import make_line, robot
 
@@ -16,16 +20,21 @@ Q = np.array([0.0, 0.0, 0.0, 0.3, 0.5, 0.8, 0.3, 0.4, 0.0])
 P = ikde.forward(robot(), Q)["tool"][:3, 3]
 
 
-def explain(steps, *, drive="differential", q=Q, detector=None, frozen=(), use=(0.0, 0.0, 0.0), **told):
-    """The stop of a follower that goes from `q` by `steps` [K, 3] of the tool."""
+def follow(steps, *, drive="differential", q=Q, detector=None, frozen=(), use=(0.0, 0.0, 0.0), **told):
+    """A follower, and its course from `q` by `steps` [K, 3] of the tool."""
     p = ikde.forward(robot(), q)["tool"][:3, 3] + np.cumsum([np.zeros(3), *steps], axis=0)
     path = ToolPath.through(p, dt_s=0.02)
     chosen = robot().detector(detector)
     limits = MotionLimits.of(robot(), **told)
     follower = make_follower(robot(), path, drive=drive, limits=limits, detector=chosen, frozen=frozen)
-    course = follower.follow(follower.begin(q, np.array(use)))
-    assert course.last < path.samples
-    static = ikde.solve(robot(), path.targets()[course.last + 1], detector=chosen or "none")
+    return follower, follower.follow(follower.begin(q, np.array(use)))
+
+
+def explain(steps, **told):
+    """The stop of such a course."""
+    follower, course = follow(steps, **told)
+    assert course.last < follower.path.samples
+    static = ikde.solve(robot(), follower.path.targets()[course.last + 1], detector=follower.detector or "none")
     return explain_stop(follower, course, static)
 
 
@@ -47,7 +56,7 @@ def test_wheels():
         [[0.002, 0, 0]] * 2 + [[0.009, 0, 0]] * 3, wheel_speed_rad_s=1.5, frozen=("q1", "q2", "q3", "q4", "q5", "q6")
     )
     assert (stop.sample, stop.reason, stop.limit) == (3, TrackStopReason.WHEEL_LIMIT, "wheels")
-    assert "4.5 rad/s, its limit is 1.5" in stop.text
+    assert stop.text == "sample 3 (0.06 s): a wheel turns at 4.5 rad/s in the step that was found, its limit is 1.5"
 
 
 def test_distance_from_the_platform():
@@ -89,7 +98,21 @@ def test_out_of_reach_is_proved_or_told_by_the_solver():
     assert 0.0 < excess < 0.1
     result = ikde.solve(robot(), ikde.Target([0.9, 0, 1.69]), detector="none")
     stop = tell_static(follower, 7, result)
+    assert (stop.sample, stop.reason) == (7, TrackStopReason.BUDGET)
+    assert f"no configuration was found in {result.attempts} attempts; the best is off by" in stop.text
+    result = ikde.solve(robot(), ikde.Target([0.9, 0, 1.79]), detector="none")
+    stop = tell_static(follower, 7, result)
     assert (stop.sample, stop.reason) == (7, TrackStopReason.OUT_OF_REACH)
+
+
+def test_what_an_error_along_each_axis_may_make_up_for_is_no_proof():
+    path = make_line([0.9, 0, 1.0], [0.9, 0, 3.0], 20)
+    excess = reach_excess_m(robot(), path.p_world_tool, robot().lower, robot().upper)
+    first = int(np.flatnonzero(excess)[0])
+    for share, sample in ((0.6, first + 1), (0.55, first)):
+        limits = MotionLimits.of(robot(), position_error_m=share * excess[first])
+        follower = make_follower(robot(), path, drive="differential", limits=limits, detector=None)
+        assert first_out_of_reach(follower, robot().lower, robot().upper)[0] == sample
 
 
 @pytest.mark.parametrize("drive", ["differential", "omnidirectional"])
@@ -107,17 +130,78 @@ def test_an_acceleration_has_units():
 def test_what_may_not_move_is_named():
     stop = explain([[0, 0.001, 0]] * 3, speed=np.zeros(9))
     assert (stop.sample, stop.reason) == (1, TrackStopReason.SPEED_LIMIT)
-    assert stop.text == f"sample 1 (0.02 s): {stop.limit} would have to move, and may not"
+    assert stop.text == f"sample 1 (0.02 s): {stop.limit} moves in the step that was found, and may not"
 
 
 def test_a_step_that_is_too_long_is_not_blamed_on_a_limit_that_nobody_asked_for():
     stop = explain([[3.0, 0, 0]] * 2, speed=None)
     assert stop.reason is TrackStopReason.SPEED_LIMIT
-    assert "shorter samples would help" in stop.text
+    assert stop.text.endswith("in the shortest step that was found, at most 0.5 m a sample are tried")
 
 
-def test_leaving_the_workspace_slowly_is_out_of_reach():
+def test_a_pose_at_the_rim_that_was_not_met_is_not_called_proved():
     height = 1.6841  # of what can be reached at x = 0.9: 1.6841947
     p = np.array([[0.9, 0.0, height + 2e-5 * k] for k in range(8)])
     motion = follow_path(robot(), ToolPath.through(p, dt_s=0.02))
-    assert (motion.stop.sample, motion.stop.reason) == (5, TrackStopReason.OUT_OF_REACH)
+    assert (motion.stop.sample, motion.stop.reason) == (5, TrackStopReason.BUDGET)
+    assert "no configuration was found in" in motion.stop.text
+
+
+def turn_of(joint, by, samples, q=Q):
+    """Steps of the tool if one joint turns by so much a sample, and all others but it."""
+    names = list(robot().joint_names)
+    ways = q + np.outer(np.arange(samples + 1) * by, np.eye(9)[names.index(joint)])
+    steps = np.diff(ikde.forward(robot(), ways)["tool"][:, :3, 3], axis=0)
+    return {"steps": steps, "q": q, "frozen": tuple(name for name in names if name != joint)}
+
+
+def at_its_end(joint, left=0.015):
+    q = Q.copy()
+    k = robot().joint_names.index(joint)
+    q[k] = robot().upper[k] - left
+    return q
+
+
+LIFTED = {
+    TrackStopReason.SPEED_LIMIT: {"speed": None},
+    TrackStopReason.ACCELERATION_LIMIT: {"acceleration": None},
+    TrackStopReason.WHEEL_LIMIT: {"wheel_speed_rad_s": None},
+    TrackStopReason.JOINT_LIMIT: {"ranges": False},
+    TrackStopReason.DISTANCE_LIMIT: {"farthest_m": None, "center": None},
+    TrackStopReason.SELF_COLLISION: {"detector": "none"},
+}
+CASES = [
+    {"steps": [[0, 0.002, 0]] * 3 + [[0, 0.25, 0]]},
+    {"steps": [[0, 0, 0]] * 3 + [[0, 0.01, 0]], "acceleration": np.full(9, 0.1)},
+    {"steps": [[0.002, 0, 0]] * 2 + [[0.009, 0, 0]] * 3, "wheel_speed_rad_s": 1.5, "frozen": robot().joint_names[3:]},
+    {"steps": [[0.004, 0, 0]] * 10, "farthest_m": 1.12, "center": "Oc", "frozen": robot().joint_names[:3]},
+    {**turn_of("q1", 0.01, 4, at_its_end("q1")), "detector": "none"},
+    {**turn_of("q2", 0.02, 100, robot().home)},
+    {**turn_of("q1", 0.02, 6, at_its_end("q1", 0.105)), "detector": "none", "acceleration": np.full(9, 30.0)},
+]
+
+
+@pytest.mark.parametrize("case", CASES, ids=range(len(CASES)))
+def test_without_the_limit_that_is_named_the_course_goes_on(case):
+    """Which is what the stop was found by; its figure is beyond the limit."""
+    stop = explain(**case)
+    assert "was found" in stop.text
+    _, course = follow(**{**case, **LIFTED[stop.reason]})
+    assert course.last >= stop.sample
+    told = re.search(r" ([\d.e-]+) (?:m|rad)/s(?:²)?\b.*its limit is ([\d.e-]+)", stop.text)
+    assert told is None or float(told[1]) >= float(told[2])
+
+
+def test_a_joint_that_could_not_brake_in_time_is_told_so():
+    stop = explain(**CASES[-1])
+    assert (stop.sample, stop.reason) == (5, TrackStopReason.ACCELERATION_LIMIT)
+    assert "only without acceleration limits; with them every joint must be able to brake" in stop.text
+
+
+@pytest.mark.parametrize("look", [look for look in LOOKS if look.__name__ != "_without_acceleration"])
+def test_a_step_that_keeps_a_limit_does_not_blame_it(monkeypatch, look):
+    """It may be found by luck where a limit was taken away, and does not need that."""
+    told = {"wheel_speed_rad_s": 4.0, "farthest_m": 2.0, "center": "Oc", "frozen": ("q6",)}
+    follower, course = follow([[0, 0.002, 0]] * 3, **told)
+    monkeypatch.setattr(refusal, "_try", lambda *told: (course.q[2], course.steps[2]))
+    assert look(follower, course, 2) is None
