@@ -23,7 +23,6 @@ def report(
     Example: ikde report runs/first
     """
     from ikde.batch.manifest import REPORT, REPORT_FILES
-    from ikde.errors import FileError
     from ikde.io.report_folder import prepare_folder, write_report
     from ikde.report.batch_page.answers import gather_answers
     from ikde.report.batch_page.page import make_batch_page
@@ -33,8 +32,6 @@ def report(
     gc.enable()
     answers = gather_answers(run)
     folder = run / REPORT if out is None else out
-    if out is None and folder.is_symlink():
-        raise FileError(folder, "is a symbolic link; --out says where the page goes")
     prepare_folder(folder)
     page = make_batch_page(answers)
     html, markdown = (folder / name for name in REPORT_FILES)

@@ -121,7 +121,7 @@ def test_a_link_in_a_run_is_refused_and_not_followed(run, tmp_path_factory, name
     (run / name).rename(elsewhere)
     inside = {path: path.read_bytes() for path in [elsewhere, *elsewhere.rglob("*")] if path.is_file()}
     (run / name).symlink_to(elsewhere)
-    with pytest.raises(FileError, match=f"{name}: is a symbolic link; a run holds none"):
+    with pytest.raises(FileError, match=r"is a symbolic link; a run holds none|cannot be used: .* symbolic links"):
         claim(run, overwrite)
     assert {path: path.read_bytes() for path in inside} == inside
 
@@ -130,7 +130,7 @@ def test_a_link_that_was_left_alone_in_a_folder_is_not_followed(tmp_path):
     (tmp_path / "precious").write_text("text")
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / LOCK).symlink_to(tmp_path / "precious")
-    with pytest.raises(FileError, match="is a symbolic link"):
+    with pytest.raises(FileError, match=r"cannot be used: .* symbolic links"):
         claim(tmp_path / "run")
     assert (tmp_path / "precious").read_text() == "text"
 

@@ -51,7 +51,7 @@ def test_a_link_in_place_of_the_pages_folder_is_refused(cli, run, tmp_path):
     (run / "report").symlink_to(tmp_path / "elsewhere")
     outcome = cli("report", run)
     assert (outcome.code, outcome.out) == (2, "")
-    assert outcome.err == f"ikde: {run / 'report'}: is a symbolic link; --out says where the page goes\n"
+    assert outcome.err == f"ikde: {run / 'report'}: is a symbolic link; a run holds none\n"
     assert names(tmp_path / "elsewhere") == []
 
 
