@@ -429,7 +429,7 @@ def judge(read: Callable[[], None]) -> str:
 
 def work(pipe: Any, seed: int, folder: str) -> None:
     """Read the cases whose numbers come through the pipe; answer with outcome, seconds and MB at most so far."""
-    sys.stderr = sys.stdout = open(os.devnull, "w")  # noqa: SIM115, PTH123
+    sys.stdout = open(os.devnull, "w")  # noqa: SIM115, PTH123
     fuzzer = Fuzzer(Path(tempfile.mkdtemp(dir=folder)))
     fuzzer._read_run("manifest", fuzzer.kept[fuzzer.run / "manifest.json"], draw=True)  # all that is loaded late
     in_use = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
