@@ -22,6 +22,7 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -212,7 +213,7 @@ def mutate_value(rng: Rng, data: Any) -> Any:
             elif change == 2 and isinstance(place, list):
                 place += [place[key]] * int(rng.integers(1, 20))
             else:
-                place[key] = pick(rng, VALUES)
+                place[key] = deepcopy(pick(rng, VALUES))
             break
     return data
 
