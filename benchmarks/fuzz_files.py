@@ -22,6 +22,7 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -212,7 +213,7 @@ def mutate_value(rng: Rng, data: Any) -> Any:
             elif change == 2 and isinstance(place, list):
                 place += [place[key]] * int(rng.integers(1, 20))
             else:
-                place[key] = pick(rng, VALUES)
+                place[key] = deepcopy(pick(rng, VALUES))
             break
     return data
 
@@ -429,7 +430,7 @@ def judge(read: Callable[[], None]) -> str:
 
 def work(pipe: Any, seed: int, folder: str) -> None:
     """Read the cases whose numbers come through the pipe; answer with outcome, seconds and MB at most so far."""
-    sys.stderr = sys.stdout = open(os.devnull, "w")  # noqa: SIM115, PTH123
+    sys.stdout = open(os.devnull, "w")  # noqa: SIM115, PTH123
     fuzzer = Fuzzer(Path(tempfile.mkdtemp(dir=folder)))
     fuzzer._read_run("manifest", fuzzer.kept[fuzzer.run / "manifest.json"], draw=True)  # all that is loaded late
     in_use = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()

@@ -124,7 +124,7 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
 
 def read_manifest(folder: Path) -> Manifest:
     """Read the manifest of a run; raises `FileError` for a folder that holds none of ours, or links."""
-    for name in (MANIFEST, SOLUTIONS, TIMING, REPORT):
+    for name in (MANIFEST, SOLUTIONS, TIMING):
         if (folder / name).is_symlink():
             raise FileError(folder / name, "is a symbolic link; a run holds none")
     try:

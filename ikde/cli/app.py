@@ -107,8 +107,8 @@ def explain_error(error: BaseException) -> tuple[ExitCode, str]:
         return ExitCode.BAD_INPUT, f"{path}: {' '.join(usage.format_message().split())}"
     if isinstance(error, InputError):
         return ExitCode.BAD_INPUT, f"ikde: {error}"
-    if isinstance(error, typer.Abort) and isinstance(error.__cause__, EOFError):
-        error = error.__cause__  # typer takes the end of a file for Ctrl-C
+    if isinstance(error, MemoryError):
+        return ExitCode.BAD_INPUT, "ikde: not enough memory"
     if isinstance(error, KeyboardInterrupt | typer.Abort):
         return ExitCode.INTERRUPTED, str(error) or INTERRUPTED
     for line in traceback.format_exception(error):

@@ -7,6 +7,8 @@ from pydantic_core import PydanticCustomError
 
 from ikde.model.names import LONGEST_NAME, find_fault
 
+LONGEST_TEXT = 5000  # characters
+
 
 def _check(name: str) -> str:
     fault = find_fault(name)
@@ -15,5 +17,5 @@ def _check(name: str) -> str:
     return name
 
 
-Text = Annotated[str, StringConstraints(min_length=1)]
+Text = Annotated[str, StringConstraints(min_length=1, max_length=LONGEST_TEXT)]
 Name = Annotated[Text, AfterValidator(_check), Field(max_length=LONGEST_NAME)]

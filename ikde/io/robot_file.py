@@ -7,7 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError, nearest
-from ikde.files.names import Name, Text
+from ikde.files.names import LONGEST_TEXT, Name, Text
 from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
@@ -135,7 +135,7 @@ class RobotFile(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
     name: Name
-    title: str = ""
+    title: Annotated[str, Field(max_length=LONGEST_TEXT)] = ""
     units: Units = Units()
     convention: Name = "own"
     sources: dict[Name, SourceEntry] = {}

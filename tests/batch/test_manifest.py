@@ -98,7 +98,7 @@ def test_deep_ones_and_links_are_refused(tmp_path, manifest):
         read_manifest(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["solutions", "timing", "report"])
+@pytest.mark.parametrize("name", ["solutions", "timing"])
 def test_a_run_whose_folders_are_links_is_refused(tmp_path, manifest, name):
     run = tmp_path / "run"
     run.mkdir()

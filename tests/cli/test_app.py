@@ -101,6 +101,7 @@ def test_a_misspelt_command_is_told_its_neighbour(refuse):
         (InputError("wrong", ("q", 3)), ExitCode.BAD_INPUT, "ikde: q[3]: wrong"),
         (FileError("a.yaml", "wrong", ("b",), 7), ExitCode.BAD_INPUT, "ikde: a.yaml:7 → b: wrong"),
         (UsageError("two\n  lines"), ExitCode.BAD_INPUT, "ikde: two lines"),
+        (MemoryError(), ExitCode.BAD_INPUT, "ikde: not enough memory"),
         (KeyboardInterrupt(), ExitCode.INTERRUPTED, "ikde: interrupted"),
         (typer.Abort(), ExitCode.INTERRUPTED, "ikde: interrupted"),
     ],
