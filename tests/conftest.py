@@ -20,7 +20,10 @@ from tests import ahead
 ROBOTS = ikde.robot_names()
 TESTS = Path(__file__).parent
 WORKERS = 2
-LATE = {"kernels": 1, **dict.fromkeys(("batch", "bench", "cli", "report", "solver", "track", "test_docs.py"), 2)}
+LATE = {
+    "kernels": 1,
+    **dict.fromkeys(("batch", "bench", "cli", "report", "solver", "track", "test_docs.py", "test_regrade.py"), 2),
+}
 LEFT_OUT = pytest.StashKey[int]()
 
 # The same examples in every run, however slow the machine: a test that fails is wrong, not unlucky.
