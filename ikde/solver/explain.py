@@ -98,7 +98,7 @@ def explain(
     hint = hint or try_longer(problem, probe)
     if hint:
         return _spent(found, graded, hint)
-    return _never_free(problem, met) or _explain_by_remedies(problem, target, probe, met, found, graded)
+    return _never_free(problem, met, graded) or _explain_by_remedies(problem, target, probe, met, found, graded)
 
 
 def _explain_by_remedies(
@@ -113,16 +113,19 @@ def _explain_by_remedies(
     return _spent(found, graded, hint_at_tolerance(problem, target, found.q[0], graded))
 
 
-def _never_free(problem: Problem, met: _Met) -> Explanation | None:
+def _never_free(problem: Problem, met: _Met, graded: Verification) -> Explanation | None:
     """That some pairs touch in every configuration, if they do."""
     touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
     if touching is None:
         return None
     lines = f": {' and '.join(touching.lines)}" if touching.lines else ""
+    is_met = graded.within_tolerance and not graded.outside_limits
+    is_enough = is_met and set(graded.colliding_pairs) <= set(touching.pairs)
+    hint = "these pairs left out: a solution was found that touches in no others"
     return Explanation(
         stop_reason=StopReason.SELF_COLLISION,
         reason=f"{touching}; if that is meant, {touching.remedy}{lines}",
-        hint="leave out pairs that may touch, or give the others smaller spheres",
+        hint=hint if is_enough else None,
         blocking_pairs=met.blocking,
     )
 

@@ -119,8 +119,19 @@ def test_a_pair_that_always_touches_is_named_with_the_line_to_add(tmp_path):
         "platform - upper_arm touches in each of 1,000 random configurations; if that is meant, add to the robot file: "
         'adjacent: {pairs: {platform: {upper_arm: "why they may touch"}}}'
     )
-    assert result.hint == "leave out pairs that may touch, or give the others smaller spheres"
     assert ("platform", "upper_arm") in result.blocking_pairs
+
+
+@pytest.mark.parametrize(("target", "helps"), [(TARGET, True), (INSIDE_THE_PLATFORM, False)])
+def test_leaving_out_what_always_touches_is_told_if_nothing_else_is_in_the_way(qiao, target, helps):
+    result = ikde.solve(qiao, target, ikde.SolveSettings(restarts=4), detector="single", freeze=PARKED)
+    assert result.reason.startswith("M - L1 touches in each of 1,000 random configurations")
+    assert (result.hint == "these pairs left out: a solution was found that touches in no others") is helps
+    assert result.hint is None or helps
+    rest = tuple(pair for pair in qiao.pairs(qiao.detector("single")) if pair != ("M", "L1"))
+    spared = replace(qiao, pair_lists={**qiao.pair_lists, "rest": rest})
+    detector = ikde.Detector(name="rest", spheres="single", pairs="rest")
+    assert ikde.verify(spared, target, result.q, detector=detector).accepted is helps
 
 
 def test_what_is_reached_is_not_searched_for_pairs_that_touch(qiao, monkeypatch):
