@@ -248,7 +248,7 @@ def odd_column(rng: Rng, rows: int) -> Any:
             [2**62] * rows,
             ["x"] * rows,
             ["1"] * rows,
-            pa.array([None, *["\x1b[31m" * 500] * (rows - 1)]).dictionary_encode(),
+            pa.array([None, *["\x1b[31m" * 500] * (rows - 1)], pa.string()).dictionary_encode(),
             [[1.0, 2.0]] * rows,
             [{"a": 1}] * rows,
             [b"\xff"] * rows,

@@ -29,6 +29,8 @@ targets: {file: {path: points.npz, columns: {name: n, position: p}}}
 solve: {detector: none, settings: {population: 6, generations: 1, restarts: 1}}
 """
 
+REACHED = ("--position", 0.5, 0, 0)
+
 
 def write_robot(folder, name, title):
     path = folder / "robot.yaml"
@@ -45,13 +47,12 @@ def assert_plain(outcome):
 @pytest.mark.parametrize("name", INTERPRETED)
 def test_a_robot_of_any_name_is_shown_by_its_name(cli, tmp_path, name):
     path = write_robot(tmp_path, name, name)
-    for command in (["robots", "show", path], ["fk", "--robot", path], ["check", "--robot", path]):
+    for command in (["robots", "show", path], ["check", "--robot", path], ["solve", "--robot", path, *REACHED]):
         outcome = cli(*command)
         assert_plain(outcome)
         assert outcome.code == 0
         assert printable(name).split()[0][:8] in outcome.out  # long names are folded
     assert printable(name) in cli("robots", "validate", path).out
-    assert cli("robots", "show", path, "--json").data["name"] == name
 
 
 @pytest.mark.parametrize("title", ORDERS)
@@ -71,7 +72,7 @@ def test_a_robot_whose_name_gives_orders_is_refused_or_shown_in_letters(cli, tmp
 @pytest.mark.parametrize("text", EVERYTHING)
 def test_an_error_about_a_file_is_one_line_of_letters(cli, tmp_path, text):
     path = tmp_path / "robot.yaml"
-    for content in (json.dumps({text: text}), json.dumps([text]), f"a: {text}", text * 1000):
+    for content in (json.dumps({text: text}), text * 1000):
         path.write_text(content)
         outcome = cli("robots", "validate", path)
         assert_plain(outcome)

@@ -155,11 +155,18 @@ def test_words_of_a_parquet_file_are_read_as_numbers_and_as_names(tmp_path):
         assert as_names(path, name, column(path, name)) == ("1", "2", "1")
 
 
-@pytest.mark.parametrize("header", ["x" * 2 * 10**6, "x," * 10_001])
-def test_the_first_line_of_a_csv_file_has_an_end(tmp_path, header):
+@pytest.mark.parametrize(
+    ("header", "words"),
+    [
+        ("x" * 2 * 10**6, "field larger|the first line is too long"),
+        (",".join(["x" * 10**5] * 20), "the first line is too long; expected at most 1,000,000"),
+        ("x," * 10_001, "expected at most 10,000 columns, got 10,002"),
+    ],
+)
+def test_the_first_line_of_a_csv_file_has_an_end(tmp_path, header, words):
     path = tmp_path / "points.csv"
     path.write_text(header)
-    with pytest.raises(FileError, match=r"the first line is too long|field larger|at most 10,000 columns, got 10,002"):
+    with pytest.raises(FileError, match=words):
         open_table(path)
 
 

@@ -1,8 +1,10 @@
 """Motions as files: every number comes back, ROS's shapes are kept, and files are whole or not there."""
 
+import csv
 import json
 import os
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -175,3 +177,15 @@ def test_a_file_is_no_folder(tmp_path):
     (tmp_path / "a").write_text("")
     with pytest.raises(FileError, match="this is a file; expected a folder"):
         write_trajectory(tmp_path / "a", make_motion())
+
+
+@pytest.mark.parametrize("name", ["a,b", 'say "x"', "=1+1", "{a: [*b]}", "[red] <b>", "手臂"])
+def test_a_joint_of_any_name_comes_back_by_its_name(tmp_path, name):
+    motion = make_motion()
+    names = (*motion.joint_names[:-1], name)
+    write_trajectory(tmp_path, replace(motion, joint_names=names))
+    with (tmp_path / "trajectory.csv").open(encoding="utf-8", newline="") as file:
+        assert f"q_{name}" in next(csv.reader(file))
+    assert f"q_{name}" in pq.read_table(tmp_path / "trajectory.parquet").column_names
+    for kind, load in (("yaml", yaml.safe_load), ("json", json.loads)):
+        assert load((tmp_path / f"joint_trajectory.{kind}").read_text(encoding="utf-8"))["joint_names"][-1] == name

@@ -11,7 +11,7 @@ from ikde.plot.charts import Bars, Line, plot_bars, plot_lines
 from ikde.plot.images import INK, to_png, to_svg
 from ikde.plot.panels import Panel, plot_panels
 from ikde.plot.pose import plot_pose, save_figure
-from ikde.plot.style import Axis
+from ikde.plot.style import Axis, drawing_space
 from tests.hostile_names import EVERYTHING
 
 
@@ -65,14 +65,21 @@ def test_a_photograph_is_on_white_and_the_same_every_time():
 
 @pytest.mark.parametrize("name", EVERYTHING)
 def test_a_name_is_text_in_a_drawing(name):
-    bars = [Bars(label=name, values=[1.0])]
-    lines = [Line(label=name, x=[0, 1], y=[0, 1])]
-    figures = [plot_bars([name], bars, y=Axis(label=name)), plot_lines(lines, x=Axis(label=name), y=Axis(label="y"))]
-    for figure in [*figures, plot_panels([Panel(y=Axis(label="y"), lines=lines, title=name)], x=Axis(label="x"))]:
-        svg = to_svg(figure)
-        texts = [element.text for element in ElementTree.fromstring(svg).iter() if element.tag.endswith("text")]
-        assert texts.count(printable(name)) >= 2
-        assert "<script" not in svg
+    svg = to_svg(plot_bars([name], [Bars(label=name, values=[1.0])], y=Axis(label=name)))
+    texts = [element.text for element in ElementTree.fromstring(svg).iter() if element.tag.endswith("text")]
+    assert texts.count(printable(name)) == 3
+    assert "<script" not in svg
+
+
+@pytest.mark.parametrize("name", ["$x$", "<b>", "a\x1bb"])
+def test_a_name_is_text_above_a_chart_and_in_space(name):
+    lines = [Line(label="a", x=[0, 1], y=[0, 1])]
+    panels = plot_panels([Panel(y=Axis(label="y"), lines=lines, title=name)], x=Axis(label="x"))
+    with drawing_space() as (space, axes):
+        axes.plot([0, 1], [0, 1], [0, 1], label=name)
+    for figure in (panels, space):
+        texts = [element.text for element in ElementTree.fromstring(to_svg(figure)).iter()]
+        assert printable(name) in texts
 
 
 def test_what_looks_like_a_part_of_a_drawing_is_text():
@@ -89,6 +96,5 @@ def test_a_formula_that_is_none_is_drawn_as_text():
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
 def test_a_robot_of_any_name_is_drawn(tmp_path, qiao, kind):
     robot = replace(qiao, name="手臂 $\\frac{ <b>")
-    figure = plot_pose(robot, robot.home, detector=replace(robot.detectors["improved"], name="$x$"))
-    save_figure(figure, tmp_path / f"a.{kind}")
+    save_figure(plot_pose(robot, robot.home), tmp_path / f"a.{kind}")
     assert (tmp_path / f"a.{kind}").stat().st_size > 1000
