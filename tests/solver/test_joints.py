@@ -1,9 +1,13 @@
 """Joint values as arrays and mappings, in any convention."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from ikde.errors import InputError
+from ikde.model.robot import FARTHEST
+from ikde.model.validate import check_robot
 from ikde.solver.joints import joints_outside, read_joints
 
 SOME = [0.1, -0.2, 0.3, 1.0, -0.5, 0.4, 0.2, -1.0, 0.6]
@@ -101,3 +105,12 @@ def test_exactly_on_a_limit_is_inside(any_robot):
 def test_one_bit_beyond_a_limit_is_outside(any_robot):
     for limits, beyond in ((any_robot.lower, -np.inf), (any_robot.upper, np.inf)):
         assert joints_outside(any_robot, np.nextafter(limits, beyond)) == any_robot.joint_names
+
+
+def test_the_ends_of_the_widest_ranges_that_load_are_joint_values(qiao):
+    joints = tuple(replace(joint, lower=-FARTHEST, upper=FARTHEST) for joint in qiao.joints)
+    wide = check_robot(replace(qiao, joints=joints, pair_lists={}, detectors={}, default_detector="none", wheels=None))
+    for q in (wide.lower, wide.upper):
+        assert read_joints(wide, q).tolist() == q.tolist()
+    with pytest.raises(InputError, match="below 100000"):
+        read_joints(wide, np.nextafter(wide.upper, np.inf))
