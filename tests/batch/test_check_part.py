@@ -129,3 +129,11 @@ def test_a_part_that_is_a_link_is_not_read(tmp_path):
     path.symlink_to(tmp_path / "elsewhere.parquet")
     with pytest.raises(FileError, match="cannot be read"):
         read_part(tmp_path, manifest, PART, SOLUTIONS)
+
+
+def test_words_that_are_no_text_are_one_line(tmp_path):
+    binary = pa.array([b"\xff\xfe"])
+    text = pa.Array.from_buffers(pa.string(), 1, binary.buffers())
+    manifest = make_run(tmp_path, solutions={"hint": pa.DictionaryArray.from_arrays(pa.array([0] * ROWS), text)})
+    with pytest.raises(FileError, match="cannot be read"):
+        read_part(tmp_path, manifest, PART, SOLUTIONS)
