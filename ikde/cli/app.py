@@ -98,7 +98,7 @@ def _reader_has_gone(error: BaseException | None) -> bool:
 def explain_error(error: BaseException) -> tuple[ExitCode, str]:
     """The exit code and the one line for an error; of a bug the traceback is written as well."""
     if isinstance(error, typer.Abort) and isinstance(error.__cause__, EOFError):
-        error = error.__cause__  # typer takes it for Ctrl-D at a prompt; there is none here
+        error = error.__cause__  # typer takes the end of a file for Ctrl-D at a prompt; there is none here
     if isinstance(error, UsageError):
         usage: Any = error
         if not usage.format_message():  # no command at all: the help has been printed

@@ -138,12 +138,14 @@ def check_drawable(path: Path | None) -> None:
         raise FileError(path, "cannot be written: expected a file name in a folder that exists")
 
 
-def check_positive(value: float | None, option: str) -> None:
-    """Raise `InputError` unless the option is left out or a number above 0."""
+def check_positive(value: float | None, option: str, most: float | None = None) -> None:
+    """Raise `InputError` unless the option is left out or a number above 0; an angle, of up to half a turn: `most`."""
     from ikde.errors import InputError
 
     if value is not None and not 0.0 < value < float("inf"):
         raise InputError(f"expected a finite number above 0, got {value:g}", (option,))
+    if value is not None and most is not None and value > most:
+        raise InputError(f"expected at most {most:g}, half a turn, got {value:g}", (option,))
 
 
 def draw(

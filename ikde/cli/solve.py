@@ -1,5 +1,6 @@
 """`ikde solve`: a collision-free configuration for a tool target."""
 
+from math import pi
 from typing import Annotated
 
 import typer
@@ -138,7 +139,7 @@ def solve(
     model = load_robot(robot)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     check_positive(tolerance, "--tolerance")
-    check_positive(orientation_tolerance, "--orientation-tolerance")
+    check_positive(orientation_tolerance, "--orientation-tolerance", pi / ANGLES_RAD[angles])
     check_positive(timeout, "--timeout")
     settings = SolveSettings.for_method(method).with_changes(
         position_tolerance_m=None if tolerance is None else tolerance * LENGTHS_M[unit],

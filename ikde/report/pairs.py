@@ -47,7 +47,7 @@ def format_pairs(
 def _describe(robot: Robot, detector: Detector | None) -> str:
     if detector is None:
         why = f" ({explain_no_detector(robot)})" if robot.detector(None) is None else ""
-        return f"no detector: collisions are not checked{why}"
+        return f"no detector: self-collision is not checked{why}"
     compared, left_out = len(robot.pairs(detector)), len(robot.left_out_pairs(detector))
     return f"collision: detector {detector.name} compares {compared} pair{'s' * (compared != 1)}, {left_out} left out"
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,6 +14,7 @@ from ikde.solver.plain import compute_gaps
 
 CONFIGURATIONS = 1_000
 FIRST = 16  # of them: few pairs are left after these
+ROOM = 2**22  # gaps at a time, of pairs or of the spheres of one: 100 MB
 TO_FILL_IN = "why they may touch"
 PLAIN_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")  # a key that YAML reads as it is
 
@@ -37,14 +39,24 @@ class AlwaysTouching:
 def find_always_touching(robot: Robot, detector: Detector) -> AlwaysTouching | None:
     """Pairs within the safe distance in each of 1,000 random configurations inside the limits, the same every time."""
     drawn = np.random.default_rng(0).uniform(robot.lower, robot.upper, (CONFIGURATIONS, len(robot.joints)))
-    pairs = robot.pairs(detector)
-    for Q in (drawn[:FIRST], drawn[FIRST:]):
-        farthest = compute_gaps(robot, detector.spheres, pairs, Q).max(axis=0)
+    pairs, done = robot.pairs(detector), 0
+    while pairs and done < CONFIGURATIONS:
+        piece = drawn[done : done + min(_count_at_once(robot, detector, pairs), FIRST if done == 0 else CONFIGURATIONS)]
+        farthest = compute_gaps(robot, detector.spheres, pairs, piece).max(axis=0)
         pairs = tuple(pair for pair, gap in zip(pairs, farthest, strict=True) if gap <= detector.safe_distance_m)
+        done += len(piece)
     if not pairs:
         return None
     remedy, lines = _leave_out(robot, detector, pairs)
     return AlwaysTouching(pairs=pairs, remedy=remedy, lines=lines)
+
+
+def _count_at_once(robot: Robot, detector: Detector, pairs: Pairs) -> int:
+    """Configurations for whose gaps there is room."""
+    spheres: Counter[str] = Counter()
+    for row in robot.approximations[detector.spheres]:
+        spheres[row.component] += row.count
+    return max(1, ROOM // max(len(pairs), *(spheres[a] * spheres[b] for a, b in pairs)))
 
 
 def _leave_out(robot: Robot, detector: Detector, pairs: Pairs) -> tuple[str, tuple[str, ...]]:

@@ -266,6 +266,8 @@ def test_a_figure_is_written(cli, tmp_path):
         ("--tolerance inf", "--tolerance: expected a finite number above 0"),
         ("--orientation-tolerance 0", "--orientation-tolerance: expected a finite number above 0"),
         ("--orientation-tolerance nan", "--orientation-tolerance: expected a finite number above 0"),
+        ("--orientation-tolerance 3.2", "--orientation-tolerance: expected at most 3.14159, half a turn, got 3.2"),
+        ("--orientation-tolerance 200 --angles deg", "expected at most 180, half a turn, got 200"),
         ("--quat-wxyz 0 0 0 0", "length 0"),
         ("--quat-wxyz nan 0 0 0", "finite"),
         ("--quat-wxyz 1 0 0", "requires 4 arguments"),

@@ -85,7 +85,7 @@ def test_text_counts_pairs_first(qiao, tmp_path):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("qiao2021", "no detector: collisions are not checked"),
+        ("qiao2021", "no detector: self-collision is not checked"),
         ("qiao2021_dh", "not checked (qiao2021_dh has no spheres)"),
     ],
 )

@@ -8,7 +8,14 @@ import pytest
 import ikde
 from ikde.errors import VerificationError
 from ikde.solver import figures as module
-from ikde.solver.figures import AGREEMENT, compute_clearances, compute_disagreement, compute_figures, measure_scale
+from ikde.solver.figures import (
+    AGREEMENT,
+    compute_clearances,
+    compute_disagreement,
+    compute_figures,
+    judge_clearances,
+    measure_scale,
+)
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
 from tests.random_robots import random_robot
@@ -95,3 +102,10 @@ def test_a_clearance_that_only_the_kernels_see_raises(qiao, monkeypatch):
     monkeypatch.setattr(module, "compute_gaps", lambda robot, spheres, pairs, Q: np.full((len(Q), 1), 0.5))
     with pytest.raises(VerificationError, match="disagree"):
         compute_clearances(qiao, qiao.detector(None), qiao.home[None])
+
+
+def test_a_clearance_that_is_not_a_number_is_never_free(qiao):
+    detector = qiao.detector(None)
+    figures = compute_figures(qiao, detector, targets_of_every_kind(qiao, 3), np.tile(qiao.home, (3, 1)))
+    figures.clearance_m[1] = np.nan
+    assert judge_clearances(figures, detector).tolist() == [False, True, False]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.solver import touching as module
 from ikde.solver.touching import TO_FILL_IN, find_always_touching
 from tests.bare_robot import BARE
 
@@ -88,7 +89,7 @@ def test_configurations_lie_inside_the_limits(tmp_path, monkeypatch):
 
     def record(robot, spheres, pairs, q):
         seen.append(q)
-        return np.ones((len(q), len(pairs)))
+        return -np.ones((len(q), len(pairs)))
 
     monkeypatch.setattr("ikde.solver.touching.compute_gaps", record)
     find(robot)
@@ -96,3 +97,19 @@ def test_configurations_lie_inside_the_limits(tmp_path, monkeypatch):
     assert len(drawn) == 1000
     assert (drawn >= robot.lower).all()
     assert (drawn <= robot.upper).all()
+
+
+def test_many_spheres_are_compared_a_few_configurations_at_a_time(tmp_path, monkeypatch):
+    robot, honest, sizes = load(FATTER, tmp_path), module.compute_gaps, []
+    expected = find(robot).pairs
+    find_always_touching.cache_clear()
+
+    def record(robot, spheres, pairs, q):
+        sizes.append(len(q) * len(pairs))
+        return honest(robot, spheres, pairs, q)
+
+    monkeypatch.setattr(module, "compute_gaps", record)
+    monkeypatch.setattr(module, "ROOM", 300)
+    assert find(robot).pairs == expected
+    assert max(sizes) <= 300
+    assert len(sizes) > 3
