@@ -12,6 +12,7 @@ from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
 from ikde.model.robot import (
+    MOST_PAIRS,
     NO_DETECTOR,
     AdjacentPair,
     Detector,
@@ -29,7 +30,7 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e
 Vector = tuple[Number, Number, Number]
 Pairs = tuple[tuple[str, str], ...]
 MOST_JOINTS, MOST_ENTRIES, MOST_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
-MOST_SPHERES, MOST_PAIRS = 100_000, 50_000  # of a robot's approximations together, and of a pair list
+MOST_SPHERES = 100_000  # of a robot's approximations together
 OfLists = Field(max_length=MOST_LISTS)
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""

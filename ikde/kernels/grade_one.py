@@ -1,5 +1,5 @@
-"""The grader for one configuration: the scalar kernels. Of what kernels written for a robot search with they use the
-packed tables, from which those are written, and `trig`; docs/design.md compares all graders.
+"""The grader for one configuration: the scalar kernels. With kernels written for a robot they share `trig`, and the
+packed tables from which those are written; docs/design.md compares all graders.
 
 For one, the lanes of `kernels/figures.py` are mostly overhead: 7 us, where this takes 2. The bits are the same.
 """

@@ -1,5 +1,6 @@
 """A robot as data: joints, a tree of frames, sphere approximations, pair lists and detectors. SI units."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
@@ -95,6 +96,7 @@ class Provenance:
 
 Pairs = tuple[tuple[str, str], ...]
 NAMED = 3  # pairs in a message that is about many
+MOST_PAIRS, MOST_SPHERE_PAIRS = 50_000, 2_000_000  # of components in a list, and of spheres that a detector compares
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -225,6 +227,21 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
             raise InputError(
                 f"the approximation {detector.spheres!r} has no component {component!r}", (*where, "pairs")
             )
+    _check_size(robot, detector, where)
+
+
+def _check_size(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
+    """Comparing takes time with every pair, also where a file is only shown."""
+    pairs = robot.pairs(detector)
+    if len(pairs) > MOST_PAIRS:
+        raise InputError(f"expected at most {MOST_PAIRS:,} pairs of components, got {len(pairs):,}", (*where, "pairs"))
+    spheres: Counter[str] = Counter()
+    for row in robot.approximations[detector.spheres]:
+        spheres[row.component] += row.count
+    compared = sum(spheres[a] * spheres[b] for a, b in pairs)
+    if compared > MOST_SPHERE_PAIRS:
+        message = f"expected at most {MOST_SPHERE_PAIRS:,} pairs of spheres to compare, got {compared:,}"
+        raise InputError(message, (*where, "spheres"))
 
 
 def _explain_no_pairs(robot: Robot, detector: Detector) -> str:

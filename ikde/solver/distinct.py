@@ -52,7 +52,7 @@ def solve_distinct(
         settings: tolerances and search settings; None for the method's own.
         rank: what comes first, and what is kept of many: `"motion"`, the least root mean square of the joints'
             distances from `near` (else home) as shares of their ranges; `"clearance"`, the largest; `"found"`, in the
-            order of the search, the first being that of `solve`.
+            order of the search, the first being that of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
         detector: as for `solve`.
@@ -66,6 +66,8 @@ def solve_distinct(
         raise InputError(f"expected one of {', '.join(get_args(Rank))}, got {rank!r}", ("rank",))
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
+    if rank == "clearance" and problem.detector is None:
+        raise InputError("without a detector no clearance is known to rank by", ("rank",))
     options = {"seed": check_seed(seed), "strict": True, "announce_compile": announce_compile}
     told = {"seed": seed, "detector": detector, "near": near, "freeze": freeze, "announce_compile": announce_compile}
     first = confirm(robot, solve(robot, target, chosen, **told))

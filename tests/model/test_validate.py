@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError, nearest
+from ikde.model import robot as robot_module
 from ikde.model.robot import AdjacentPair, Detector, Joint, Robot, SphereRow, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.random_robots import make_frame
@@ -340,6 +341,20 @@ def test_pairs_left_out_are_named_as_long_as_they_are_few():
     changes = {"approximations": {"fine": rows}, "pair_lists": {}, "detectors": make_detector(pairs=NON_ADJACENT)}
     message = "all 10 pairs are left out: A - B (one body), A - C (one body), A - D (one body) and 7 more"
     reject(message, "detectors", "d", "pairs", **changes)
+
+
+def test_a_detector_compares_so_many_spheres_at_most():
+    rows = tuple(make_row(name, "b", "tool", count=1500) for name in "GA")
+    message = "expected at most 2,000,000 pairs of spheres to compare, got 2,250,000"
+    changes = {"approximations": {"fine": rows}, "pair_lists": {"some": (("G", "A"),)}, "detectors": make_detector()}
+    reject(message, "detectors", "d", "spheres", **changes)
+
+
+def test_a_detector_compares_so_many_pairs_at_most(monkeypatch):
+    monkeypatch.setattr(robot_module, "MOST_PAIRS", 1)
+    message = "expected at most 1 pairs of components, got 2"
+    pairs = {"some": (("G", "A"), ("G", "B"))}
+    reject(message, "detectors", "d", "pairs", pair_lists=pairs, detectors=make_detector())
 
 
 def make_detector(**changes):

@@ -127,3 +127,8 @@ def test_an_arm_without_a_base_gives_its_families(rng):
 def test_an_unknown_rank_is_refused(qiao):
     with pytest.raises(InputError, match="rank: expected one of motion, clearance, found"):
         ikde.solve_distinct(qiao, TARGET, 2, rank="best")
+
+
+def test_without_a_detector_nothing_is_ranked_by_clearance(qiao):
+    with pytest.raises(InputError, match="rank: without a detector no clearance is known to rank by"):
+        ikde.solve_distinct(qiao, TARGET, 2, rank="clearance", detector="none")

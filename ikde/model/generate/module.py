@@ -119,8 +119,11 @@ def _compile(text: bytes, path: Path) -> CodeType:
     kept = path.with_suffix(f".{sys.implementation.cache_tag}.code")
     content = read_sealed(kept)
     if content is not None:
-        code = marshal.loads(content)
-        if code.co_filename == str(path):
+        try:
+            code = marshal.loads(content)
+        except (EOFError, ValueError, TypeError):  # another build of Python may write it otherwise
+            code = None
+        if code is not None and code.co_filename == str(path):
             return code
     code = compile(text, str(path), "exec")
     write_sealed(kept, marshal.dumps(code))

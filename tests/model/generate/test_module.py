@@ -218,6 +218,15 @@ def test_a_damaged_file_heals(empty_cache, suffix, damage):
     assert path.read_bytes() == before
 
 
+def test_byte_code_that_another_python_wrote_is_made_again(empty_cache):
+    load(tiny_robot())
+    path = only(empty_cache, ".code")
+    before = path.read_bytes()
+    cache_files.write_sealed(path, b"?")
+    assert callable(load(tiny_robot()).find_collision)
+    assert path.read_bytes() == before
+
+
 def test_a_cache_that_was_moved_runs_its_modules_where_they_are(empty_cache, monkeypatch):
     before = load(tiny_robot())
     moved = empty_cache.with_name("moved") / empty_cache.name
