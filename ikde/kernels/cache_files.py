@@ -59,15 +59,19 @@ def read_sealed(path: Path) -> bytes | None:
     if content is None:
         return None
     seal, content = content[:SEAL], content[SEAL:]
-    if hashlib.sha256(content).digest() == seal:
+    if _seal(path, content) == seal:
         return content
     discard(path, "is damaged")
     return None
 
 
 def write_sealed(path: Path, content: bytes) -> None:
-    """Write a file with its checksum in front."""
-    write_file(path, hashlib.sha256(content).digest() + content)
+    """Write a file with its checksum in front: of its name and content, so that no other file passes for it."""
+    write_file(path, _seal(path, content) + content)
+
+
+def _seal(path: Path, content: bytes) -> bytes:
+    return hashlib.sha256(path.name.encode() + b"\0" + content).digest()
 
 
 def discard(path: Path, fault: str) -> None:

@@ -21,6 +21,7 @@ from ikde.solver.solve import solve
 
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
 SAMPLES = 16  # solves for each solution that is wanted, to choose from
+MOST_WANTED = 10_000  # solutions
 ROUNDS = 4  # as often, if they were too much alike
 
 Rank = Literal["motion", "clearance", "found"]
@@ -60,8 +61,8 @@ def solve_distinct(
         freeze: as for `solve`.
         announce_compile: called once if kernels must be compiled first.
     """
-    if count < 1:
-        raise InputError(f"expected a whole number of at least 1, got {count}", ("count",))
+    if not 1 <= count <= MOST_WANTED:
+        raise InputError(f"expected a whole number of at least 1, up to {MOST_WANTED:,}, got {count}", ("count",))
     if rank not in get_args(Rank):
         raise InputError(f"expected one of {', '.join(get_args(Rank))}, got {rank!r}", ("rank",))
     chosen = choose_settings(settings, method)

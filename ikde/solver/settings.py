@@ -131,9 +131,14 @@ def is_number(value: object) -> bool:
     return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
-def is_count(least: int) -> Callable[[Any], bool]:
-    """A test for whole numbers of at least so many."""
-    return lambda value: isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= least)
+def is_count(least: int, most: int) -> Callable[[Any], bool]:
+    """A test for whole numbers of at least and at most so many."""
+    return lambda value: isinstance(value, int | np.integer) and not isinstance(value, bool) and least <= value <= most
+
+
+def describe_count(least: int, most: int) -> str:
+    """What such a test asks for."""
+    return f"a whole number of at least {least}, up to {most:,}"
 
 
 def require(condition: bool, name: str, expected: str, value: object) -> None:
@@ -159,6 +164,10 @@ def choose_settings(settings: SolveSettings | None, method: str) -> SolveSetting
     return settings if method == "auto" else settings.with_changes(method=method)
 
 
+MOST = 10**9
+"""Of what is counted one by one."""
+MOST_MEMBERS = 10**5
+"""Of a population, which is all in memory."""
 RESTARTS = {"de": 40, "lm": 1000, "analytic": 1000, "memetic": 20}
 KNOBS: Mapping[str, Any] = {
     "strategy": "rand/1",
@@ -179,10 +188,10 @@ TOLERANCES: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "orientation_tolerance_rad": (lambda value: 0.0 < value <= np.pi, "a number above 0, at most pi"),
 }
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "restarts": (is_count(1), "a whole number of at least 1"),
+    "restarts": (is_count(1, MOST), describe_count(1, MOST)),
     "timeout_s": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
-    "population": (is_count(LARGEST_DRAW + 1), f"a whole number of at least {LARGEST_DRAW + 1}"),
-    "generations": (is_count(1), "a whole number of at least 1"),
+    "population": (is_count(LARGEST_DRAW + 1, MOST_MEMBERS), describe_count(LARGEST_DRAW + 1, MOST_MEMBERS)),
+    "generations": (is_count(1, MOST), describe_count(1, MOST)),
     "weight": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
     "crossover": (lambda value: is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),
     "start_share": (lambda value: is_number(value) and 0.0 < value <= 1.0, "above 0, up to 1"),

@@ -4,16 +4,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from ikde.kernels.mutation import LARGEST_DRAW
-from ikde.solver.settings import is_count, is_number, require
+from ikde.solver.settings import MOST, MOST_MEMBERS, describe_count, is_count, is_number, require
 
 LEAST_POPULATION = LARGEST_DRAW + 1  # a mutation draws that many different members, and not the one it changes
 
 
 def check_counts(settings: Any, least: Mapping[str, int]) -> None:
-    """Raises `InputError` for what is no whole number of at least so many."""
+    """Raises `InputError` for what is no whole number, too small, or too large to be meant."""
     for name, fewest in least.items():
-        value = getattr(settings, name)
-        require(is_count(fewest)(value), name, f"a whole number of at least {fewest}", value)
+        value, most = getattr(settings, name), MOST_MEMBERS if name == "population" else MOST
+        require(is_count(fewest, most)(value), name, describe_count(fewest, most), value)
 
 
 def check_numbers(settings: Any, bounds: Mapping[str, tuple[float, float]]) -> None:

@@ -36,6 +36,14 @@ def test_it_is_this_users_alone(sealed):
     assert [stat.S_IMODE(path.stat().st_mode) for path in (sealed, sealed.parent)] == [0o600, 0o700]
 
 
+def test_another_file_of_the_cache_does_not_pass_for_it(sealed):
+    module.write_sealed(sealed.with_name("other"), b"another's")
+    sealed.with_name("other").replace(sealed)
+    with pytest.warns(CacheWarning, match=rf"^{sealed} is damaged: "):
+        assert module.read_sealed(sealed) is None
+    assert not sealed.exists()
+
+
 def test_what_is_not_there_is_none(tmp_path):
     assert module.read_sealed(tmp_path / "file") is None
     assert module.read_file(tmp_path / "folder" / "file") is None

@@ -63,8 +63,8 @@ def test_a_timeout_is_that_of_the_whole_call(qiao, method, monkeypatch):
     assert next(seconds) <= 12
 
 
-@pytest.mark.parametrize("count", [0, -1])
-def test_a_count_below_one_is_refused(qiao, count):
+@pytest.mark.parametrize("count", [0, -1, 10_001, 10**30])
+def test_a_count_that_makes_no_sense_is_refused(qiao, count):
     with pytest.raises(InputError, match="count: expected a whole number of at least 1"):
         ikde.solve_distinct(qiao, TARGET, count)
 

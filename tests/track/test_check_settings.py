@@ -11,9 +11,16 @@ from ikde.track.typical import TypicalSettings
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"population": 5}, "settings.population: expected a whole number of at least 6, got 5"),
+        ({"population": 5}, "settings.population: expected a whole number of at least 6, up to 100,000, got 5"),
+        (
+            {"population": 10**12},
+            "settings.population: expected a whole number of at least 6, up to 100,000, got 1000000000000",
+        ),
         ({"population": 50.0}, "settings.population: expected a whole number"),
-        ({"generations": True}, "settings.generations: expected a whole number of at least 1, got True"),
+        (
+            {"generations": True},
+            "settings.generations: expected a whole number of at least 1, up to 1,000,000,000, got True",
+        ),
         ({"weight": "much"}, "settings.weight: expected a number from 0 to 2, got 'much'"),
         ({"crossover": 1.1}, "settings.crossover: expected a number from 0 to 1"),
         ({"crossover": float("nan")}, "settings.crossover: expected a number from 0 to 1"),

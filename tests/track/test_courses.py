@@ -126,8 +126,8 @@ def test_the_null_space_is_used_as_asked():
         ({"uses": ((1.0, 0.3, -0.1),)}, "settings.uses: expected rows of three numbers"),
         ({"uses": "abc"}, "settings.uses: expected rows of three numbers"),
         ({"uses": ((1.0,), (1.0, 2.0))}, "settings.uses: expected rows of three numbers"),
-        ({"returns": -1}, "settings.returns: expected a whole number of at least 0, got -1"),
-        ({"returns": 2.5}, "settings.returns: expected a whole number of at least 0, got 2.5"),
+        ({"returns": -1}, "settings.returns: expected a whole number of at least 0, up to 1,000,000,000, got -1"),
+        ({"returns": 2.5}, "settings.returns: expected a whole number of at least 0, up to 1,000,000,000, got 2.5"),
     ],
 )
 def test_settings_that_mean_nothing_are_refused(given, words):

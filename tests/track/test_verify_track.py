@@ -171,6 +171,23 @@ def test_collisions_are_counted_by_sample(qiao):
     assert found.breaches.collision == 3
 
 
+def test_at_the_safe_distance_it_is_a_collision(qiao):
+    q = make_q(qiao)
+    gaps = judge(qiao, q).gaps_m.min(axis=1)
+    for safe_m, collisions in ((gaps.min(), 1), (np.nextafter(gaps.min(), 0.0), 0), (gaps.max(), len(q))):
+        found = judge(qiao, q, detector=replace(qiao.detector(None), safe_distance_m=float(safe_m)))
+        assert found.breaches.collision == collisions
+        assert found.accepted is (collisions == 0)
+
+
+def test_a_range_is_kept_to_1e_9(qiao):
+    for outside, count in ((5e-10, 0), (5e-9, 1)):
+        q = make_q(qiao)
+        q[:, 4:] = qiao.home[4:]
+        q[-1, 4] = qiao.upper[4] + outside
+        assert judge(qiao, q, speed=None).breaches.range == count
+
+
 def test_without_a_detector_self_collision_is_not_checked(qiao):
     q = make_q(qiao)
     q[2:5, 4] = 2.5
