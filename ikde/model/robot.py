@@ -215,7 +215,11 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
         if name not in known:
             raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
     check_printable(detector.name, (*where, "name"))
-    if not 0.0 <= detector.safe_distance_m <= FARTHEST:
+    if detector.name == NO_DETECTOR:
+        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where)
+    distance = detector.safe_distance_m
+    is_number = isinstance(distance, int | float | np.number) and not isinstance(distance, bool)
+    if not (is_number and 0.0 <= distance <= FARTHEST):
         raise InputError(f"expected a distance of at least 0, up to {FARTHEST:g} m", (*where, "safe_distance"))
     described = robot.components(detector.spheres)
     if not described:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats, Ints
+from ikde.model.numbers import read_numbers
 from ikde.model.rotation import are_rotations, check_rotation, length, rotation_with_z
 
 FARTHEST = 1e6  # m: beyond it, doubles hold less than a nanometre
@@ -219,10 +220,7 @@ def _read_vectors(values: ArrayLike, name: str, farthest: float, rows: Rows) -> 
 
 def _read(values: ArrayLike, name: str, shape: tuple[int | str, ...]) -> Floats:
     """A copy as an array of this shape, where `T` stands for any count."""
-    try:
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"expected numbers, got {values!r}", (name,)) from None
+    array = read_numbers(values, (name,))
     if array.ndim != len(shape) or any(n != m for n, m in zip(array.shape, shape, strict=True) if m != "T"):
         expected = ", ".join(map(str, shape))
         raise InputError(f"expected an array [{expected}], got shape {array.shape}", (name,))

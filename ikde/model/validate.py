@@ -210,7 +210,6 @@ def _check_list(pairs: Pairs, components: Mapping[str, int], where: tuple[str | 
 def _check_detectors(robot: Robot) -> None:
     for name, detector in robot.detectors.items():
         where = ("detectors", name)
-        _require(name != NO_DETECTOR, f"{NO_DETECTOR!r} is taken: it stands for no detector at all", *where)
         check_detector(robot, detector, where)
     _check_name(robot.default_detector, [*robot.detectors, NO_DETECTOR], ("default_detector",), "detector")
 

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
+from ikde.model.numbers import read_numbers
 from ikde.model.robot import FARTHEST, Robot
 
 JointValues = ArrayLike | Mapping[str, float]
@@ -35,10 +36,7 @@ def read_configuration(robot: Robot, q: JointValues, convention: str | None = No
 
 
 def _from_array(robot: Robot, q: ArrayLike) -> Floats:
-    try:
-        values = np.array(q, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"expected numbers, got {q!r}", ("q",)) from None
+    values = read_numbers(q, ("q",))
     names = robot.joint_names
     if values.ndim == 0 or values.shape[-1] != len(names):
         count = values.shape[-1] if values.ndim else 1

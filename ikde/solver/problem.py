@@ -75,6 +75,8 @@ def make_problem(
 def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[str, float]:
     if freeze is None:
         return {}
+    if not isinstance(freeze, str | Iterable):
+        raise InputError(f"expected names of joints, or values by name, got {freeze!r}", ("freeze",))
     names = [freeze] if isinstance(freeze, str) else freeze
     given = dict(names) if isinstance(names, Mapping) else dict.fromkeys(names)
     start = dict(zip(robot.joint_names, default, strict=True))

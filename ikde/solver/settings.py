@@ -133,7 +133,9 @@ def is_number(value: object) -> bool:
 
 def is_count(least: int, most: int) -> Callable[[Any], bool]:
     """A test for whole numbers of at least and at most so many."""
-    return lambda value: isinstance(value, int | np.integer) and not isinstance(value, bool) and least <= value <= most
+    return lambda value: (
+        isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(least <= value <= most)
+    )
 
 
 def describe_count(least: int, most: int) -> str:
@@ -154,6 +156,16 @@ def check_seed(seed: int) -> int:
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or not 0 <= seed < 2**64:
         raise InputError(f"expected a whole number from 0 to 2^64 - 1, got {seed!r}", ("seed",))
     return int(seed)
+
+
+def check_stream(stream: int) -> int:
+    """Return the stream; raises `InputError` unless it is a whole number, 0 <= stream < 2^63."""
+    if type(stream) is int and 0 <= stream < 2**63:
+        return stream
+    is_whole = isinstance(stream, int | np.integer) and not isinstance(stream, bool)
+    if not (is_whole and 0 <= stream < 2**63):
+        raise InputError(f"expected a whole number from 0 to 2^63 - 1, got {stream!r}", ("stream",))
+    return int(stream)
 
 
 def choose_settings(settings: SolveSettings | None, method: str) -> SolveSettings:

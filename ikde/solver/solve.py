@@ -11,7 +11,7 @@ from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.quick import find_quick
 from ikde.solver.result import SolveResult
 from ikde.solver.rows import Rows, solve_rows
-from ikde.solver.settings import SolveSettings, check_seed, choose_settings
+from ikde.solver.settings import SolveSettings, check_seed, check_stream, choose_settings
 
 
 def solve(
@@ -50,7 +50,7 @@ def solve(
         InputError: for what does not fit the robot.
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
-    check_seed(seed)
+    seed, stream = check_seed(seed), check_stream(stream)
     if near is None and freeze is None:
         quick = find_quick(robot, settings, method, detector, target.kind)
         result = quick.solve(target, seed, stream, announce_compile) if quick else None

@@ -357,6 +357,18 @@ def test_a_detector_compares_so_many_pairs_at_most(monkeypatch):
     reject(message, "detectors", "d", "pairs", pair_lists=pairs, detectors=make_detector())
 
 
+@pytest.mark.parametrize("distance", ["1", None, True, np.nan, -1.0, 1.01e5])
+def test_a_safe_distance_is_a_number(distance):
+    detectors = make_detector(safe_distance_m=distance)
+    reject("expected a distance of at least 0, up to 100000 m", "detectors", "d", "safe_distance", detectors=detectors)
+
+
+def test_no_detector_of_pythons_own_is_called_as_none_at_all(qiao):
+    own = replace(qiao.detector(None), name="none")
+    with pytest.raises(InputError, match="'none' is taken: it stands for no detector at all"):
+        qiao.detector(own)
+
+
 def make_detector(**changes):
     return {"d": Detector(**{"name": "d", "spheres": "fine", "pairs": "some", **changes})}
 

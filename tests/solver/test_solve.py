@@ -258,3 +258,14 @@ def test_what_does_not_fit_the_robot_is_refused(qiao, options, words):
     for call in (ikde.solve, lambda robot, target, **o: ikde.solve_many(robot, [target], **o)):
         with pytest.raises(InputError, match=words):
             call(qiao, TARGET, **options)
+
+
+@pytest.mark.parametrize("stream", [-1, 2**63, 1.5, True, "1", None])
+def test_a_stream_is_a_whole_number(qiao, stream):
+    with pytest.raises(InputError, match=r"stream: expected a whole number from 0 to 2\^63 - 1"):
+        ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0)), stream=stream)
+
+
+def test_what_names_no_joints_freezes_nothing(qiao):
+    with pytest.raises(InputError, match="freeze: expected names of joints, or values by name, got 3"):
+        ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0)), freeze=3)

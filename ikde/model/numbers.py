@@ -1,0 +1,19 @@
+"""Numbers as users give them: anything that numpy reads, as long as every one of them is there."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
+
+
+def read_numbers(values: ArrayLike, where: tuple[str | int, ...]) -> Floats:
+    """A copy as an array; raises `InputError` for text, complex numbers, and masked values, which nobody gave."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise InputError("expected numbers, but some are masked", where)
+    if isinstance(values, np.ndarray) and values.dtype.kind == "c":
+        raise InputError("expected numbers, got complex ones", where)
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"expected numbers, got {values!r}", where) from None
