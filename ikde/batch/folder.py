@@ -15,6 +15,7 @@ from ikde.batch.manifest import (
     describe_difference,
     make_manifest,
     read_manifest,
+    refuse_links,
     write_manifest,
 )
 from ikde.batch.parts import GO_ON, SOLUTIONS, TIMING
@@ -81,6 +82,7 @@ def _sync_names(folder: Path) -> None:
 
 def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
     """Leave the manifest of this batch and finished parts, nothing else of ours; it is ours at every moment."""
+    refuse_links(folder, REPORT)
     there = read_manifest(folder) if (folder / MANIFEST).exists() else None
     if there and there.hash != batch.hash and not overwrite:
         difference = describe_difference(there.recipe, batch.recipe)

@@ -122,11 +122,16 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
         raise FileError(path, f"cannot be written: {error.strerror}") from None
 
 
-def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run; raises `FileError` for a folder that holds none of ours, or links."""
-    for name in (MANIFEST, SOLUTIONS, TIMING):
+def refuse_links(folder: Path, *names: str) -> None:
+    """Raise `FileError` for a link: what stands behind it is not the run's."""
+    for name in names:
         if (folder / name).is_symlink():
             raise FileError(folder / name, "is a symbolic link; a run holds none")
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Read the manifest of a run; raises `FileError` for a folder that holds none of ours, or links."""
+    refuse_links(folder, MANIFEST, SOLUTIONS, TIMING)
     try:
         data = read_json(folder / MANIFEST, follow=False)
     except FileError as error:

@@ -22,7 +22,7 @@ def report(
 
     Example: ikde report runs/first
     """
-    from ikde.batch.manifest import REPORT, REPORT_FILES
+    from ikde.batch.manifest import REPORT, REPORT_FILES, refuse_links
     from ikde.io.report_folder import prepare_folder, write_report
     from ikde.report.batch_page.answers import gather_answers
     from ikde.report.batch_page.page import make_batch_page
@@ -31,6 +31,8 @@ def report(
 
     gc.enable()
     answers = gather_answers(run)
+    if out is None:
+        refuse_links(run, REPORT)
     folder = run / REPORT if out is None else out
     prepare_folder(folder)
     page = make_batch_page(answers)
