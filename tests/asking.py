@@ -12,13 +12,21 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import ikde
+from ikde.model.closed_form import find_ur_arm
 from tests.regrade import find_faults
 
 KINDS = ("position", "axis", "pose")
 HOW = {"many": 0.7, "one": 0.2, "distinct": 0.1}  # shares of the questions
 METHODS = {"lm": 0.55, "auto": 0.26, "memetic": 0.16, "de": 0.03}
-RESTARTS = {"lm": (8, 64), "auto": (1,), "memetic": (1, 2), "de": (1,)}
-MOST = {"lm": 250, "auto": 60, "memetic": 40, "de": 5}  # targets of one question; what costs more is asked fewer
+METHODS_OF_UR_ARMS = {"analytic": 0.2, "lm": 0.38, "auto": 0.25, "memetic": 0.15, "de": 0.02}
+RESTARTS = {"lm": (8, 64), "analytic": (1, 16), "auto": (1,), "memetic": (1, 2), "de": (1,)}
+MOST = {
+    "lm": 250,
+    "analytic": 250,
+    "auto": 60,
+    "memetic": 40,
+    "de": 5,
+}  # targets of one question; what costs more is asked fewer
 MOST_BY_CALL = {"many": 250, "one": 10, "distinct": 2}
 FIGURES = 1e-9  # m or rad, how far told figures may be from the grader's, of targets within a metre
 
@@ -81,9 +89,10 @@ def draw_questions(grader, rng, total, *, most=250, **options):
         total -= len(question)
 
 
-def draw_question(grader, rng, most, *, kinds=KINDS, detectors=None):
+def draw_question(grader, rng, most, *, kinds=KINDS, detectors=None, methods=METHODS):
     """One question with at most so many targets, of these kinds, under one of these detectors; None for all."""
-    how, method = _choose(rng, HOW), _choose(rng, METHODS)
+    how, method = _choose(rng, HOW), _choose(rng, methods)
+    kinds = ("pose",) if method == "analytic" else kinds
     count = min(most, MOST[method], MOST_BY_CALL[how])
     freeze = _draw_freeze(grader, rng) if rng.random() < 0.2 else {}
     near = rng.uniform(grader.lower, grader.upper) if rng.random() < 0.15 else None
@@ -252,8 +261,9 @@ def _tell(name, question, answers, own, k):
 
 def ask_and_regrade(robot, grader, rng, total, *, threads=None, **options):
     """The tally of questions with `total` targets together; options as for `draw_questions`."""
-    tally = Tally()
-    for question in draw_questions(grader, rng, total, **options):
+    is_closed = "pose" in options.get("kinds", KINDS) and find_ur_arm(robot) is not None
+    tally, methods = Tally(), METHODS_OF_UR_ARMS if is_closed else METHODS
+    for question in draw_questions(grader, rng, total, methods=methods, **options):
         tally += grade_answers(grader, question, ask(robot, question, threads))
     return tally
 
