@@ -5,6 +5,7 @@ import re
 import pytest
 
 from ikde.batch.run import Progress
+from ikde.cli.output import working
 from ikde.cli.progress import Pace, show_progress
 
 
@@ -42,6 +43,19 @@ def test_a_terminal_gets_a_bar(capsys, monkeypatch):
     printed = re.sub(r"\x1b\[[0-9;?]*\w", "", capsys.readouterr().err)
     assert "a → b" in printed
     assert "50/100 solves, 5 of 10 parts" in printed
+
+
+def test_a_title_is_shown_as_it_is_on_a_terminal(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "150")
+    title = "[red]a[/] \x1b]0;b\x07"
+    with show_progress(title) as tell:
+        tell(at(20))
+    with working(title):
+        pass
+    printed = capsys.readouterr().err
+    assert printed.count(r"[red]a[/] \x1b]0;b\x07") >= 2
+    assert "\x1b]0" not in printed
 
 
 def test_pace_counts_from_where_it_began(clock):
