@@ -67,7 +67,12 @@ def test_names_of_files_and_commands_give_no_orders(cli, tmp_path):
     valid = cli("robots", "validate", path)
     assert valid.code == 0
     assert r"\x1b[31m.yaml: valid" in valid.out
-    for arguments in (["\x1b[31m"], ["check", "--q", "\x1b[31m"], ["robots", "show", "\x1b[31m"]):
+    for arguments in (
+        ["\x1b[31m"],
+        ["solve", "--\x1b[31m"],
+        ["check", "--q", "\x1b[31m"],
+        ["robots", "show", "\x1b[31m"],
+    ):
         outcome = cli(*arguments)
         assert_plain(outcome)
         assert r"\x1b" in outcome.err
