@@ -34,6 +34,12 @@ def test_a_log_gets_a_first_line_and_one_a_minute(capsys, clock):
     ]
 
 
+def test_a_title_is_one_line_of_letters_in_a_log(capsys, clock):
+    with show_progress("\x1b[31m\nb") as tell:
+        tell(at(20))
+    assert capsys.readouterr().err == "\\x1b[31m\\nb: 100 solves, 0 of 10 parts done before\n"
+
+
 def test_a_terminal_gets_a_bar(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setenv("COLUMNS", "150")
