@@ -107,6 +107,12 @@ def test_parts_of_different_columns_are_one_line_or_an_answer(tmp_path, changes)
             assert "\n" not in str(error)
 
 
+def test_a_column_that_some_parts_have_is_no_column_of_an_arm(tmp_path):
+    make_run(tmp_path, solutions={"clearance_m": None})
+    with pytest.raises(FileError, match="its parts of arm auto hold different columns"):
+        gather_answers(tmp_path)
+
+
 def test_a_part_of_other_rows_is_refused(tmp_path):
     manifest = make_run(tmp_path)
     PART.path(tmp_path, SOLUTIONS).write_bytes(serialize(pa.table(solutions(Part("auto", 1, 5, 9)))))

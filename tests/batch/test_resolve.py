@@ -94,6 +94,7 @@ def test_a_knob_at_its_default_changes_the_engine_under_auto_and_nothing_under_d
         ({"grade": [{"name": "a b", "spheres": "typical"}]}, "grade[0]: expected a name of up to 100 letters"),
         ({"grade": [{"name": "a", "spheres": "typical", "pairs": "all"}]}, "grade[0].pairs: no pair list is called"),
         ({"repeats": 10**9, "targets": {"inline": TARGETS["inline"] * 2}}, "repeats: 2 targets make more than"),
+        ({"repeats": 10**7, "chunk": 1}, "chunk: this makes"),
         ({"solve": {"freeze": {"q1": 9}}}, "solve.freeze.q1: 9 is outside the limits"),
     ],
 )

@@ -62,6 +62,22 @@ def test_a_title_gives_no_orders(cli, tmp_path, title):
     assert printable(title) in outcome.out
 
 
+def test_names_of_files_and_commands_give_no_orders(cli, tmp_path):
+    path = write_robot(tmp_path, "a", "a").rename(tmp_path / "\x1b[31m.yaml")
+    valid = cli("robots", "validate", path)
+    assert valid.code == 0
+    assert r"\x1b[31m.yaml: valid" in valid.out
+    for arguments in (
+        ["\x1b[31m"],
+        ["solve", "--\x1b[31m"],
+        ["check", "--q", "\x1b[31m"],
+        ["robots", "show", "\x1b[31m"],
+    ):
+        outcome = cli(*arguments)
+        assert_plain(outcome)
+        assert r"\x1b" in outcome.err
+
+
 @pytest.mark.parametrize("name", ORDERS)
 def test_a_robot_whose_name_gives_orders_is_refused_or_shown_in_letters(cli, tmp_path, name):
     path = write_robot(tmp_path, name, "a")

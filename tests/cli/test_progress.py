@@ -5,6 +5,7 @@ import re
 import pytest
 
 from ikde.batch.run import Progress
+from ikde.cli.output import working
 from ikde.cli.progress import Pace, show_progress
 
 
@@ -33,6 +34,12 @@ def test_a_log_gets_a_first_line_and_one_a_minute(capsys, clock):
     ]
 
 
+def test_a_title_is_one_line_of_letters_in_a_log(capsys, clock):
+    with show_progress("\x1b[31m\nb") as tell:
+        tell(at(20))
+    assert capsys.readouterr().err == "\\x1b[31m\\nb: 100 solves, 0 of 10 parts done before\n"
+
+
 def test_a_terminal_gets_a_bar(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setenv("COLUMNS", "150")
@@ -42,6 +49,19 @@ def test_a_terminal_gets_a_bar(capsys, monkeypatch):
     printed = re.sub(r"\x1b\[[0-9;?]*\w", "", capsys.readouterr().err)
     assert "a → b" in printed
     assert "50/100 solves, 5 of 10 parts" in printed
+
+
+def test_a_title_is_shown_as_it_is_on_a_terminal(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "150")
+    title = "[red]a[/] \x1b]0;b\x07"
+    with show_progress(title) as tell:
+        tell(at(20))
+    with working(title):
+        pass
+    printed = capsys.readouterr().err
+    assert printed.count(r"[red]a[/] \x1b]0;b\x07") >= 2
+    assert "\x1b]0" not in printed
 
 
 def test_pace_counts_from_where_it_began(clock):

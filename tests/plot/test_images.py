@@ -1,6 +1,7 @@
 """Figures as pictures."""
 
 import re
+import warnings
 from dataclasses import replace
 from xml.etree import ElementTree
 
@@ -91,6 +92,13 @@ def test_what_looks_like_a_part_of_a_drawing_is_text():
 def test_a_formula_that_is_none_is_drawn_as_text():
     figure = plot_bars([r"$\frac{$"], [Bars(label=r"$\frac{$", values=[1.0])], y=Axis(label=r"$\frac{$"))
     assert to_png(figure, dpi=40).startswith(b"\x89PNG")
+
+
+def test_letters_that_the_type_does_not_have_are_no_news():
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        to_png(plot_bars(["手"], [Bars(label="臂", values=[1.0])], y=Axis(label="y")), dpi=40)
+    assert told == []
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])

@@ -61,3 +61,8 @@ def test_paragraphs_end_at_empty_lines_and_dashes_make_lists():
         Paragraph(("last - not a list",)),
     ]
     assert parse_text(" \n ") == []
+
+
+@pytest.mark.parametrize("text", ["[a](javascript:alert)", "[a](http://x.example)", "[a](b)"])
+def test_a_link_leads_into_its_page_and_nowhere_else(text):
+    assert parse_line(text) == [Span(text)]
