@@ -146,7 +146,7 @@ class Targets:
         """Directions asked of the tool's z axis [T, 3]."""
         return self.T_world_tool[:, :, 2]
 
-    def take(self, rows: Ints) -> "Targets":
+    def take(self, rows: Ints | slice) -> "Targets":
         """The targets of these rows, in this order."""
         return Targets.packed(self.kind[rows], self.T_world_tool[rows])
 

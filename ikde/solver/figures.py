@@ -41,7 +41,7 @@ class Figures:
         """The figures of these rows."""
         return Figures(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
-    def put(self, rows: Ints, figures: "Figures") -> None:
+    def put(self, rows: Ints | slice, figures: "Figures") -> None:
         """Replace the figures of these rows."""
         for field in fields(self):
             getattr(self, field.name)[rows] = getattr(figures, field.name)

@@ -35,12 +35,11 @@ class Referee:
         return refused
 
     def _grade(self, rows: Ints) -> None:
-        problem, targets, q = self._problem, self._targets, self._found.q
-        if len(rows) < len(q):  # mostly all at once, without a copy
-            targets, q = targets.take(rows), q[rows]
-        asked = problem.robot, problem.detector, targets, q, problem.settings
-        self._found.figures.put(rows, compute_figures(*asked, limits=self._limits))
-        self._graded[rows] = self._found.counts[rows, ATTEMPTS]
+        found, problem, targets = self._found, self._problem, self._targets
+        some = rows if len(rows) < len(targets) else slice(None)  # mostly all at once, without a copy
+        asked = problem.robot, problem.detector, targets.take(some), found.q[some], problem.settings
+        found.figures.put(some, compute_figures(*asked, limits=self._limits))
+        self._graded[some] = found.counts[some, ATTEMPTS]
 
 
 def _widest(problem: Problem) -> Limits:
