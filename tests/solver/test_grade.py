@@ -132,3 +132,11 @@ def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no
     confirmed = confirm(qiao, replace(result, verify=strict))
     assert (confirmed.reached, confirmed.verified, confirmed.stop_reason) == (False, True, "budget")
     assert "rounding" in confirmed.reason
+
+
+def test_of_a_sample_each_unreached_row_is_graded_and_explained(qiao):
+    targets = [*TARGETS, ikde.Target((50.0, 0.0, 1.0))]
+    rows = ikde.solve_many(qiao, targets, QUICK, verify="sample")
+    assert rows.verified.mask.tolist() == [False, True, True, False]  # the first is of the sample
+    assert list(rows.graded.explanations) == [3]
+    assert rows[3].hint

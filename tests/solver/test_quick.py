@@ -69,6 +69,12 @@ def test_without_a_detector_a_quick_result_is_neither_free_nor_colliding(qiao):
     assert (result.reached, result.self_collision, result.clearance_m) == (True, None, None)
     assert result.reason == "within tolerance, inside the limits, self-collision not checked"
     assert result.verification.self_collision is None
+    assert result.detector == "none"
+
+
+@pytest.mark.parametrize("name", ["typical", "improved"])
+def test_a_quick_result_names_the_detector_that_compared(qiao, name):
+    assert solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0, detector=name).detector == name
 
 
 def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
