@@ -4,8 +4,6 @@ import ast
 import re
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "ikde"
 SOURCES = sorted(PACKAGE.rglob("*.py"))
@@ -32,8 +30,6 @@ NO_TEST_OF_ITS_OWN = {
     "model/surface.py": "tests/solver/test_surface.py",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
 }
-
-every_file = pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(PACKAGE)))
 
 
 def inside(path, package):
@@ -75,43 +71,47 @@ def citations(path):
     return set(CITATION.findall(path.read_text(encoding="utf-8")))
 
 
-@every_file
-def test_a_file_says_in_its_name_what_it_holds(path):
-    assert path.stem not in FORBIDDEN_NAMES
+def offences(rule, files=SOURCES):
+    """File -> what a rule has against it; nothing if all keep it."""
+    found = {str(path.relative_to(PACKAGE)): rule(path) for path in files}
+    return {name: offence for name, offence in found.items() if offence}
 
 
-@every_file
-def test_a_file_is_short(path):
-    assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
+def test_a_file_says_in_its_name_what_it_holds():
+    assert offences(lambda path: path.stem in FORBIDDEN_NAMES) == {}
 
 
-@every_file
-def test_a_function_is_short(path):
-    assert {f.name: body_length(f) for f in functions(path) if body_length(f) > LONGEST_BODY} == {}
+def test_a_file_is_short():
+    assert offences(lambda path: len(path.read_text(encoding="utf-8").splitlines()) > LONGEST_FILE) == {}
 
 
-@every_file
-def test_a_file_opens_with_what_it_is_for(path):
-    assert ast.get_docstring(TREES[path])
+def test_a_function_is_short():
+    def measure(path):
+        return {f.name: body_length(f) for f in functions(path) if body_length(f) > LONGEST_BODY}
+
+    assert offences(measure) == {}
 
 
-@every_file
-def test_only_the_command_line_prints(path):
-    if not inside(path, "cli"):
-        assert {"print", "sys.stdout.write", "sys.stderr.write", "sys.exit"} & calls(path) == set()
+def test_a_file_opens_with_what_it_is_for():
+    assert offences(lambda path: not ast.get_docstring(TREES[path])) == {}
 
 
-@every_file
-def test_arithmetic_is_strict(path):
-    keywords = {node.arg for node in ast.walk(TREES[path]) if isinstance(node, ast.keyword)}
-    texts = {node.value for node in ast.walk(TREES[path]) if isinstance(node, ast.Constant)}
-    assert "fastmath" not in keywords | texts
+def test_only_the_command_line_prints():
+    loud = {"print", "sys.stdout.write", "sys.stderr.write", "sys.exit"}
+    assert offences(lambda path: not inside(path, "cli") and loud & calls(path)) == {}
 
 
-@every_file
-def test_only_kernels_know_numba(path):
-    if not inside(path, "kernels"):
-        assert "numba" not in set(imported(path))
+def test_arithmetic_is_strict():
+    def is_fast(path):
+        keywords = {node.arg for node in ast.walk(TREES[path]) if isinstance(node, ast.keyword)}
+        texts = {node.value for node in ast.walk(TREES[path]) if isinstance(node, ast.Constant)}
+        return "fastmath" in keywords | texts
+
+    assert offences(is_fast) == {}
+
+
+def test_only_kernels_know_numba():
+    assert offences(lambda path: not inside(path, "kernels") and "numba" in set(imported(path))) == {}
 
 
 def test_a_kernel_is_known_by_its_decorator():
@@ -120,24 +120,23 @@ def test_a_kernel_is_known_by_its_decorator():
     assert {name for name in used if "kernel" in name} == KERNEL_DECORATORS
 
 
-@every_file
-def test_a_kernel_says_what_it_computes(path):
-    assert [f.name for f in functions(path) if is_kernel(f) and not ast.get_docstring(f)] == []
+def test_a_kernel_says_what_it_computes():
+    assert offences(lambda path: [f.name for f in functions(path) if is_kernel(f) and not ast.get_docstring(f)]) == {}
 
 
-@every_file
-def test_a_kernel_never_raises_or_prints(path):
-    bodies = [node for f in functions(path) if is_kernel(f) for node in ast.walk(f)]
-    assert not [node for node in bodies if isinstance(node, ast.Raise | ast.Try)]
+def test_a_kernel_never_raises():
+    def raises(kernel):
+        return any(isinstance(node, ast.Raise | ast.Try) for node in ast.walk(kernel))
+
+    assert offences(lambda path: [f.name for f in functions(path) if is_kernel(f) and raises(f)]) == {}
 
 
-@every_file
-def test_a_module_with_code_has_a_test_file_of_its_name(path):
-    name = str(path.relative_to(PACKAGE))
-    if path.name == "__init__.py" or not has_code(path):
-        return
-    test = ROOT / "tests" / path.relative_to(PACKAGE).parent / f"test_{path.name}"
-    assert test.exists() != (name in NO_TEST_OF_ITS_OWN), f"{test}: missing, or no exception any more"
+def test_a_module_with_code_has_a_test_file_of_its_name():
+    def is_wrong(path):
+        test = ROOT / "tests" / path.relative_to(PACKAGE).parent / f"test_{path.name}"
+        return test.exists() == (str(path.relative_to(PACKAGE)) in NO_TEST_OF_ITS_OWN)  # missing, or no exception more
+
+    assert offences(is_wrong, [path for path in SOURCES if path.name != "__init__.py" and has_code(path)]) == {}
 
 
 def test_every_exception_is_a_file():

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,13 @@ each_kind = pytest.mark.parametrize("kind", KINDS)
 OWN = ["make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes"]
 
 
+@cache
+def text_of(name, kind):
+    """The module of a robot that ships."""
+    robot = ikde.load_robot(name)
+    return assemble.format_module(robot, robot.detector(None), kind)
+
+
 def functions_of(text):
     return [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
 
@@ -32,8 +40,7 @@ def functions_of(text):
 @each_kind
 @pytest.mark.parametrize("name", ikde.robot_names())
 def test_a_module_is_python_of_one_robot(name, kind):
-    robot = ikde.load_robot(name)
-    text = assemble.format_module(robot, robot.detector(None), kind)
+    robot, text = ikde.load_robot(name), text_of(name, kind)
     names = [function.name for function in functions_of(text)]
     assert names[: len(OWN)] == OWN
     assert len(set(names)) == len(names)
@@ -45,8 +52,7 @@ def test_a_module_is_python_of_one_robot(name, kind):
 @each_kind
 @pytest.mark.parametrize("name", ["qiao2021", "panda"])
 def test_every_name_is_known_where_it_is_used(name, kind):
-    robot = ikde.load_robot(name)
-    text = assemble.format_module(robot, robot.detector(None), kind)
+    text = text_of(name, kind)
     rules = "E9,F821,F822,F823,F841,W291,W293"
     command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", rules, "-"]
     done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=60, check=False)
@@ -69,12 +75,11 @@ def test_no_name_is_in_it(name, kind):
     """Whatever things are called, also what would end the docstring, the text is the same."""
     robot = ikde.load_robot(name)
     hostile = rename(robot, lambda old: f'{old}"""\n{old}\\')
-    texts = [assemble.format_module(each, each.detector(None), kind) for each in (robot, hostile)]
-    assert texts[0] == texts[1]
+    assert assemble.format_module(hostile, hostile.detector(None), kind) == text_of(name, kind)
 
 
-def test_the_engine_is_in_it_as_it_stands(qiao):
-    text = assemble.format_module(qiao, qiao.detector(None), "pose")
+def test_the_engine_is_in_it_as_it_stands():
+    text = text_of("qiao2021", "pose")
     for source in (lm, analytic):
         body = (
             Path(source.__file__)
@@ -86,8 +91,8 @@ def test_the_engine_is_in_it_as_it_stands(qiao):
     assert "kernels.tables" not in text
 
 
-def test_straight_line_code_has_no_loop_but_the_lanes(qiao):
-    for function in functions_of(assemble.format_module(qiao, qiao.detector(None), "pose"))[: len(OWN)]:
+def test_straight_line_code_has_no_loop_but_the_lanes():
+    for function in functions_of(text_of("qiao2021", "pose"))[: len(OWN)]:
         loops = [node for node in ast.walk(function) if isinstance(node, ast.For | ast.While)]
         assert len(loops) == (function.name in {"take_steps", "judge_lanes"})
         signature = [argument.arg for argument in function.args.args]
@@ -103,11 +108,10 @@ def test_the_same_robot_has_the_same_module():
         assert a is not b
         assert a != b
         assert module.digest_inputs(a, a.detector(None), "pose") == module.digest_inputs(b, b.detector(None), "pose")
-        texts = [assemble.format_module(robot, robot.detector(None), "pose") for robot in (a, b)]
-        assert texts[0] == texts[1]
+        assert assemble.format_module(b, b.detector(None), "pose") == text_of(name, "pose")
 
 
-def test_another_process_writes_the_same_text(qiao):
+def test_another_process_writes_the_same_text():
     script = (
         "import hashlib, ikde; from ikde.model.generate import assemble; r = ikde.load_robot('qiao2021');"
         "t = assemble.format_module(r, r.detector(None), 'pose'); print(hashlib.sha256(t.encode()).hexdigest())"
@@ -115,5 +119,4 @@ def test_another_process_writes_the_same_text(qiao):
     environment = {**os.environ, "PYTHONHASHSEED": "7", "NUMBA_DISABLE_JIT": "1"}
     command = [sys.executable, "-c", script]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=120, check=True)
-    text = assemble.format_module(qiao, qiao.detector(None), "pose")
-    assert done.stdout.strip() == hashlib.sha256(text.encode()).hexdigest()
+    assert done.stdout.strip() == hashlib.sha256(text_of("qiao2021", "pose").encode()).hexdigest()
