@@ -7,6 +7,11 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 
 
+def is_number(value: object) -> bool:
+    """Whether it is a number and no bool."""
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
 def read_numbers(values: ArrayLike, where: tuple[str | int, ...]) -> Floats:
     """A copy as an array; raises `InputError` for text, complex numbers, and masked values, which nobody gave."""
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):

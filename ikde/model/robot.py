@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
 from ikde.model.names import check_printable
+from ikde.model.numbers import is_number
 
 WORLD = "world"
 NO_DETECTOR = "none"
@@ -218,8 +219,7 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
     if detector.name == NO_DETECTOR:
         raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where)
     distance = detector.safe_distance_m
-    is_number = isinstance(distance, int | float | np.number) and not isinstance(distance, bool)
-    if not (is_number and 0.0 <= distance <= FARTHEST):
+    if not (is_number(distance) and 0.0 <= distance <= FARTHEST):
         raise InputError(f"expected a distance of at least 0, up to {FARTHEST:g} m", (*where, "safe_distance"))
     described = robot.components(detector.spheres)
     if not described:

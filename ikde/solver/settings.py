@@ -9,6 +9,7 @@ import numpy as np
 
 from ikde.errors import InputError, nearest
 from ikde.kernels.mutation import LARGEST_DRAW, REPAIRS, STRATEGIES
+from ikde.model.numbers import is_number
 
 Method = Literal["auto", "lm", "analytic", "memetic", "de"]
 Collision = Literal["reject", "feasibility"]
@@ -124,11 +125,6 @@ class SolveSettings:
     def with_changes(self, **changes: object) -> "SolveSettings":
         """A copy with some values changed; None leaves a value as it is."""
         return replace(self, **{name: value for name, value in changes.items() if value is not None})  # type: ignore[arg-type]
-
-
-def is_number(value: object) -> bool:
-    """Whether it is a number and no bool."""
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
 def is_count(least: int, most: int) -> Callable[[Any], bool]:

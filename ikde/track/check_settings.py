@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ikde.kernels.mutation import LARGEST_DRAW
-from ikde.solver.settings import MOST, MOST_MEMBERS, describe_count, is_count, is_number, require
+from ikde.model.numbers import is_number
+from ikde.solver.settings import MOST, MOST_MEMBERS, describe_count, is_count, require
 
 LEAST_POPULATION = LARGEST_DRAW + 1  # a mutation draws that many different members, and not the one it changes
 
