@@ -9,8 +9,8 @@ from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.errors import InputError
 from ikde.files.entries import UnitsEntry
 from ikde.files.placed import placed
-from ikde.files.robot_entries import read_detector, to_si, with_ranges
-from ikde.model.robot import NO_DETECTOR, Robot
+from ikde.files.robot_entries import read_collision, to_si, with_ranges
+from ikde.model.robot import Robot
 from ikde.solver.problem import make_problem
 from ikde.solver.settings import SolveSettings
 
@@ -28,12 +28,13 @@ def make_arms(spec: BatchSpec, robot: Robot) -> tuple[Arm, ...]:
 
 def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry) -> Arm:
     """One arm; raises `InputError` with a path inside a `SolveEntry`."""
+    own = with_ranges(robot, entry.ranges, units)
     with placed("detector"):
-        detector = read_detector(robot, entry.detector, units)
+        collision = read_collision(own, entry.detector, units)
     problem = make_problem(
-        with_ranges(robot, entry.ranges, units),
+        own,
         _make_settings(entry, units),
-        detector=detector or NO_DETECTOR,
+        collision=collision,
         near=None if entry.near is None else to_si(robot, "near", entry.near, units),
         freeze=to_si(robot, "freeze", entry.freeze, units) or None,
     )
@@ -47,7 +48,7 @@ def describe_arm(arm: Arm) -> dict[str, Any]:
     return as_plain(
         {
             "method": arm.method,
-            "detector": problem.detector,
+            "detector": problem.collision.detector,
             "settings": problem.settings,
             "ranges": {joint.name: (joint.lower, joint.upper) for joint in problem.robot.joints},
             "near": None if problem.near is None else dict(zip(names, problem.near, strict=True)),

@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from ikde.kernels.arrays import Ints
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector
 from ikde.model.rotation import quat_wxyz_from_rotation
 from ikde.model.target import KINDS, POSITION
@@ -84,7 +85,7 @@ def _errors(rows: Rows) -> Columns:
 
 
 def _clearance(rows: Rows) -> Columns:
-    return _closest(rows, rows.graded.figures, rows.problem.detector)
+    return _closest(rows.graded.figures, rows.problem.collision)
 
 
 def _cost(rows: Rows) -> Columns:
@@ -138,15 +139,16 @@ def _target(rows: Rows) -> Columns:
 
 
 def _graded(rows: Rows, grader: Detector) -> Columns:
-    seen = compute_clearances(rows.problem.robot, grader, rows.q)
-    columns = _closest(rows, seen, grader)
+    collision = CollisionModel(robot=rows.problem.robot, detector=grader)
+    seen = compute_clearances(collision, rows.q)
+    columns = _closest(seen, collision)
     columns["collides"] = _verdicts(seen.collides)
     return {f"{grader.name}_{name}": columns[name] for name in ("clearance_m", "collides", "closest_pair")}
 
 
-def _closest(rows: Rows, seen: Figures | Clearances, detector: Detector | None) -> Columns:
+def _closest(seen: Figures | Clearances, collision: CollisionModel) -> Columns:
     """Clearance and the pair it is between, null where there is no pair."""
-    pairs = [f"{a}-{b}" for a, b in rows.problem.robot.pairs(detector)]
+    pairs = [f"{a}-{b}" for a, b in collision.pairs]
     return {
         "clearance_m": pa.array(seen.clearance_m, mask=seen.closest_pair < 0),
         "closest_pair": _coded(seen.closest_pair, pairs),

@@ -11,8 +11,8 @@ from ikde.batch.sources import Orientation, PointSource
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.kernels.sampling import MOST_DRAWS, sample_ball, sample_box, sample_poses
-from ikde.model.pack import pack_detector, pack_robot
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 from ikde.model.target import POSE, Targets
 
 
@@ -54,8 +54,7 @@ def _sample(sample: Callable[..., None], shape: tuple[Any, ...], seed: int, firs
 class ReachableSource:
     """Where the tool is in random configurations that are free of collision."""
 
-    robot: Robot
-    detector: Detector | None
+    collision: CollisionModel
     lower: Floats
     upper: Floats
     """[N] joint ranges, m or rad."""
@@ -76,10 +75,10 @@ class ReachableSource:
     def sample(self, first: int, last: int) -> Floats:
         """Poses T_world_tool [last - first, 3, 4]."""
         out_T = np.empty((last - first, 3, 4))
-        robot, detector = pack_robot(self.robot), pack_detector(self.robot, self.detector)
+        robot, detector = pack_robot(self.collision.robot), self.collision.arrays
         with np.errstate(over="ignore"):
             found = sample_poses(robot, detector, self.lower, self.upper, np.uint64(self.seed), np.int64(first), out_T)
         if found < len(out_T):
-            judge = f"for {self.detector.name!r} " if self.detector else ""
+            judge = f"for {self.collision.name!r} " if self.collision.pairs else ""
             raise InputError(f"no configuration {judge}is free of self-collision in {MOST_DRAWS:,} draws")
         return out_T

@@ -86,7 +86,7 @@ def make_manifest(batch: Batch) -> Manifest:
         ArmFacts(
             name=arm.name,
             method=arm.method,
-            detector=arm.problem.detector.name if arm.problem.detector else "none",
+            detector=arm.problem.collision.name,
             settings=asdict(arm.problem.settings),
         )
         for arm in batch.arms

@@ -91,11 +91,10 @@ def _time_arm(
         if seconds > budget / GROWTH or size == batch.solves:
             break
         size = min(size * GROWTH, batch.solves)
-    detector = arm.problem.detector
     facts = ArmPreview(
         name=arm.name,
         method=arm.method,
-        detector=detector.name if detector else "none",
+        detector=arm.problem.collision.name,
         sample=size,
         sample_reached=sum(answer.solutions["reached"].to_pylist()),
         seconds=seconds / size * batch.solves,

@@ -11,7 +11,7 @@ from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
 from ikde.errors import InputError
 from ikde.files.placed import placed
-from ikde.files.robot_entries import read_detector
+from ikde.files.robot_entries import read_collision
 from ikde.model.generate.module import describe_kernels
 from ikde.model.robot import Detector, Robot
 
@@ -73,7 +73,7 @@ def _make_graders(spec: BatchSpec, robot: Robot) -> tuple[Detector, ...]:
     graders: dict[str, Detector] = {}
     for index, choice in enumerate(spec.grade):
         with placed("grade", index):
-            detector = read_detector(robot, choice, spec.units)
+            detector = read_collision(robot, choice, spec.units).detector
             if detector is None:
                 raise InputError("expected a detector; 'none' grades nothing")
             if not PLAIN_NAME.fullmatch(detector.name):

@@ -13,6 +13,7 @@ from ikde.files.entries import FileEntry, InlineTarget, OrientationEntry, UnitsE
 from ikde.files.placed import placed
 from ikde.files.poses import read_orientation, read_position
 from ikde.files.table_targets import TableSource, read_targets
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target, Targets
 from ikde.solver.problem import Problem
 
@@ -76,10 +77,9 @@ def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
 
 def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> ReachableSource:
     with placed("detector"):
-        detector = problem.robot.detector(entry.detector)
+        collision = CollisionModel.of(problem.robot, entry.detector)
     source = ReachableSource(
-        robot=problem.robot,
-        detector=detector,
+        collision=collision,
         lower=problem.lower,
         upper=problem.upper,
         goal=entry.goal,
@@ -101,5 +101,7 @@ def _describe_table(table: TableSource) -> Recipe:
 
 
 def _describe_reachable(source: ReachableSource) -> Recipe:
-    ranges = dict(zip(source.robot.joint_names, zip(source.lower, source.upper, strict=True), strict=True))
-    return as_plain({"count": source.count, "goal": source.goal, "detector": source.detector, "ranges": ranges})
+    ranges = dict(zip(source.collision.robot.joint_names, zip(source.lower, source.upper, strict=True), strict=True))
+    return as_plain(
+        {"count": source.count, "goal": source.goal, "detector": source.collision.detector, "ranges": ranges}
+    )

@@ -1,6 +1,7 @@
 """What self-collision detection costs, and where its variants disagree: lists of pairs, centres and surface points."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
@@ -9,12 +10,13 @@ from numpy.typing import NDArray
 from ikde.bench.approximation import APPROXIMATIONS
 from ikde.bench.budget import FULL, Budget
 from ikde.bench.misprints import Data
-from ikde.bench.plain_search import make_detector
+from ikde.bench.plain_search import make_collision
 from ikde.kernels.arrays import Floats
 from ikde.kernels.clearance import judge_centres
 from ikde.kernels.surface import judge_surfaces
-from ikde.model.pack import pack_detector, pack_robot
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
+from ikde.model.robot import Robot
 from ikde.model.surface import M_STEPS, N_STEPS, covering_angle_rad, surface_directions
 from ikde.solver.surface import Rule, check_surface, check_surface_many
 
@@ -34,13 +36,13 @@ def compute_detection(robot: Robot, budget: Budget = FULL) -> Data:
         budget: how many random configurations.
     """
     Q = draw_configurations(robot, budget.verdicts)
-    detectors = {(name, pairs): make_detector(robot, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS}
-    verdicts = {key: check_centres_many(robot, Q, detector) for key, detector in detectors.items()}
+    detectors = {(name, pairs): make_collision(robot, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS}
+    verdicts = {key: check_centres_many(detector, Q) for key, detector in detectors.items()}
     few = Q[: budget.surface_verdicts]
     return {
         "exact": {
             "lists": [
-                {**_name(key), **count_pairs(robot, detectors[key]), "colliding": int(verdicts[key].sum())}
+                {**_name(key), **count_pairs(detectors[key]), "colliding": int(verdicts[key].sum())}
                 for key in detectors
             ],
             "lists_differ": [
@@ -49,8 +51,8 @@ def compute_detection(robot: Robot, budget: Budget = FULL) -> Data:
             "surface_differs": list(_compare_surface(robot, few)),
         },
         "measured": {
-            "lists": [{**_name(key), **_time_centres(robot, detectors[key], Q, budget)} for key in detectors],
-            "surface": [_time_surface(robot, robot.detectors[name], Q, budget) for name in APPROXIMATIONS],
+            "lists": [{**_name(key), **_time_centres(detectors[key], Q, budget)} for key in detectors],
+            "surface": [_time_surface(CollisionModel.of(robot, name), Q, budget) for name in APPROXIMATIONS],
         },
         "settings": {
             "source": "[Qiao2021, eq. 18 to 22]",
@@ -72,19 +74,19 @@ def draw_configurations(robot: Robot, count: int) -> Floats:
     return np.random.default_rng(SEED).uniform(robot.lower, robot.upper, (count, len(robot.joints)))
 
 
-def check_centres_many(robot: Robot, Q: Floats, detector: Detector) -> Bools:
+def check_centres_many(collision: CollisionModel, Q: Floats) -> Bools:
     """Whether each row of `Q` [K, N] collides by [Qiao2021, eq. 21]; [K]."""
     collides = np.empty(len(Q), dtype=bool)
-    judge_centres(pack_robot(robot), pack_detector(robot, detector), Q, collides)
+    judge_centres(pack_robot(collision.robot), collision.arrays, Q, collides)
     return collides
 
 
-def count_pairs(robot: Robot, detector: Detector) -> Data:
-    """How many pairs of components a detector looks at, and of spheres if it looks at all of them."""
-    sizes = dict.fromkeys(robot.components(detector.spheres), 0)
-    for row in robot.approximations[detector.spheres]:
+def count_pairs(collision: CollisionModel) -> Data:
+    """How many pairs of components are compared, and of spheres if none is skipped."""
+    sizes: Counter[str] = Counter()
+    for row in collision.rows:
         sizes[row.component] += row.count
-    pairs = robot.pairs(detector)
+    pairs = collision.pairs
     return {"component_pairs": len(pairs), "sphere_pairs": sum(sizes[a] * sizes[b] for a, b in pairs)}
 
 
@@ -121,8 +123,8 @@ def _compare_lists(robot: Robot, verdicts: Mapping[tuple[str, str], Bools], name
 def _compare_surface(robot: Robot, Q: Floats) -> Iterator[Data]:
     """Surface points against centres, Formula 22 as meant; and what either says of home."""
     for name in APPROXIMATIONS:
-        detector = robot.detectors[name]
-        centres = check_centres_many(robot, Q, detector)
+        detector = CollisionModel.of(robot, name)
+        centres = check_centres_many(detector, Q)
         for rule, (m_steps, n_steps) in SURFACE:
             rows = np.vstack([robot.home, Q])
             home, *seen = check_surface_many(robot, rows, detector, rule=rule, m_steps=m_steps, n_steps=n_steps)
@@ -144,29 +146,30 @@ def _compare_surface(robot: Robot, Q: Floats) -> Iterator[Data]:
 # ---- times
 
 
-def _time_centres(robot: Robot, detector: Detector, Q: Floats, budget: Budget) -> Data:
-    arrays, packed = pack_robot(robot), pack_detector(robot, detector)
+def _time_centres(collision: CollisionModel, Q: Floats, budget: Budget) -> Data:
+    arrays, packed = pack_robot(collision.robot), collision.arrays
     rows = Q[: budget.timed_verdicts]
     return _time_kernel(lambda qs, out: judge_centres(arrays, packed, qs, out), rows, budget.timing_rounds)
 
 
-def _time_surface(robot: Robot, detector: Detector, Q: Floats, budget: Budget) -> Data:
+def _time_surface(collision: CollisionModel, Q: Floats, budget: Budget) -> Data:
     """Eq. 20 both ways: every point against every other, as the paper does, and only those that can matter."""
-    arrays, packed, angle = pack_robot(robot), pack_detector(robot, detector), covering_angle_rad()
+    robot = collision.robot
+    arrays, packed, angle = pack_robot(robot), collision.arrays, covering_angle_rad()
     directions = surface_directions()
 
     def judge(qs: Floats, out: Bools) -> None:
-        judge_surfaces(arrays, packed, directions, angle, detector.safe_distance_m, qs, out)
+        judge_surfaces(arrays, packed, directions, angle, collision.limit_m, qs, out)
 
-    check_surface(robot, Q[0], detector, m_steps=3, n_steps=2)  # compiles or loads
+    check_surface(robot, Q[0], collision, m_steps=3, n_steps=2)  # compiles or loads
     few, seen = Q[: budget.plain_verdicts], []
-    plain = [_clock(lambda q=q: seen.append(check_surface(robot, q, detector).collision)) for q in few]
+    plain = [_clock(lambda q=q: seen.append(check_surface(robot, q, collision).collision)) for q in few]
     quick = _time_kernel(judge, Q[: budget.timed_verdicts], budget.timing_rounds)
     return {
-        "approximation": detector.name,
+        "approximation": collision.name,
         "every_point": _summarise(np.array(plain)),
         "quick": quick,
-        "same_verdicts": int((check_surface_many(robot, few, detector) == np.array(seen)).sum()),
+        "same_verdicts": int((check_surface_many(robot, few, collision) == np.array(seen)).sum()),
     }
 
 

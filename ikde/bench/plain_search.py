@@ -7,8 +7,9 @@ from typing import Any, Literal
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
+from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.convention import convention_offsets
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.figures import compute_clearances
 from ikde.solver.problem import Problem, make_problem
@@ -82,9 +83,9 @@ def limit_base(robot: Robot, reach_m: float) -> Robot:
     return replace(robot, joints=tuple(kept))
 
 
-def make_setup_problem(robot: Robot, setup: Setup, detector: Detector | str = "none") -> Problem:
+def make_setup_problem(robot: Robot, setup: Setup, collision: CollisionChoice = "none") -> Problem:
     """The search of a setup; with a detector it starts again until a solution is free."""
-    return make_problem(apply_setup(robot, setup), setup.settings, detector=detector, near=None, freeze=None)
+    return make_problem(apply_setup(robot, setup), setup.settings, collision=collision, near=None, freeze=None)
 
 
 def solve_plainly(
@@ -113,15 +114,14 @@ def read_targets(published: Mapping[str, Any]) -> dict[str, Target]:
     return {name: Target(np.array(position) * 1e-3) for name, position in published["targets_mm"].items()}
 
 
-def make_detector(robot: Robot, spheres: str, pairs: str) -> Detector:
+def make_collision(robot: Robot, spheres: str, pairs: str) -> CollisionModel:
     """An approximation over a list of pairs."""
-    return replace(robot.detectors[spheres], name=f"{spheres} over {pairs}", pairs=pairs)
+    detector = replace(robot.detectors[spheres], name=f"{spheres} over {pairs}", pairs=pairs)
+    return CollisionModel(robot=robot, detector=detector)
 
 
-def collides(robot: Robot, detector: Detector, Q: Floats) -> np.ndarray:
-    """Which configurations [K, N] a detector rejects [K]."""
+def collides(collision: CollisionModel, Q: Floats) -> np.ndarray:
+    """Which configurations [K, N] a collision model rejects [K]."""
     if not len(Q):
         return np.zeros(0, dtype=bool)
-    return np.concatenate(
-        [compute_clearances(robot, detector, Q[k : k + CHUNK]).collides for k in range(0, len(Q), CHUNK)]
-    )
+    return np.concatenate([compute_clearances(collision, Q[k : k + CHUNK]).collides for k in range(0, len(Q), CHUNK)])

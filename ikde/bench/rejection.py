@@ -18,13 +18,14 @@ from ikde.bench.plain_search import (
     Setup,
     Solutions,
     collides,
-    make_detector,
+    make_collision,
     make_setup_problem,
     read_targets,
     solve_plainly,
 )
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.rows import Rows, solve_rows
 
@@ -120,7 +121,7 @@ def grade_sample(robot: Robot, solutions: Solutions, solves: int) -> Data:
     """The first so many solves of a target: what each detector over each list of pairs rejects of the solutions."""
     Q = solutions.first(solves)
     rejected = {
-        (spheres, pairs): collides(robot, make_detector(robot, spheres, pairs), Q)
+        (spheres, pairs): collides(make_collision(robot, spheres, pairs), Q)
         for spheres in SPHERES
         for pairs in PAIR_LISTS
     }
@@ -186,12 +187,12 @@ def _interval(gain: float, variance: float) -> Data:
     return {"points": 100 * gain, "interval_points": [100 * (gain - margin), 100 * (gain + margin)]}
 
 
-def time_verdict_us(robot: Robot, detector: Detector, Q: Floats, rounds: int) -> Data:
+def time_verdict_us(collision: CollisionModel, Q: Floats, rounds: int) -> Data:
     """Microseconds of a mean verdict by centres over `Q`, one after the other: median and quartiles of the rounds."""
     seconds = []
     for _ in range(rounds + 1):  # the first compiles, or warms up
         started = time.perf_counter()
-        check_centres_many(robot, Q, detector)
+        check_centres_many(collision, Q)
         seconds.append((time.perf_counter() - started) / len(Q))
     low, median, high = np.percentile(1e6 * np.array(seconds[1:]), [25, 50, 75])
     return {"median": float(median), "quartiles": [float(low), float(high)], "rounds": rounds}
@@ -208,7 +209,7 @@ def _time_solves(robot: Robot, name: str, solutions: Solutions, printed: Mapping
                 "spheres": spheres,
                 "printed_AT_s": printed[spheres]["AT_s"],
                 "verdict_us": time_verdict_us(
-                    robot, make_detector(robot, spheres, "formula_22"), solutions.Q, budget.timing_rounds
+                    make_collision(robot, spheres, "formula_22"), solutions.Q, budget.timing_rounds
                 ),
             }
             for spheres in SPHERES
@@ -235,12 +236,12 @@ def compute_waiting(
     """
     setup = Setup(settings=Setup().settings.with_changes(restarts=1000))
     cells = [
-        _Wait(name, target, reading, make_detector(robot, spheres, pairing[spheres]), spheres)
+        _Wait(name, target, reading, make_collision(robot, spheres, pairing[spheres]), spheres, pairing[spheres])
         for name, target in read_targets(published).items()
         for reading, pairing in READINGS.items()
         for spheres in SPHERES
     ]
-    problems = [make_setup_problem(robot, setup, cell.detector) for cell in cells]
+    problems = [make_setup_problem(robot, setup, cell.collision.detector) for cell in cells]
     for begin in range(0, budget.waits, WAITS_IN_TURN):
         count = min(WAITS_IN_TURN, budget.waits - begin)
         for cell, problem in zip(cells, problems, strict=True):
@@ -261,14 +262,20 @@ class _Wait:
     name: str
     target: Target
     reading: str
-    detector: Detector
+    collision: CollisionModel
     spheres: str
+    pairs: str
     rows: list[Rows] = field(default_factory=list)
 
     @property
     def key(self) -> Data:
         """What the cell is."""
-        return {"target": self.name, "reading": self.reading, "spheres": self.spheres, "pairs": self.detector.pairs}
+        return {
+            "target": self.name,
+            "reading": self.reading,
+            "spheres": self.spheres,
+            "pairs": self.pairs,
+        }
 
     @property
     def outcome(self) -> Data:

@@ -12,7 +12,7 @@ from ikde.bench.approximation import APPROXIMATIONS as SPHERES
 from ikde.bench.budget import FULL, Budget
 from ikde.bench.detection import PAIR_LISTS
 from ikde.bench.misprints import Data
-from ikde.bench.plain_search import SEED, Advance, Setup, collides, make_detector, read_targets, solve_plainly
+from ikde.bench.plain_search import SEED, Advance, Setup, collides, make_collision, read_targets, solve_plainly
 from ikde.bench.rejection import READINGS, describe_setup, rate_data, read_print
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
@@ -91,7 +91,7 @@ def compute_sensitivity(
         stated = stated or Q
         for reading, pairing in READINGS.items():
             cells = [
-                _grade(name, spheres, collides(robot, make_detector(robot, spheres, pairing[spheres]), Q[name]))
+                _grade(name, spheres, collides(make_collision(robot, spheres, pairing[spheres]), Q[name]))
                 for name in targets
                 for spheres in SPHERES
             ]
@@ -116,10 +116,10 @@ def compute_sensitivity(
 
 def _vary_judgement(robot: Robot, stated: Mapping[str, Floats], published: Mapping[str, Any]) -> list[Data]:
     """The stated setting's solutions judged otherwise: over other pairs, or by surface points."""
-    rows, formula_22 = [], {spheres: make_detector(robot, spheres, "formula_22") for spheres in SPHERES}
+    rows, formula_22 = [], {spheres: make_collision(robot, spheres, "formula_22") for spheres in SPHERES}
     for pairs in PAIR_LISTS[1:]:
         cells = [
-            _grade(name, spheres, collides(robot, make_detector(robot, spheres, pairs), Q))
+            _grade(name, spheres, collides(make_collision(robot, spheres, pairs), Q))
             for name, Q in stated.items()
             for spheres in SPHERES
         ]

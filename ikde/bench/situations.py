@@ -64,7 +64,7 @@ def _compute_situation(robot: Robot, sweep: Sweep, entry: Data, points: int) -> 
 
 
 def _compute_curve(robot: Robot, sweep: Sweep, detector: str, t_s: np.ndarray) -> list[float]:
-    seen = compute_clearances(robot, sweep.look(robot, detector), sweep.configurations(t_s))
+    seen = compute_clearances(sweep.look(robot, detector), sweep.configurations(t_s))
     return (1e3 * seen.clearance_m).tolist()
 
 
@@ -84,7 +84,7 @@ def _compute_detection(robot: Robot, sweep: Sweep, entry: Data, detector: str) -
     contact_s = entry["simulator"]["t_s"]
     times = np.array([found.detected_s - 1.0 / FINE_STEPS, found.detected_s, contact_s])
     look, Q = sweep.look(robot, detector), sweep.configurations(times)
-    seen = compute_clearances(robot, look, Q)
+    seen = compute_clearances(look, Q)
     speed = sweep.angle(1.0) - sweep.angle(0.0)
     detected, printed = sweep.angle(found.detected_s), sweep.detected_deg[detector]
     return {
@@ -95,7 +95,7 @@ def _compute_detection(robot: Robot, sweep: Sweep, entry: Data, detector: str) -
         "detected_s": found.detected_s,
         "onset_deg": sweep.angle(found.onset_s),
         "onset_s": found.onset_s,
-        "pair": list(robot.pairs(look)[seen.closest_pair[1]]),
+        "pair": list(look.pairs[seen.closest_pair[1]]),
         "clearance_mm": dict(
             zip(("step_before", "detected", "contact"), (1e3 * seen.clearance_m).tolist(), strict=True)
         ),

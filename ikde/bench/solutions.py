@@ -110,14 +110,14 @@ def describe_verdict(typical: bool, improved: bool) -> str:
 
 def _solve_target(robot: Robot, name: str, target_mm: list[float]) -> list[Data]:
     target = Target(np.array(target_mm) / 1e3)
-    free = solve_distinct(robot, target, SOLUTIONS, SETTINGS, rank="found", seed=SEED, detector="typical")
+    free = solve_distinct(robot, target, SOLUTIONS, SETTINGS, rank="found", seed=SEED, collision="typical")
     rows = [_describe(robot, name, f"s{k + 1}", target_mm, result) for k, result in enumerate(free)]
     return [*rows, _describe(robot, name, "f1", target_mm, find_colliding(robot, target))]
 
 
 def find_colliding(robot: Robot, target: Target) -> SolveResult:
     """The first stream of the plain search, blind to collisions, whose solution the typical detector rejects."""
-    blind = (solve(robot, target, SETTINGS, seed=SEED, stream=stream, detector="none") for stream in count())
+    blind = (solve(robot, target, SETTINGS, seed=SEED, stream=stream, collision="none") for stream in count())
     return next(found for found in blind if found.reached and check(robot, found.q, "typical").collision)
 
 

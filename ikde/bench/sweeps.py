@@ -12,7 +12,8 @@ import numpy as np
 
 from ikde.bench.misprints import meant
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Robot
 from ikde.solver.plain import compute_gaps
 
 SECONDS, FINE_STEPS = 10, 20  # a motion; fine steps in one of its seconds
@@ -46,9 +47,9 @@ class Sweep:
         """When the printed joint passes an angle, s."""
         return SECONDS * (angle_deg - self.angle(0.0)) / (self.angle(SECONDS) - self.angle(0.0))
 
-    def look(self, robot: Robot, detector: str) -> Detector:
-        """A detector that looks at this situation's pairs."""
-        return replace(robot.detectors[detector], pairs=self.pairs)
+    def look(self, robot: Robot, detector: str) -> CollisionModel:
+        """A detector over this situation's pairs."""
+        return CollisionModel(robot=robot, detector=replace(robot.detectors[detector], pairs=self.pairs))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,15 +76,14 @@ def read_sweeps(published: Mapping[str, Any]) -> tuple[Sweep, ...]:
     )
 
 
-def compute_clearance(robot: Robot, detector: Detector, Q: Floats) -> Floats:
+def compute_clearance(collision: CollisionModel, Q: Floats) -> Floats:
     """Clearance beyond the safe distance [K] in m, by plain numpy."""
-    gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q)
-    return gaps.min(axis=1) - detector.safe_distance_m
+    return compute_gaps(collision, Q).min(axis=1) - collision.limit_m
 
 
 def touches(robot: Robot, sweep: Sweep, detector: str, t_s: Floats) -> np.ndarray:
     """Whether a detector, looking at the situation's pairs, sees a collision at these times [K]."""
-    return compute_clearance(robot, sweep.look(robot, detector), sweep.configurations(t_s)) <= 0.0
+    return compute_clearance(sweep.look(robot, detector), sweep.configurations(t_s)) <= 0.0
 
 
 def bisect(test: Callable[[float], bool], inside: float, outside: float, steps: int = 40) -> float:

@@ -16,7 +16,8 @@ from ikde.bench.budget import FULL, Budget
 from ikde.bench.misprints import Data
 from ikde.kernels.arrays import DetectorArrays, Floats, RobotArrays
 from ikde.kernels.placing import place_by_key_points, place_by_transformation
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
 from ikde.model.surface import M_STEPS, N_STEPS, surface_directions
 
@@ -142,7 +143,7 @@ class Placement:
 def make_placement(robot: Robot, column: Mapping[str, str]) -> Placement:
     """Pack a column's approximation; every component takes part, since the detectors' pairs name them all."""
     arrays = pack_robot(robot)
-    detector = pack_detector(robot, robot.detectors[column["approximation"]])
+    detector = CollisionModel.of(robot, column["approximation"]).arrays
     directions = surface_directions() if column["points"] == "surface" else np.empty((0, 3))
     return Placement(
         column=column,

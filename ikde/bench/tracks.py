@@ -94,7 +94,7 @@ def find_start(plan: TrackPlan) -> Floats | None:
 def _follow_seed(plan: TrackPlan, method: TrackMethod, start: Floats | None, seed: int) -> TrackSummary:
     """One motion, measured."""
     trajectory = run_track(plan, method=method, start=start, seed=seed)
-    return summarise_track(plan.robot, plan.detector, trajectory)
+    return summarise_track(plan.collision, trajectory)
 
 
 def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
@@ -136,8 +136,7 @@ def measure(motion: TrackSummary) -> dict[str, Any]:
 
 def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int, progress: Progress) -> dict[str, Any]:
     """How often each method, and the greedy follower without a way back, end early from random starts."""
-    told = {"drive": plan.drive, "limits": plan.limits, "detector": plan.detector}
-    follower = make_follower(plan.robot, plan.path, **told)
+    follower = make_follower(plan.collision, plan.path, drive=plan.drive, limits=plan.limits)
     starts = draw_random_starts(follower, count, plan.seed)
     reached = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}
     stops, seconds = {}, {}
@@ -155,7 +154,7 @@ def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
     """Free configurations [S, N], S <= count, at the path's first pose, where random ones come to rest."""
     robot, target = follower.robot, follower.path.targets()[0]
     rng, found, slides = np.random.default_rng(seed), [], follower.robot.slides
-    told = {"detector": follower.detector or "none", "threads": 1, "explain_failures": False}
+    told = {"collision": follower.collision, "threads": 1, "explain_failures": False}
     place = np.resize(target.p_world_tool, slides.sum())
     for _ in range(DRAWS_PER_START * count):
         near = rng.uniform(robot.lower, robot.upper)

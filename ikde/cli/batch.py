@@ -51,7 +51,7 @@ def batch(
     if out is None and not dry_run:
         raise typer.BadParameter("a run needs a folder; only --dry-run needs none", param_hint="--out")
     plan = load_batch(spec)
-    if any(arm.problem.detector is None for arm in plan.arms):
+    if not all(arm.problem.collision.pairs for arm in plan.arms):
         note_unchecked(plan.robot)
     if out is None or dry_run:
         _preview(plan, threads, dask, workers, as_json)

@@ -47,7 +47,7 @@ def bench_track(
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
     plans = [_with_drive(load_track(path), drive) for path in tracks]
-    for robot in {plan.robot.name: plan.robot for plan in plans if plan.detector is None}.values():
+    for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
         with compile_clock(lambda: announce_compile("a minute or two")):

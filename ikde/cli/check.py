@@ -19,7 +19,7 @@ from ikde.cli.options import (
     check_drawable,
     draw,
     note_unchecked,
-    read_detector,
+    read_collision,
     read_q,
 )
 from ikde.cli.output import print_json, print_result, use_color
@@ -50,13 +50,13 @@ def check(
 
     model = load_robot(robot)
     values = read_q(model, q, unit, angles, convention)
-    judge = read_detector(model, detector, pairs, safe_distance, unit)
-    result = check_configuration(model, values, judge)
+    collision = read_collision(model, detector, pairs, safe_distance, unit)
+    result = check_configuration(model, values, collision)
     check_drawable(plot)
     note_unchecked(model, detector)
     if as_json:
         print_json(check_json(model, result, convention))
     else:
         print_result(format_check(result, Units(unit, angles), color=use_color()))
-    draw(plot, model, values, judge)
+    draw(plot, collision, values)
     raise typer.Exit(ExitCode.NOT_REACHED if result.collision else ExitCode.OK)

@@ -33,6 +33,7 @@ def fk(
     Example: ikde fk --q '0 0 0 90 0 0 0 0 0' --angles deg --unit mm
     """
     from ikde.io.robots import load_robot
+    from ikde.model.collision_model import CollisionModel
     from ikde.report.geometry import format_forward, forward_json
     from ikde.report.units import Units
     from ikde.solver.forward import forward
@@ -42,9 +43,9 @@ def fk(
     values = read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
     check_drawable(plot)
-    model.detector(detector)  # a wrong name is found before anything is printed
+    collision = CollisionModel.of(model, detector)  # a wrong name is found before anything is printed
     if as_json:
         print_json(forward_json(model, values, frames, outside, convention))
     else:
         print_result(format_forward(model, frames, outside, Units(unit, angles), color=use_color()))
-    draw(plot, model, values, detector)
+    draw(plot, collision, values)

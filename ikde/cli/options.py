@@ -11,7 +11,8 @@ from ikde.cli.output import print_note
 
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
-    from ikde.model.robot import Detector, Robot
+    from ikde.model.collision_model import CollisionModel
+    from ikde.model.robot import Robot
 
 
 class LengthUnit(StrEnum):
@@ -76,21 +77,22 @@ def read_q(
     return read_joints(robot, parse_joints(robot, text, unit, angles, key), convention, default=robot.home)
 
 
-def read_detector(
+def read_collision(
     robot: "Robot", name: str | None, pairs: str | None, safe_distance: float | None, unit: LengthUnit
-) -> "Detector | str":
-    """The detector that the options describe; `"none"` for none."""
+) -> "CollisionModel":
+    """The collision model that the options describe."""
     from dataclasses import replace
 
     from ikde.errors import InputError
     from ikde.io.units import LENGTHS_M
+    from ikde.model.collision_model import CollisionModel
     from ikde.model.names import LONGEST_NAME
 
-    detector = robot.detector(name)
+    detector = CollisionModel.of(robot, name).detector
     if detector is None:
         if pairs is not None or safe_distance is not None:
             raise InputError("--pairs and --safe-distance need a detector, and there is none")
-        return "none"
+        return CollisionModel(robot=robot, detector=None)
     if pairs is not None:
         if pairs not in robot.pair_lists:
             known = ", ".join(robot.pair_lists)
@@ -100,14 +102,15 @@ def read_detector(
         if not 0.0 <= safe_distance < float("inf"):
             raise InputError(f"expected a distance of at least 0, got {safe_distance:g}", ("safe-distance",))
         detector = replace(detector, safe_distance_m=safe_distance * LENGTHS_M[unit])
-    return detector
+    return CollisionModel.of(robot, detector)
 
 
 def note_unchecked(robot: "Robot", asked: str | None = None) -> None:
     """Say on stderr that self-collision is not checked, if the robot has no default detector and none was asked for."""
     from ikde.model.pairs import explain_no_detector
+    from ikde.model.robot import NO_DETECTOR
 
-    if asked is None and robot.detector(None) is None:
+    if asked is None and robot.default_detector == NO_DETECTOR:
         print_note(f"ikde: self-collision is not checked: {explain_no_detector(robot)}")
 
 
@@ -148,13 +151,11 @@ def check_positive(value: float | None, option: str, most: float | None = None) 
         raise InputError(f"expected at most {most:g}, half a turn, got {value:g}", (option,))
 
 
-def draw(
-    path: Path | None, robot: "Robot", q: "Floats", detector: "Detector | str | None", target: object = None
-) -> None:
+def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None) -> None:
     """Draw a configuration if a path is given."""
     from ikde.plot.pose import plot_pose, save_figure
 
     if path is None:
         return
-    figure = plot_pose(robot, q, detector=robot.detector(detector), target=target)  # type: ignore[arg-type]
+    figure = plot_pose(collision, q, target=target)  # type: ignore[arg-type]
     save_figure(figure, path)

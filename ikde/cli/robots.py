@@ -9,7 +9,7 @@ from ikde.cli.options import AnglesOption, AngleUnit, DetectorOption, JsonOption
 from ikde.cli.output import page_width, print_json, print_line, print_result, use_color
 
 if TYPE_CHECKING:
-    from ikde.model.robot import Detector, Robot
+    from ikde.model.collision_model import CollisionModel
 
 robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 
@@ -49,31 +49,32 @@ def show(
     Every pair of components is listed: those that the detector compares, and those that it leaves out with the reason.
     """
     from ikde.io.robots import load_robot
+    from ikde.model.collision_model import CollisionModel
     from ikde.report.robot import format_robot, robot_json
     from ikde.report.units import Units
 
     model = load_robot(name)
-    chosen = model.detector(detector)
+    chosen = CollisionModel.of(model, detector)
     if kernels:
-        source = _format_kernels(model, chosen, kind)
+        source = _format_kernels(chosen, kind)
         if as_json:
             print_json({"robot": model.name, "kind": kind, "source": source})
         else:
             print_result(source)
     elif as_json:
-        print_json(robot_json(model, chosen))
+        print_json(robot_json(chosen))
     else:
-        print_result(format_robot(model, chosen, Units(unit, angles), color=use_color(), width=page_width()))
+        print_result(format_robot(chosen, Units(unit, angles), color=use_color(), width=page_width()))
 
 
-def _format_kernels(model: "Robot", detector: "Detector | None", kind: str) -> str:
+def _format_kernels(collision: "CollisionModel", kind: str) -> str:
     from ikde.errors import InputError
     from ikde.model.generate.assemble import format_module
     from ikde.model.target import KINDS
 
     if kind not in KINDS:
         raise InputError(f"expected one of {', '.join(KINDS)}, got {kind!r}", ("kind",))
-    return format_module(model, detector, kind)
+    return format_module(collision, kind)
 
 
 @robots.command("validate")
@@ -89,17 +90,18 @@ def validate(
     error, but nothing is ever free then: they are named, with the line to add to the file if they may touch.
     """
     from ikde.io.robots import load_robot
+    from ikde.model.collision_model import CollisionModel
     from ikde.report.pairs import format_pairs, pairs_json
     from ikde.report.units import Units
 
     model = load_robot(file)
-    chosen = model.detector(detector)
+    chosen = CollisionModel.of(model, detector)
     if as_json:
         counts = {"joints": len(model.joints), "frames": len(model.frames)}
-        print_json({"valid": True, "name": model.name, **counts, "collision": pairs_json(model, chosen)})
+        print_json({"valid": True, "name": model.name, **counts, "collision": pairs_json(chosen)})
     else:
         print_line(f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames")
-        print_result(format_pairs(model, chosen, Units(unit), color=use_color(), width=page_width()))
+        print_result(format_pairs(chosen, Units(unit), color=use_color(), width=page_width()))
 
 
 @robots.command("export")
@@ -122,7 +124,7 @@ def export(
 
     if urdf == mjcf:
         raise InputError(f"expected one of --urdf and --mjcf, got {'both' if urdf else 'none'}")
-    text = (format_urdf if urdf else format_mjcf)(load_robot(name), detector=detector)
+    text = (format_urdf if urdf else format_mjcf)(load_robot(name), collision=detector)
     if out is None:
         print_result(text)
     else:

@@ -22,7 +22,7 @@ from ikde.cli.options import (
     check_positive,
     draw,
     note_unchecked,
-    read_detector,
+    read_collision,
     read_freeze,
     read_q,
 )
@@ -155,7 +155,7 @@ def solve(
         bounds=bounds,
         update=update,
     )
-    judge = read_detector(model, detector, pairs, safe_distance, unit)
+    checked = read_collision(model, detector, pairs, safe_distance, unit)
     start = None if near is None else read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = read_freeze(model, freeze, unit, angles, convention)
@@ -169,7 +169,7 @@ def solve(
             settings,
             rank=rank,  # type: ignore[arg-type]
             seed=seed,
-            detector=judge,
+            collision=checked,
             near=start,
             freeze=frozen,
             announce_compile=announce_compile,
@@ -184,5 +184,5 @@ def solve(
         print_result("\n\n".join(pages))
     if results[0].reached and len(results) < count:
         print_note(f"found {len(results)} distinct solutions of {count}; more --restarts may find more")
-    draw(plot, model, results[0].q, judge, target)
+    draw(plot, checked, results[0].q, target)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)

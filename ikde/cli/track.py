@@ -66,7 +66,7 @@ def track(
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     with open_folder(out) if out else nullcontext():
-        if plan.detector is None:
+        if not plan.collision.pairs:
             note_unchecked(plan.robot)
         with _show_steps() as tell:
             tell(f"following {plan.name}")
@@ -86,7 +86,7 @@ def _follow(plan: "TrackPlan") -> "TrackSummary":
     from ikde.track.summary import summarise_track
 
     trajectory = run_track(plan, announce_compile=lambda: announce_compile("a minute or two"))
-    return summarise_track(plan.robot, plan.detector, trajectory)
+    return summarise_track(plan.collision, trajectory)
 
 
 def _draw(plan: "TrackPlan", motion: "TrackSummary", tell: Callable[[str], None]) -> str:

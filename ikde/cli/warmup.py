@@ -20,8 +20,7 @@ def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_
     from ikde.track.warmup import list_track_stages
 
     model = load_robot(robot)
-    chosen = model.detector(detector) or "none"
-    stages = [*list_stages(model, chosen), *list_track_stages(model, chosen)]
+    stages = [*list_stages(model, detector), *list_track_stages(model, detector)]
     with _progress(len(stages)) as tell:
         done = warm_up(stages, tell)
     if as_json:

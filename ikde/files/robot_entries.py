@@ -5,19 +5,20 @@ from dataclasses import replace
 
 from ikde.errors import InputError, nearest
 from ikde.files.entries import DetectorEntry, UnitsEntry
-from ikde.model.robot import FARTHEST, NO_DETECTOR, Detector, Joint, Robot, check_detector
+from ikde.model.collision_model import CollisionModel, check_detector
+from ikde.model.robot import FARTHEST, NO_DETECTOR, Detector, Joint, Robot
 
 
-def read_detector(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> Detector | None:
-    """A detector by name, one of the user's own, or the robot's; None for `none`."""
+def read_collision(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> CollisionModel:
+    """What is compared: by a detector's name, one of the user's own, or the robot's; nothing for `none`."""
     if not isinstance(choice, DetectorEntry):
-        return robot.detector(choice)
+        return CollisionModel.of(robot, choice)
     if choice.name == NO_DETECTOR:
         raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", ("name",))
     safe_distance_m = choice.safe_distance * units.length_m
     own = Detector(name=choice.name, spheres=choice.spheres, pairs=choice.pairs, safe_distance_m=safe_distance_m)
     check_detector(robot, own, ())
-    return own
+    return CollisionModel(robot=robot, detector=own)
 
 
 def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEntry) -> Robot:

@@ -9,20 +9,21 @@ from ikde.io.xml_file import (
     INERTIA_KG_M2,
     MASS_KG,
     PLACEHOLDERS,
-    describe_detector,
+    describe_collision,
     format_document,
     format_numbers,
     list_carriers,
     list_components,
     reserve_name,
 )
-from ikde.model.robot import WORLD, Detector, Frame, Joint, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import WORLD, Frame, Joint, Robot
 from ikde.model.rotation import quat_wxyz_from_rotation
 
 JOINT_TYPES = {"revolute": "hinge", "prismatic": "slide"}
 
 
-def format_mjcf(robot: Robot, *, detector: str | Detector | None = None) -> str:
+def format_mjcf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     """The robot as the text of an MJCF file, in m and rad; its contacts are the detector's collisions.
 
     Every frame is a body of its name and every joint keeps its name; the key frame `home` is the robot's home. Each
@@ -33,25 +34,25 @@ def format_mjcf(robot: Robot, *, detector: str | Detector | None = None) -> str:
 
     Args:
         robot: the robot.
-        detector: whose spheres and pairs to write: a name, a `Detector`, `"none"`, or None for the robot's default.
+        collision: whose spheres and pairs to write, as for `ikde.solve`.
 
     Raises:
         InputError: for an unknown detector, or a name that XML cannot hold.
     """
-    chosen = robot.detector(detector)
+    model = CollisionModel.of(robot, collision)
     root = ET.Element("mujoco", model=robot.name)
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")
     # MuJoCo would leave out every pair that shares a joint, whatever the detector says.
     ET.SubElement(ET.SubElement(root, "option", gravity="0 0 0"), "flag", filterparent="disable")
     ET.SubElement(ET.SubElement(root, "default"), "geom", type="sphere", density="0")
     bodies = _add_bodies(root, robot)
-    _add_components(root, robot, chosen, bodies)
+    _add_components(root, model, bodies)
     keys = ET.SubElement(root, "keyframe")
     home = {joint.name: joint.home for joint in robot.joints}
     moving = [home[frame.joint] for frame in robot.frames if frame.joint is not None]
     ET.SubElement(keys, "key", name="home", qpos=format_numbers(moving))
     tool = f"The tool is the body {robot.tool!r}."
-    return format_document(root, (describe_detector(robot, chosen), tool, PLACEHOLDERS))
+    return format_document(root, (describe_collision(model), tool, PLACEHOLDERS))
 
 
 def _add_bodies(root: ET.Element, robot: Robot) -> dict[str, ET.Element]:
@@ -77,9 +78,9 @@ def _add_joint(body: ET.Element, frame: Frame, joint: Joint) -> None:
     ET.SubElement(body, "joint", name=joint.name, type=JOINT_TYPES[joint.kind], axis=axis, range=limits)
 
 
-def _add_components(root: ET.Element, robot: Robot, detector: Detector | None, bodies: dict[str, ET.Element]) -> None:
-    carriers = list_carriers(robot)
-    components = list_components(robot, detector)
+def _add_components(root: ET.Element, collision: CollisionModel, bodies: dict[str, ET.Element]) -> None:
+    carriers = list_carriers(collision.robot)
+    components = list_components(collision)
     taken = set(bodies)
     names: dict[str, str] = {}
     for component, spheres in components.items():
@@ -88,13 +89,12 @@ def _add_components(root: ET.Element, robot: Robot, detector: Detector | None, b
         for index, sphere in enumerate(spheres):
             place = format_numbers(sphere.p_body_sphere)
             ET.SubElement(body, "geom", name=f"{component}_{index}", pos=place, size=format_numbers([sphere.radius_m]))
-    pairs = robot.pairs(detector)
-    looked_at = {frozenset(pair) for pair in pairs}
+    compared = {frozenset(pair) for pair in collision.pairs}
     contact = ET.SubElement(root, "contact")
     for a, b in combinations(components, 2):
-        if frozenset((a, b)) not in looked_at:
+        if frozenset((a, b)) not in compared:
             ET.SubElement(contact, "exclude", body1=names[a], body2=names[b])
-    for a, b in pairs:
-        if components[a][0].body == components[b][0].body:  # rigidly joined: MuJoCo looks only where it is told to
+    for a, b in collision.pairs:
+        if components[a][0].body == components[b][0].body:  # rigidly joined: MuJoCo compares only what it is told to
             for i, j in product(range(len(components[a])), range(len(components[b]))):
                 ET.SubElement(contact, "pair", geom1=f"{a}_{i}", geom2=f"{b}_{j}")

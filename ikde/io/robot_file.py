@@ -11,8 +11,8 @@ from ikde.files.names import LONGEST_TEXT, Name, Text
 from ikde.io.schema import as_file_error
 from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
+from ikde.model.collision_model import MAX_PAIRS
 from ikde.model.robot import (
-    MOST_PAIRS,
     NO_DETECTOR,
     AdjacentPair,
     Detector,
@@ -248,8 +248,8 @@ def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...], known: dict[str
     for a, others in entry.pairs.items():
         for b in others:
             unique.setdefault(frozenset((a, b)), (a, b))
-    if len(unique) > MOST_PAIRS:
-        raise InputError(f"expected at most {MOST_PAIRS:,} pairs", ("pairs", name))
+    if len(unique) > MAX_PAIRS:
+        raise InputError(f"expected at most {MAX_PAIRS:,} pairs", ("pairs", name))
     known[name] = tuple(unique.values())
     return known[name]
 

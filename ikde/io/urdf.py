@@ -10,7 +10,7 @@ from ikde.io.xml_file import (
     MASS_KG,
     PLACEHOLDERS,
     VELOCITY,
-    describe_detector,
+    describe_collision,
     format_document,
     format_numbers,
     list_carriers,
@@ -18,11 +18,12 @@ from ikde.io.xml_file import (
     reserve_name,
 )
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import WORLD, Detector, Frame, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import WORLD, Frame, Robot
 from ikde.model.spheres import Sphere
 
 
-def format_urdf(robot: Robot, *, detector: str | Detector | None = None) -> str:
+def format_urdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     """The robot as the text of a URDF file, in m and rad.
 
     Every frame is a link of its name and every joint keeps its name; a fixed frame hangs on the joint `fixed_<frame>`.
@@ -32,12 +33,12 @@ def format_urdf(robot: Robot, *, detector: str | Detector | None = None) -> str:
 
     Args:
         robot: the robot.
-        detector: whose spheres to write: a name, a `Detector`, `"none"`, or None for the robot's default.
+        collision: whose spheres to write, as for `ikde.solve`.
 
     Raises:
         InputError: for an unknown detector, or a name that XML cannot hold.
     """
-    chosen = robot.detector(detector)
+    model = CollisionModel.of(robot, collision)
     root = ET.Element("robot", name=robot.name)
     links, joints = {WORLD, *(frame.name for frame in robot.frames)}, set(robot.joint_names)
     _add_link(root, WORLD)
@@ -45,7 +46,7 @@ def format_urdf(robot: Robot, *, detector: str | Detector | None = None) -> str:
         _add_link(root, frame.name, has_mass=frame.joint is not None)
         _add_joint(root, robot, frame, joints)
     carriers = list_carriers(robot)
-    for component, spheres in list_components(robot, chosen).items():
+    for component, spheres in list_components(model).items():
         link = _add_link(root, reserve_name(f"component_{component}", links))
         _add_spheres(link, component, spheres)
         joint = ET.SubElement(root, "joint", name=reserve_name(f"fixed_{link.attrib['name']}", joints), type="fixed")
@@ -53,7 +54,7 @@ def format_urdf(robot: Robot, *, detector: str | Detector | None = None) -> str:
         ET.SubElement(joint, "child", link=link.attrib["name"])
     limits = f"Efforts ({EFFORT:g} N or N m) and velocities ({VELOCITY:g} m/s or rad/s) are placeholders as well."
     tool = f"The tool is the link {robot.tool!r}."
-    return format_document(root, (describe_detector(robot, chosen), tool, PLACEHOLDERS, limits))
+    return format_document(root, (describe_collision(model), tool, PLACEHOLDERS, limits))
 
 
 def _add_link(root: ET.Element, name: str, *, has_mass: bool = False) -> ET.Element:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ikde.errors import FileError, InputError
 from ikde.files.atomic import write_atomically
-from ikde.model.robot import WORLD, Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import WORLD, Robot
 from ikde.model.spheres import Sphere, expand_rows
 from ikde.model.tree import build_tree
 
@@ -46,11 +47,12 @@ def reserve_name(wanted: str, taken: set[str]) -> str:
     return wanted
 
 
-def list_components(robot: Robot, detector: Detector | None) -> dict[str, list[Sphere]]:
+def list_components(collision: CollisionModel) -> dict[str, list[Sphere]]:
     """Spheres of each component of a detector's approximation, in the frame of the joint that moves them."""
     components: dict[str, list[Sphere]] = {}
-    if detector:
-        for sphere in expand_rows(robot, build_tree(robot), detector.spheres):
+    if collision.detector:
+        robot = collision.robot
+        for sphere in expand_rows(robot, build_tree(robot), collision.detector.spheres):
             components.setdefault(sphere.component, []).append(sphere)
     return components
 
@@ -62,13 +64,14 @@ def list_carriers(robot: Robot) -> list[str]:
     return [WORLD if body.joint is None else by_joint[robot.joint_names[body.joint]] for body in bodies]
 
 
-def describe_detector(robot: Robot, detector: Detector | None) -> str:
+def describe_collision(collision: CollisionModel) -> str:
     """One line about where the collision shapes come from."""
+    detector = collision.detector
     if detector is None:
         return "No collision shapes."
     return (
         f"Collision shapes: the spheres {detector.spheres!r} of the detector {detector.name!r}, a link a component; it "
-        f"compares {len(robot.pairs(detector))} pairs of components, safe distance {detector.safe_distance_m!r} m."
+        f"compares {len(collision.pairs)} pairs of components, safe distance {detector.safe_distance_m!r} m."
     )
 
 

@@ -35,10 +35,10 @@ def pack_robot(robot: Robot) -> RobotArrays:
 
 
 @lru_cache(maxsize=64)
-def pack_detector(robot: Robot, detector: Detector | None) -> DetectorArrays:
-    """Pack a detector's spheres and pairs; None packs the detector that never sees anything."""
+def pack_collision(robot: Robot, detector: Detector | None) -> DetectorArrays:
+    """Pack a detector's spheres and pairs; None packs no pairs at all."""
     tree = build_tree(robot)
-    pairs = robot.pairs(detector)
+    pairs = robot.pair_lists[detector.pairs] if detector else ()
     looked_at = {component for pair in pairs for component in pair}
     every = expand_rows(robot, tree, detector.spheres) if detector else ()
     spheres = [sphere for sphere in every if sphere.component in looked_at]

@@ -5,9 +5,10 @@ from functools import lru_cache
 import numpy as np
 
 from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Ints
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.pairs import component_bodies
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import Robot
 from ikde.model.tree import build_tree
 
 NO_BASE = np.array([-1, -1, -1])
@@ -32,7 +33,8 @@ def find_planar_base(robot: Robot) -> Ints:
         steps = steps @ np.vstack([T[k], [0.0, 0.0, 0.0, 1.0]])
         axes.append(steps[:3, 2])
     is_plane = np.allclose(axes, np.eye(3), atol=1e-12) and np.allclose(steps[:2, 3], 0.0, atol=1e-12)
-    carries_all = all(base_carries(robot, detector) for detector in robot.detectors.values())
+    models = (CollisionModel(robot=robot, detector=detector) for detector in robot.detectors.values())
+    carries_all = all(map(base_carries, models))
     carries_all &= bool((bodies[4:, PARENT] >= HEADING).all())
     if not (is_plane and carries_all):
         return NO_BASE
@@ -41,7 +43,7 @@ def find_planar_base(robot: Robot) -> Ints:
     return base
 
 
-def base_carries(robot: Robot, detector: Detector) -> bool:
-    """Whether all that a detector looks at rides on a planar base: where the base is does not matter then."""
-    bodies = component_bodies(robot.approximations[detector.spheres], build_tree(robot))
-    return all(bodies[component] >= HEADING for pair in robot.pairs(detector) for component in pair)
+def base_carries(collision: CollisionModel) -> bool:
+    """Whether all that is compared rides on a planar base: where the base is does not matter then."""
+    bodies = component_bodies(collision.rows, build_tree(collision.robot))
+    return all(bodies[component] >= HEADING for pair in collision.pairs for component in pair)

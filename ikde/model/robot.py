@@ -1,18 +1,13 @@
 """A robot as data: joints, a tree of frames, sphere approximations, pair lists and detectors. SI units."""
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
-from ikde.model.names import check_printable
-from ikde.model.numbers import is_number
 
 WORLD = "world"
 NO_DETECTOR = "none"
@@ -96,8 +91,6 @@ class Provenance:
 
 
 Pairs = tuple[tuple[str, str], ...]
-NAMED = 3  # pairs in a message that is about many
-MOST_PAIRS, MOST_SPHERE_PAIRS = 50_000, 2_000_000  # of components in a list, and of spheres that a detector compares
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,87 +164,6 @@ class Robot:
         """Which joints are prismatic [N]."""
         return np.array([joint.kind == "prismatic" for joint in self.joints])
 
-    def detector(self, choice: "str | Detector | None") -> Detector | None:
-        """Resolve a detector: a name, a `Detector`, or None for the robot's default; `"none"` compares nothing."""
-        if isinstance(choice, Detector):
-            check_detector(self, choice, ("detector",))
-            return choice
-        name = self.default_detector if choice is None else choice
-        if name == NO_DETECTOR:
-            return None
-        if name not in self.detectors:
-            raise InputError(
-                f"{self.name} has no detector {name!r}; it has {', '.join([*self.detectors, NO_DETECTOR])}"
-            )
-        return self.detectors[name]
-
-    def pairs(self, detector: Detector | None) -> Pairs:
-        """Pairs that a detector compares; none without a detector."""
-        return self.pair_lists[detector.pairs] if detector else ()
-
-    def left_out_pairs(self, detector: Detector | None) -> tuple[LeftOutPair, ...]:
-        """All other pairs of components, and why a detector leaves them out; none without a detector."""
-        if detector is None:
-            return ()
-        compared = {frozenset(pair) for pair in self.pairs(detector)}
-        reasons = {frozenset((pair.a, pair.b)): pair.reason for pair in self.neighbours}
-        unlisted = f"not in the pair list {detector.pairs}"
-        return tuple(
-            LeftOutPair(a=a, b=b, reason=reasons.get(frozenset((a, b)), unlisted))
-            for a, b in combinations(self.components(detector.spheres), 2)
-            if frozenset((a, b)) not in compared
-        )
-
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
         return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))
-
-
-def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
-    """Raise `InputError` unless the detector's names exist, and it compares pairs that its approximation describes."""
-    for key, what, name, known in (
-        ("spheres", "approximation", detector.spheres, robot.approximations),
-        ("pairs", "pair list", detector.pairs, robot.pair_lists),
-    ):
-        if name not in known:
-            raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
-    check_printable(detector.name, (*where, "name"))
-    if detector.name == NO_DETECTOR:
-        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where)
-    distance = detector.safe_distance_m
-    if not (is_number(distance) and 0.0 <= distance <= FARTHEST):
-        raise InputError(f"expected a distance of at least 0, up to {FARTHEST:g} m", (*where, "safe_distance"))
-    described = robot.components(detector.spheres)
-    if not described:
-        raise InputError(f"this detector compares nothing: {detector.spheres!r} has no spheres", (*where, "spheres"))
-    if not robot.pairs(detector):
-        raise InputError(f"this detector compares nothing: {_explain_no_pairs(robot, detector)}", (*where, "pairs"))
-    for component in {c for pair in robot.pair_lists[detector.pairs] for c in pair}:
-        if component not in described:
-            raise InputError(
-                f"the approximation {detector.spheres!r} has no component {component!r}", (*where, "pairs")
-            )
-    _check_size(robot, detector, where)
-
-
-def _check_size(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
-    """Comparing takes time with every pair, also where a file is only shown."""
-    pairs = robot.pairs(detector)
-    if len(pairs) > MOST_PAIRS:
-        raise InputError(f"expected at most {MOST_PAIRS:,} pairs of components, got {len(pairs):,}", (*where, "pairs"))
-    spheres: Counter[str] = Counter()
-    for row in robot.approximations[detector.spheres]:
-        spheres[row.component] += row.count
-    compared = sum(spheres[a] * spheres[b] for a, b in pairs)
-    if compared > MOST_SPHERE_PAIRS:
-        message = f"expected at most {MOST_SPHERE_PAIRS:,} pairs of spheres to compare, got {compared:,}"
-        raise InputError(message, (*where, "spheres"))
-
-
-def _explain_no_pairs(robot: Robot, detector: Detector) -> str:
-    left_out = robot.left_out_pairs(detector)
-    if not left_out:
-        return f"{robot.components(detector.spheres)[0]!r} is the only component"
-    named = ", ".join(f"{pair.a} - {pair.b} ({pair.reason})" for pair in left_out[:NAMED])
-    more = f" and {len(left_out) - NAMED} more" if len(left_out) > NAMED else ""
-    return f"{'the only pair is' if len(left_out) == 1 else f'all {len(left_out)} pairs are'} left out: {named}{more}"

@@ -90,7 +90,7 @@ def _window(motion: TrackSummary, samples: Sequence[int], view: Floats) -> Float
 
 
 def _spheres(motion: TrackSummary, q: Floats) -> dict[str, tuple[Floats, Floats]]:
-    return compute_components(motion.robot, motion.detector.spheres, q) if motion.detector else {}
+    return compute_components(motion.collision, q)
 
 
 def _draw_ground(axes: Any, motion: TrackSummary, samples: Sequence[int], view: Floats) -> None:
@@ -116,7 +116,7 @@ def _draw_robot(axes: Any, motion: TrackSummary, sample: int, view: Floats) -> N
     from matplotlib.patches import Circle
 
     q, black = motion.trajectory.q[sample], motion.colliding[sample]
-    base = base_components(motion.robot, motion.detector) if motion.detector else set()
+    base = base_components(motion.collision)
     circles = []
     for name, (centres, radii) in _spheres(motion, q).items():
         color = COLLIDING if name in black else BASE if name in base else ARM

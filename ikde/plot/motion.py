@@ -90,8 +90,8 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
 
 def plot_clearance(motion: TrackSummary) -> Any:
     """Clearance at the samples, and what it is certain not to fall below between them; None without a detector."""
-    detector, gaps, proof = motion.detector, motion.verification.gaps_m, motion.certificate
-    if detector is None or not gaps.size:
+    collision, gaps, proof = motion.collision, motion.verification.gaps_m, motion.certificate
+    if not gaps.size:
         return None
     lines = [Line(label="at samples", x=motion.trajectory.times_s, y=MM * gaps.min(axis=1))]
     if proof is not None:
@@ -99,7 +99,7 @@ def plot_clearance(motion: TrackSummary) -> Any:
         lines.append(Line(label="certified between them", x=times, y=MM * between[:, 0]))
     wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
     y = Axis(label="clearance", unit="mm")
-    safe = [MM * detector.safe_distance_m]
+    safe = [MM * collision.limit_m]
     return plot_panels(
         [Panel(y=y, lines=lines, bounds=safe, bound="safe distance", marks=wrong)], x=TIME, height_in=2.6
     )

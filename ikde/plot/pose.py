@@ -7,8 +7,9 @@ import numpy as np
 
 from ikde.errors import FileError
 from ikde.kernels.arrays import Floats
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import component_bodies
-from ikde.model.robot import WORLD, Detector, Robot
+from ikde.model.robot import WORLD, Robot
 from ikde.model.target import Target
 from ikde.model.tree import Tree, build_tree
 from ikde.plot.images import any_letters, show_as_text
@@ -24,29 +25,29 @@ NOT_CHECKED = "self-collision not checked"
 
 
 def plot_pose(
-    robot: Robot,
+    collision: CollisionModel,
     q: Floats,
     *,
-    detector: Detector | None = None,
     target: Target | None = None,
     size_in: tuple[float, float] = (9.0, 8.0),
 ) -> Any:
-    """Draw the robot at `q` [N] with the detector's spheres, the closest pair and the target.
+    """Draw the robot at `q` [N] with the spheres that are compared, the closest pair and the target.
 
     Returns:
         A matplotlib `Figure`; axes in metres, world frame.
     """
     from matplotlib.figure import Figure
 
+    robot = collision.robot
     figure = Figure(figsize=size_in, dpi=130)
     axes: Any = figure.add_axes(MARGINS, projection="3d", computed_zorder=False)
     _set_view(axes, robot, q)
     _draw_skeleton(axes, robot, q)
-    told = NOT_CHECKED if detector is None else _draw_spheres(axes, robot, detector, q)
+    told = _draw_spheres(axes, collision, q) if collision.pairs else NOT_CHECKED
     if target is not None:
         axes.scatter(*target.p_world_tool, marker="*", s=160, color=TARGET, label="target", depthshade=False, zorder=11)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=f"{robot.name}  ·  {told}")
-    _set_equal(axes, robot, detector, q, target)
+    _set_equal(axes, collision, q, target)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
     return show_as_text(figure)
@@ -91,12 +92,11 @@ def compute_bones(robot: Robot, q: Floats) -> Floats:
     return np.stack([Ts_world[name][..., :3, 3] for name in _drawn_chain(robot)], axis=-2)
 
 
-def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str:
+def _draw_spheres(axes: Any, collision: CollisionModel, q: Floats) -> str:
     """Spheres in the paper's colours and the closest pair; returns what the title says of them."""
-    components = compute_components(robot, detector.spheres, q)
-    pairs = compute_pairs(robot, detector, q)
+    components, pairs = compute_components(collision, q), compute_pairs(collision, q)
     colliding = {name for pair in pairs if pair.collides for name in (pair.a, pair.b)}
-    base = base_components(robot, detector)
+    base = base_components(collision)
     labelled: set[str] = set()
     for name, (centres, radii) in components.items():
         color, label = (BASE, "base") if name in base else (ARM, "arm")
@@ -106,7 +106,7 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
             _draw_sphere(axes, centre, radius, color, label=None if label in labelled else f"{label} spheres")
             labelled.add(label)
     if not pairs:
-        return f"detector {detector.name}: {NOT_CHECKED}"
+        return f"detector {collision.name}: {NOT_CHECKED}"
     closest = pairs[0]
     a, b = components[closest.a], components[closest.b]
     gaps = compute_sphere_gaps(a, b)
@@ -122,13 +122,13 @@ def _draw_spheres(axes: Any, robot: Robot, detector: Detector, q: Floats) -> str
         label=f"closest pair, {text}",
     )
     state = "self-collision" if colliding else "free of self-collision"
-    return f"detector {detector.name}: {state}"
+    return f"detector {collision.name}: {state}"
 
 
-def base_components(robot: Robot, detector: Detector) -> set[str]:
+def base_components(collision: CollisionModel) -> set[str]:
     """Components that no other component carries: the platform and what is fixed to it."""
-    tree = build_tree(robot)
-    bodies = component_bodies(robot.approximations[detector.spheres], tree)
+    tree = build_tree(collision.robot)
+    bodies = component_bodies(collision.rows, tree)
     occupied = set(bodies.values())
     return {name for name, body in bodies.items() if not occupied & _bodies_below(tree, body)}
 
@@ -172,17 +172,16 @@ def _nearness(axes: Any, point: Floats) -> float:
     return float(np.dot(point, towards_eye))
 
 
-def _set_equal(axes: Any, robot: Robot, detector: Detector | None, q: Floats, target: Target | None) -> None:
+def _set_equal(axes: Any, collision: CollisionModel, q: Floats, target: Target | None) -> None:
     """One scale for all three axes, around everything that is drawn."""
-    lows = list(compute_bones(robot, q))
+    lows = list(compute_bones(collision.robot, q))
     highs = list(lows)
     if target is not None:
         lows.append(target.p_world_tool)
         highs.append(target.p_world_tool)
-    if detector is not None:
-        for centres, radii in compute_components(robot, detector.spheres, q).values():
-            lows.append((centres - radii[:, None]).min(axis=0))
-            highs.append((centres + radii[:, None]).max(axis=0))
+    for centres, radii in compute_components(collision, q).values():
+        lows.append((centres - radii[:, None]).min(axis=0))
+        highs.append((centres + radii[:, None]).max(axis=0))
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low).max()) * 1.02
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))

@@ -3,73 +3,73 @@
 from typing import Any
 
 from ikde.io.units import LENGTHS_M
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import explain_no_detector
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import NO_DETECTOR
 from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units, format_fixed
 from ikde.solver.check import compute_pairs
 from ikde.solver.touching import find_always_touching
 
 
-def pairs_json(robot: Robot, detector: Detector | None) -> dict[str, Any] | None:
+def pairs_json(collision: CollisionModel) -> dict[str, Any] | None:
     """What a detector compares, with the clearance at home in m, worst first, and what it leaves out; None for none."""
-    if detector is None:
+    if not collision.pairs:
         return None
-    touching = find_always_touching(robot, detector)
+    touching = find_always_touching(collision)
     return {
-        "detector": detector.name,
+        "detector": collision.name,
         "compared": [
             {"a": pair.a, "b": pair.b, "clearance_at_home_m": pair.clearance_m}
-            for pair in compute_pairs(robot, detector, robot.home)
+            for pair in compute_pairs(collision, collision.robot.home)
         ],
-        "left_out": [{"a": p.a, "b": p.b, "reason": p.reason} for p in robot.left_out_pairs(detector)],
+        "left_out": [{"a": p.a, "b": p.b, "reason": p.reason} for p in collision.left_out_pairs],
         "always_touching": [list(pair) for pair in touching.pairs] if touching else [],
         "to_add": list(touching.lines) if touching else [],
     }
 
 
-def format_pairs(
-    robot: Robot, detector: Detector | None, units: Units, *, color: bool = False, width: int = 100
-) -> str:
+def format_pairs(collision: CollisionModel, units: Units, *, color: bool = False, width: int = 100) -> str:
     """What is checked, what always touches, and a table each of the pairs compared, worst first, and of those left out.
 
     Lines to copy stand alone, and are never wrapped.
     """
-    if detector is None:
-        return _describe(robot, detector)
-    tables = [_compared_table(robot, detector, units)]
-    if robot.left_out_pairs(detector):
-        tables.append(_left_out_table(robot, detector))
-    lines = [_describe(robot, detector), *_touching_lines(robot, detector)]
+    if not collision.pairs:
+        return _describe(collision)
+    tables = [_compared_table(collision, units)]
+    if collision.left_out_pairs:
+        tables.append(_left_out_table(collision))
+    lines = [_describe(collision), *_touching_lines(collision)]
     return "\n".join([*lines, "", render(*tables, color=color, width=width)])
 
 
-def _describe(robot: Robot, detector: Detector | None) -> str:
-    if detector is None:
-        why = f" ({explain_no_detector(robot)})" if robot.detector(None) is None else ""
+def _describe(collision: CollisionModel) -> str:
+    if not collision.pairs:
+        robot = collision.robot
+        why = f" ({explain_no_detector(robot)})" if robot.default_detector == NO_DETECTOR else ""
         return f"no detector: self-collision is not checked{why}"
-    compared, left_out = len(robot.pairs(detector)), len(robot.left_out_pairs(detector))
-    return f"collision: detector {detector.name} compares {compared} pair{'s' * (compared != 1)}, {left_out} left out"
+    compared, left_out = len(collision.pairs), len(collision.left_out_pairs)
+    return f"collision: detector {collision.name} compares {compared} pair{'s' * (compared != 1)}, {left_out} left out"
 
 
-def _touching_lines(robot: Robot, detector: Detector) -> list[str]:
-    touching = find_always_touching(robot, detector)
+def _touching_lines(collision: CollisionModel) -> list[str]:
+    touching = find_always_touching(collision)
     if touching is None:
         return []
     meant = f"if that is meant, {touching.remedy}{':' if touching.lines else ''}"
     return [str(touching), meant, *touching.lines]
 
 
-def _compared_table(robot: Robot, detector: Detector, units: Units) -> Any:
+def _compared_table(collision: CollisionModel, units: Units) -> Any:
     table = make_table("pair", f">clearance at home [{units.length}]", title="pairs compared")
-    for pair in compute_pairs(robot, detector, robot.home):
+    for pair in compute_pairs(collision, collision.robot.home):
         gap = format_fixed(pair.clearance_m / LENGTHS_M[units.length], 2 if units.length == "mm" else 5)
         table.add_row(plain(f"{pair.a} - {pair.b}"), gap)
     return table
 
 
-def _left_out_table(robot: Robot, detector: Detector) -> Any:
+def _left_out_table(collision: CollisionModel) -> Any:
     table = make_table("pair", "why", title="pairs left out")
-    for pair in robot.left_out_pairs(detector):
+    for pair in collision.left_out_pairs:
         table.add_row(plain(f"{pair.a} - {pair.b}"), plain(pair.reason))
     return table

@@ -6,7 +6,8 @@ from dataclasses import asdict
 from typing import Any
 
 from ikde.io.units import LENGTHS_M
-from ikde.model.robot import Detector, Robot, Wheels
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Robot, Wheels
 from ikde.report.pairs import format_pairs, pairs_json
 from ikde.report.render import make_table, plain, render
 from ikde.report.units import Units
@@ -29,8 +30,9 @@ def format_robots(robots: Iterable[Robot], *, color: bool = False) -> str:
     return render(table, color=color)
 
 
-def robot_json(robot: Robot, detector: Detector | None) -> dict[str, Any]:
+def robot_json(collision: CollisionModel) -> dict[str, Any]:
     """A robot as plain data, m and rad, with the pairs that a detector compares and leaves out."""
+    robot = collision.robot
     return {
         "name": robot.name,
         "title": robot.title,
@@ -55,21 +57,20 @@ def robot_json(robot: Robot, detector: Detector | None) -> dict[str, Any]:
         },
         "default_detector": robot.default_detector,
         "adjacent": [{"a": pair.a, "b": pair.b, "reason": pair.reason} for pair in robot.adjacent],
-        "collision": pairs_json(robot, detector),
+        "collision": pairs_json(collision),
         "wheels": None if robot.wheels is None else asdict(robot.wheels),
         "provenance": dict(Counter(p.kind for p in robot.provenance.values())),
     }
 
 
-def format_robot(
-    robot: Robot, detector: Detector | None, units: Units, *, color: bool = False, width: int = 100
-) -> str:
+def format_robot(collision: CollisionModel, units: Units, *, color: bool = False, width: int = 100) -> str:
     """A robot for the terminal: joints, frames, detectors, the pairs of one, and the provenance of its numbers."""
+    robot = collision.robot
     head = f"[bold]{plain(robot.name)}[/]: {plain(robot.title)}"
     wheels = [_wheel_table(robot, robot.wheels, units)] if robot.wheels else []
     detectors = [_detector_table(robot, units)] if robot.detectors else []
     parts = [_joint_table(robot, units), _frame_table(robot, units), *wheels, *detectors]
-    pairs = format_pairs(robot, detector, units, color=color, width=width)
+    pairs = format_pairs(collision, units, color=color, width=width)
     above, below = render(head, "", *parts, color=color, width=width), render(_sources(robot), color=color, width=width)
     return "\n\n".join([above, pairs, below])
 

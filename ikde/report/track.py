@@ -38,7 +38,7 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "seed": plan.seed,
         "asked_start": None if plan.start is None else name_joints(motion, plan.start),
         "limits": _limits_json(motion),
-        "detector": motion.detector.name if motion.detector else None,
+        "detector": motion.collision.name if motion.collision.pairs else None,
         "dt_s": trajectory.path.dt_s,
         "points": trajectory.path.samples,
         "reached_points": trajectory.reached_points,
@@ -157,13 +157,13 @@ def _list_limits(motion: TrackSummary) -> Iterator[Row]:
 
 def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     """At the samples and between them."""
-    detector, pair, clearance_m = motion.detector, motion.closest_pair, motion.verification.clearance_m
-    if detector is None or pair is None or clearance_m is None:
+    collision, pair, clearance_m = motion.collision, motion.closest_pair, motion.verification.clearance_m
+    if pair is None or clearance_m is None:
         yield "self-collision", "not checked", ""
         return
     count = motion.verification.breaches.collision
     hits = f", {count} collide" if count else ""
-    safe = f"above {MM * detector.safe_distance_m:g} mm"
+    safe = f"above {MM * collision.limit_m:g} mm"
     yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe
     if motion.certificate is not None:
         yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", "above 0 mm"

@@ -154,7 +154,7 @@ def _make_clearance(motion: TrackSummary) -> Number:
 
 
 def _tell_black(motion: TrackSummary) -> str:
-    return "What collides is black." if motion.detector else "Self-collision was not checked."
+    return "What collides is black." if motion.collision.pairs else "Self-collision was not checked."
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:
@@ -182,7 +182,7 @@ def _make_recipe(plan: TrackPlan, motion: TrackSummary) -> Section:
         ("robot", verbatim(motion.robot.name)),
         ("base", _name_base(motion)),
         ("method", code(motion.trajectory.method)),
-        ("detector", verbatim(motion.detector.name) if motion.detector else "none"),
+        ("detector", verbatim(motion.collision.name)),
         ("time between samples", f"{1e3 * motion.trajectory.path.dt_s:g} ms"),
     ]
     blocks: list[Block] = [Facts(tuple(facts))]

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, joints_outside, read_configuration
 from ikde.solver.plain import compute_gaps
 
@@ -36,39 +37,38 @@ class CheckResult:
 
 
 def check(
-    robot: Robot, q: JointValues, detector: str | Detector | None = None, convention: str | None = None
+    robot: Robot, q: JointValues, collision: CollisionChoice = None, convention: str | None = None
 ) -> CheckResult:
     """Clearance of every pair of components; collision means clearance <= safe distance [Qiao2021, eq. 21].
 
     Args:
         robot: the robot.
         q: joint values [N] or a mapping by joint name; m and rad. Values outside the limits are accepted and named.
-        detector: a name, a `Detector`, `"none"`, or None for the robot's default.
+        collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
         convention: how `q` is counted; None for the robot's own.
 
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
     values = read_configuration(robot, q, convention)
-    chosen = robot.detector(detector)
-    pairs = compute_pairs(robot, chosen, values) if chosen else ()
+    model = CollisionModel.of(robot, collision)
+    pairs = compute_pairs(model, values)
     return CheckResult(
         q=values,
         collision=any(pair.collides for pair in pairs) if pairs else None,
         clearance_m=pairs[0].clearance_m if pairs else None,
         pairs=pairs,
-        detector=chosen.name if chosen else "none",
-        safe_distance_m=chosen.safe_distance_m if chosen else 0.0,
+        detector=model.name,
+        safe_distance_m=model.limit_m,
         outside_limits=joints_outside(robot, values),
     )
 
 
-def compute_pairs(robot: Robot, detector: Detector, q: Floats) -> tuple[PairClearance, ...]:
-    """Every pair of a detector for one `q` [N], worst first, by plain numpy."""
-    pairs = robot.pairs(detector)
-    gaps = compute_gaps(robot, detector.spheres, pairs, q).tolist()
+def compute_pairs(collision: CollisionModel, q: Floats) -> tuple[PairClearance, ...]:
+    """Every pair that is compared, for one `q` [N], worst first, by plain numpy."""
+    gaps = compute_gaps(collision, q).tolist()
     found = [
-        PairClearance(a=a, b=b, clearance_m=gap, collides=gap <= detector.safe_distance_m)
-        for (a, b), gap in zip(pairs, gaps, strict=True)
+        PairClearance(a=a, b=b, clearance_m=gap, collides=gap <= collision.limit_m)
+        for (a, b), gap in zip(collision.pairs, gaps, strict=True)
     ]
     return tuple(sorted(found, key=lambda pair: pair.clearance_m))

@@ -9,7 +9,8 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.kernels.seeds import LUCKY_ATTEMPTS
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice
+from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
@@ -36,7 +37,7 @@ def solve_distinct(
     rank: Rank = "motion",
     seed: int = 0,
     method: str = "auto",
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     announce_compile: Callable[[], None] | None = None,
@@ -56,7 +57,7 @@ def solve_distinct(
             order of the search, the first being that of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
-        detector: as for `solve`.
+        collision: as for `solve`.
         near: as for `solve`.
         freeze: as for `solve`.
         announce_compile: called once if kernels must be compiled first.
@@ -66,11 +67,11 @@ def solve_distinct(
     if rank not in get_args(Rank):
         raise InputError(f"expected one of {', '.join(get_args(Rank))}, got {rank!r}", ("rank",))
     chosen = choose_settings(settings, method)
-    problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
-    if rank == "clearance" and problem.detector is None:
+    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
+    if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
     options = {"seed": check_seed(seed), "strict": True, "announce_compile": announce_compile}
-    told = {"seed": seed, "detector": detector, "near": near, "freeze": freeze, "announce_compile": announce_compile}
+    told = {"seed": seed, "collision": collision, "near": near, "freeze": freeze, "announce_compile": announce_compile}
     first = confirm(robot, solve(robot, target, chosen, **told))
     if not first.reached or count == 1:
         return [first]

@@ -115,7 +115,7 @@ def _explain_by_remedies(
 
 def _never_free(problem: Problem, met: _Met, graded: Verification) -> Explanation | None:
     """That some pairs touch in every configuration, if they do."""
-    touching = find_always_touching(problem.robot, problem.detector) if problem.detector else None
+    touching = find_always_touching(problem.collision)
     if touching is None:
         return None
     lines = f": {' and '.join(touching.lines)}" if touching.lines else ""
@@ -183,14 +183,14 @@ def _best(graded: Verification) -> str:
 
 
 def _read_counts(problem: Problem, found: Found) -> _Met:
-    pairs = problem.robot.pairs(problem.detector)
+    pairs = problem.collision.pairs
     return _Met(int(found.counts[0, COLLIDING]), count_blocking_pairs(pairs, found.pair_counts[0]))
 
 
 def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str | None]:
     """Collisions counted pair by pair, where the search did not; and what helps, if that finds a solution."""
     if problem.settings.evolves:
-        if met.colliding > 0 or problem.detector is None or problem.settings.knob("collision") == "reject":
+        if met.colliding > 0 or not problem.collision.pairs or problem.settings.knob("collision") == "reject":
             return met, None
         rejecting = problem.with_settings(collision="reject")
         tested = probe.run(rejecting)
@@ -212,9 +212,8 @@ def _search_often(problem: Problem, probe: Probe) -> Found:
 
 def _count_pairs(problem: Problem, found: Found) -> _Met:
     met = found.q[(found.score[:, 0] == 0.0) & (found.counts[:, REACHED] == 0)]
-    detector = problem.detector
-    if detector is None or not len(met):
+    collision = problem.collision
+    if not collision.pairs or not len(met):
         return _Met(0, {})
-    pairs = problem.robot.pairs(detector)
-    gaps = compute_gaps(problem.robot, detector.spheres, pairs, met)
-    return _Met(len(met), count_blocking_pairs(pairs, (gaps <= detector.safe_distance_m).sum(axis=0)))
+    hits = (compute_gaps(collision, met) <= collision.limit_m).sum(axis=0)
+    return _Met(len(met), count_blocking_pairs(collision.pairs, hits))

@@ -13,8 +13,9 @@ from ikde.errors import VerificationError
 from ikde.kernels import figures as kernels
 from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.blocks import Terms, flatten_grader
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
+from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_gaps
 from ikde.solver.settings import SolveSettings
@@ -49,7 +50,7 @@ class Figures:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clearances:
-    """What a detector sees of K configurations."""
+    """What a collision model sees of K configurations."""
 
     clearance_m: Floats  # [K]
     closest_pair: Ints  # [K] index into the detector's pairs
@@ -57,8 +58,7 @@ class Clearances:
 
 
 def compute_figures(
-    robot: Robot,
-    detector: Detector | None,
+    collision: CollisionModel,
     targets: Targets | Sequence[Target],
     Q: Floats,
     settings: SolveSettings | None = None,
@@ -69,7 +69,7 @@ def compute_figures(
     Without `settings` there are no tolerances; `limits` in place of the robot's own.
     """
     figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
-    (numbers, whole), asked = pack_grader(robot, detector, settings, limits), pack_targets(targets)
+    (numbers, whole), asked = pack_grader(collision, settings, limits), pack_targets(targets)
     out = (np.ascontiguousarray(Q), figures, pairs, accepted)
     kernels.compute_figures(numbers, whole, asked.kind, asked.T_world_tool, *out)
     return Figures(
@@ -94,39 +94,39 @@ def make_figures(count: int) -> Figures:
 
 @lru_cache(maxsize=64)
 def pack_grader(
-    robot: Robot, detector: Detector | None, settings: SolveSettings | None, limits: Limits | None = None
+    collision: CollisionModel, settings: SolveSettings | None, limits: Limits | None = None
 ) -> tuple[Floats, Ints]:
     """What the grader is told beside targets and configurations; without settings there are no tolerances."""
     terms = Terms(
-        limits=np.array(limits or (robot.lower, robot.upper)),
+        limits=np.array(limits or (collision.robot.lower, collision.robot.upper)),
         position_tolerance=float(settings.position_tolerance_m) if settings else np.inf,
         orientation_tolerance=float(settings.orientation_tolerance_rad) if settings else np.inf,
     )
-    return flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms)
+    return flatten_grader(pack_robot(collision.robot), collision.arrays, terms)
 
 
-def compute_clearances(robot: Robot, detector: Detector, Q: Floats) -> Clearances:
-    """What a detector sees of configurations `Q` [K, N] in the robot's own convention: the kernels' figures, confirmed.
+def compute_clearances(collision: CollisionModel, Q: Floats) -> Clearances:
+    """Clearances of configurations `Q` [K, N] in the robot's own convention: the kernels' figures, confirmed.
 
     Raises:
         VerificationError: if kernels and plain numpy disagree by more than 1e-11 m: a bug.
     """
-    figures = compute_figures(robot, detector, Targets(np.zeros((len(Q), 3))), Q)
-    plain = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q).min(axis=1, initial=np.inf)
+    figures = compute_figures(collision, Targets(np.zeros((len(Q), 3))), Q)
+    plain = compute_gaps(collision, Q).min(axis=1, initial=np.inf)
     gaps = _difference(figures.clearance_m, plain)
-    gap = float((gaps / measure_scale(robot, np.zeros((len(Q), 3)), Q)).max(initial=0.0))
+    gap = float((gaps / measure_scale(collision.robot, np.zeros((len(Q), 3)), Q)).max(initial=0.0))
     if not gap <= AGREEMENT:
         raise VerificationError(f"kernels and plain numpy disagree by {gap:.3g} m on a clearance")
     return Clearances(
         clearance_m=figures.clearance_m,
         closest_pair=figures.closest_pair,
-        collides=judge_clearances(figures, detector),
+        collides=judge_clearances(figures, collision),
     )
 
 
-def judge_clearances(figures: Figures, detector: Detector | None) -> MaskedBools:
+def judge_clearances(figures: Figures, collision: CollisionModel) -> MaskedBools:
     """Whether configurations collide [T], by their clearance; masked where no pair was compared: not checked."""
-    collides = ~(figures.clearance_m > (detector.safe_distance_m if detector else 0.0))
+    collides = ~(figures.clearance_m > collision.limit_m)
     return np.ma.masked_array(collides, mask=figures.closest_pair < 0)
 
 
@@ -137,7 +137,7 @@ def compute_disagreement(targets: Targets | Sequence[Target], figures: Figures, 
         _difference(figures.orientation_error_rad, verdicts.orientation_error_rad),
         _difference(figures.clearance_m, verdicts.clearance_m),
     ]
-    return np.max(gaps, axis=0) / measure_scale(verdicts.robot, Targets.of(targets).p_world_tool, verdicts.Q)
+    return np.max(gaps, axis=0) / measure_scale(verdicts.collision.robot, Targets.of(targets).p_world_tool, verdicts.Q)
 
 
 def measure_scale(robot: Robot, p_world_tool: Floats, Q: Floats) -> Floats:

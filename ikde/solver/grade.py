@@ -57,7 +57,7 @@ def grade(
     """Grade every row of `found`.
 
     Args:
-        problem: robot, detector, settings and ranges.
+        problem: robot, collision model, settings and ranges.
         targets: one a row.
         found: the rows.
         seed: of the probes.
@@ -74,7 +74,7 @@ def grade(
     explanations: dict[int, Explanation] = {}
     if rows.size:
         asked, Q = targets.take(rows), found.q[rows]
-        verdicts = verify_many(problem.robot, asked, Q, problem.settings, problem.detector)
+        verdicts = verify_many(problem.collision, asked, Q, problem.settings)
         gaps = compute_disagreement(asked, figures.take(rows), verdicts)
         if strict:
             _refuse(gaps, Q)
@@ -89,7 +89,7 @@ def grade(
                 )
     return Graded(
         figures=figures,
-        self_collision=judge_clearances(figures, problem.detector),
+        self_collision=judge_clearances(figures, problem.collision),
         verified=verified,
         reached=reached,
         stop_reasons=_stop_reasons(problem, found, reached, explanations),

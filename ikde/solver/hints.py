@@ -49,7 +49,7 @@ class Probe:
 
 def meets(problem: Problem, target: Target, q: Floats) -> bool:
     """Whether plain numpy accepts `q` [N] as an answer inside the question's own ranges."""
-    graded = verify_many(problem.robot, [target], q[None], problem.settings, problem.detector).row(0)
+    graded = verify_many(problem.collision, [target], q[None], problem.settings).row(0)
     is_inside = bool(np.all((problem.lower <= q) & (q <= problem.upper)))
     return is_inside and graded.within_tolerance and not graded.colliding_pairs
 
@@ -96,7 +96,7 @@ def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Verif
         return None
     wider = asked.with_changes(position_tolerance_m=position_m, orientation_tolerance_rad=orientation_rad)
     told = _tell_tolerances(asked, wider)
-    if not told or not verify_many(problem.robot, [target], q[None], wider, problem.detector).accepted[0]:
+    if not told or not verify_many(problem.collision, [target], q[None], wider).accepted[0]:
         return None
     return f"a tolerance of {told} would accept the best"
 

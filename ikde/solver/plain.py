@@ -8,6 +8,7 @@ configurations: one, or as many as there are.
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Pairs, Robot, SphereRow
 
 
@@ -56,12 +57,12 @@ def compute_row_centres(row: SphereRow, start: Floats, end: Floats) -> Floats:
     return middle + steps * 2.0 * row.radius_m * line / np.linalg.norm(line, axis=-1, keepdims=True)
 
 
-def compute_components(robot: Robot, spheres: str, q: Floats) -> dict[str, Spheres]:
-    """Spheres of every component of an approximation, in the world, for `q` [..., N]."""
-    Ts_world = compute_frames(robot, q)
+def compute_components(collision: CollisionModel, q: Floats) -> dict[str, Spheres]:
+    """Spheres of every component, in the world, for `q` [..., N]; none without a detector."""
+    Ts_world = compute_frames(collision.robot, q)
     centres: dict[str, list[Floats]] = {}
     radii: dict[str, list[float]] = {}
-    for row in robot.approximations[spheres]:
+    for row in collision.rows:
         points = compute_row_centres(row, Ts_world[row.start][..., :3, 3], Ts_world[row.end][..., :3, 3])
         centres.setdefault(row.component, []).append(points)
         radii.setdefault(row.component, []).extend([row.radius_m] * row.count)
@@ -74,8 +75,9 @@ def compute_sphere_gaps(a: Spheres, b: Spheres) -> Floats:
     return np.sqrt(x * x + y * y + z * z) - a[1][:, None] - b[1]
 
 
-def compute_gaps(robot: Robot, spheres: str, pairs: Pairs, q: Floats) -> Floats:
-    """Smallest distance - R_i - R_j [..., P] in m of every pair of components, for `q` [..., N]."""
-    components = compute_components(robot, spheres, q)
+def compute_gaps(collision: CollisionModel, q: Floats, pairs: Pairs | None = None) -> Floats:
+    """Smallest distance - R_i - R_j [..., P] in m of every pair of components, or of some, for `q` [..., N]."""
+    pairs = collision.pairs if pairs is None else pairs
+    components = compute_components(collision, q) if pairs else {}
     gaps = [compute_sphere_gaps(components[a], components[b]).min(axis=(-2, -1)) for a, b in pairs]
     return np.stack(gaps, axis=-1) if gaps else np.empty((*q.shape[:-1], 0))

@@ -1,4 +1,4 @@
-"""One kind of question, ready to be searched: robot, detector, settings, and the ranges that hold."""
+"""One kind of question, ready to be searched: robot, collision model, settings, and the ranges that hold."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -9,7 +9,8 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats, SearchArrays
 from ikde.kernels.evolution import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.settings import SolveSettings
 
@@ -23,14 +24,18 @@ ROUNDING = 1e-12  # m, rad: the search keeps this far from every bound, so that 
 class Problem:
     """Everything about a search but the target and the seed."""
 
-    robot: Robot
-    detector: Detector | None
+    collision: CollisionModel
     settings: SolveSettings
     lower: Floats
     upper: Floats
     """[N] joint ranges; a frozen joint's are equal."""
     near: Floats | None
     frozen: tuple[str, ...]
+
+    @property
+    def robot(self) -> Robot:
+        """The robot of the collision model."""
+        return self.collision.robot
 
     def with_ranges(self, lower: Floats, upper: Floats) -> "Problem":
         """The same question with other joint ranges and nothing frozen."""
@@ -45,7 +50,7 @@ def make_problem(
     robot: Robot,
     settings: SolveSettings,
     *,
-    detector: str | Detector | None,
+    collision: CollisionChoice,
     near: JointValues | None,
     freeze: Freeze | None,
 ) -> Problem:
@@ -62,8 +67,7 @@ def make_problem(
             raise InputError(f"{value:g} is outside the limits {limits}", ("freeze", name))
         lower[index] = upper[index] = value
     return Problem(
-        robot=robot,
-        detector=robot.detector(detector),
+        collision=CollisionModel.of(robot, collision),
         settings=settings,
         lower=lower,
         upper=upper,
@@ -108,5 +112,5 @@ def pack_search(problem: Problem) -> SearchArrays:
         crossover=float(knob("crossover")),
         repair=REPAIRS.index(knob("bounds")),
         in_place=knob("update") == "in_place",
-        collision_rule=IGNORE if problem.detector is None else rules[knob("collision")],
+        collision_rule=rules[knob("collision")] if problem.collision.pairs else IGNORE,
     )

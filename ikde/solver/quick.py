@@ -13,7 +13,8 @@ from ikde.kernels.arrays import COUNTS, REACHED
 from ikde.kernels.blocks import flatten_question
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.jit import compile_clock
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds, runs_on_tables
@@ -27,31 +28,31 @@ from ikde.solver.verify import verify
 
 
 class Quick:
-    """The engine `lm` and the grader, for one robot, detector, settings and kind of target."""
+    """The engine `lm` and the grader, for one collision model, settings and kind of target."""
 
-    def __init__(self, robot: Robot, settings: SolveSettings, detector: Detector | None, kind: str) -> None:
-        problem = make_problem(robot, settings, detector=detector or "none", near=None, freeze=None)
-        module, *tables = load_kernels(robot, detector, kind)
+    def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str) -> None:
+        problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
+        module, *tables = load_kernels(collision, kind)
         question = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
         self._search, self._question = module.solve_target, (*tables, self._kind)
         self._block, self._last = question, min(FEW["lm"], int(settings.budget("lm")))
-        self._grader = pack_grader(robot, detector, settings)
-        self._joints, self._pairs = len(robot.joints), robot.pairs(detector)
+        self._grader = pack_grader(collision, settings)
+        self._joints, self._pairs = len(collision.robot.joints), collision.pairs
         self._no_score = np.full(2, np.inf)
         self._common = {
             "reached": True,
             "stop_reason": StopReason.REACHED,
-            "reason": reached_reason(detector),
+            "reason": reached_reason(collision),
             "hint": None,
-            "joint_names": robot.joint_names,
+            "joint_names": collision.robot.joint_names,
             "self_collision": False if self._pairs else None,
             "verified": None,
             "method": "lm",
             "settings": settings,
-            "detector": detector.name if detector else "none",
-            "verify": partial(verify, robot, settings=settings, detector=detector or "none"),
+            "detector": collision.name,
+            "verify": partial(verify, collision.robot, settings=settings, collision=collision),
             "compile_seconds": 0.0,
         }
         self._is_ready = False
@@ -108,14 +109,14 @@ class Quick:
 
 @lru_cache(maxsize=64)
 def find_quick(
-    robot: Robot, settings: SolveSettings | None, method: str, detector: str | Detector | None, kind: str
+    robot: Robot, settings: SolveSettings | None, method: str, choice: CollisionChoice, kind: str
 ) -> Quick | None:
     """The quick way of a question, or None: it needs the engine `lm` to be the first to try, and written kernels.
 
     On tables, engine and grader would share their code.
     """
-    chosen, looked_at = choose_settings(settings, method), robot.detector(detector)
+    chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
     engines = choose_engines(robot, chosen, only_poses=kind == "pose")
     if engines[0] != "lm" or runs_on_tables():
         return None
-    return Quick(robot, chosen, looked_at, kind)
+    return Quick(collision, chosen, kind)

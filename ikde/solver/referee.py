@@ -37,7 +37,7 @@ class Referee:
     def _grade(self, rows: Ints) -> None:
         found, problem, targets = self._found, self._problem, self._targets
         some = rows if len(rows) < len(targets) else slice(None)  # mostly all at once, without a copy
-        asked = problem.robot, problem.detector, targets.take(some), found.q[some], problem.settings
+        asked = problem.collision, targets.take(some), found.q[some], problem.settings
         found.figures.put(some, compute_figures(*asked, limits=self._limits))
         self._graded[some] = found.counts[some, ATTEMPTS]
 

@@ -6,7 +6,7 @@ from enum import StrEnum
 from functools import cached_property
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Verification
@@ -94,7 +94,7 @@ class SolveResult:
         return self.verification.family if self.reached else None
 
 
-def reached_reason(detector: Detector | None) -> str:
+def reached_reason(collision: CollisionModel) -> str:
     """One line for a target that was reached."""
-    free = "free of self-collision" if detector else "self-collision not checked"
+    free = "free of self-collision" if collision.pairs else "self-collision not checked"
     return f"within tolerance, inside the limits, {free}"

@@ -75,7 +75,7 @@ class Rows:
 
     @property
     def closest_pair(self) -> Ints:
-        """Index of the pair that the clearance lies between [T], into `robot.pairs(detector)`; -1 without a pair."""
+        """Index of the pair that the clearance lies between [T], into `problem.collision.pairs`; -1 without a pair."""
         return self.graded.figures.closest_pair
 
     @property
@@ -116,7 +116,7 @@ class Rows:
             return self.graded.explanations[index].reason
         stop = STOP_REASONS[self.stop_reasons[index]]
         if stop is StopReason.REACHED:
-            return reached_reason(self.problem.detector)
+            return reached_reason(self.problem.collision)
         excess_m = float(self.found.excess_m[index])
         counts = int(self.attempts[index]), int(self.rejected[index])
         return reason_from_counts(stop, excess_m, *counts, self.problem.settings.timeout_s)
@@ -129,15 +129,13 @@ class Rows:
             stop_reason=STOP_REASONS[self.stop_reasons[index]],
             reason=self.reason(index),
             hint=None,
-            blocking_pairs=count_blocking_pairs(
-                self.problem.robot.pairs(self.problem.detector), self.found.pair_counts[index]
-            ),
+            blocking_pairs=count_blocking_pairs(self.problem.collision.pairs, self.found.pair_counts[index]),
         )
 
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
         problem, story, figures = self.problem, self.explanation(index), self.graded.figures
-        pairs, closest = problem.robot.pairs(problem.detector), int(figures.closest_pair[index])
+        pairs, closest = problem.collision.pairs, int(figures.closest_pair[index])
         q = self.q[index].copy()
         q.setflags(write=False)
         return SolveResult(
@@ -156,7 +154,7 @@ class Rows:
             verified=_verdict(self.verified, index),
             method=ENGINES[self.engines[index]],
             settings=problem.settings,
-            detector=problem.detector.name if problem.detector else "none",
+            detector=problem.collision.name,
             seed=self.seed,
             stream=self.first_stream + index,
             attempts=int(self.attempts[index]),
@@ -165,7 +163,7 @@ class Rows:
             blocking_pairs=story.blocking_pairs,
             solve_seconds=float(self.found.seconds[index]),
             compile_seconds=self.compile_seconds,
-            verify=partial(verify, problem.robot, settings=problem.settings, detector=problem.detector or "none"),
+            verify=partial(verify, problem.robot, settings=problem.settings, collision=problem.collision),
         )
 
 
@@ -192,7 +190,7 @@ def solve_rows(
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
 
     Args:
-        problem: robot, detector, settings and ranges.
+        problem: robot, collision model, settings and ranges.
         targets: what the tool is asked to do.
         seed: same seed, same bits.
         first_stream: stream of the first target.

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Sequence
 
 from ikde.errors import InputError
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice
+from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.grade import Verify
 from ikde.solver.joints import JointValues
@@ -22,7 +23,7 @@ def solve(
     seed: int = 0,
     stream: int = 0,
     method: str = "auto",
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     announce_compile: Callable[[], None] | None = None,
@@ -36,7 +37,8 @@ def solve(
         seed: same seed, same bits. 0 <= seed < 2^64.
         stream: which random stream of the seed; `solve_many` gives its target k stream k.
         method: the engine (`SolveSettings.method`); `"auto"` is ikde's choice.
-        detector: a name, a `Detector`, `"none"` (self-collision is not checked), or None for the robot's default.
+        collision: what is checked: a detector's name, a `Detector`, a `CollisionModel`, `"none"` (self-collision is not
+            checked), or None for the robot's default.
         near: joint values to stay close to: the joint ranges are searched in growing boxes around them.
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
         announce_compile: called once if kernels must be compiled first.
@@ -52,11 +54,11 @@ def solve(
     """
     seed, stream = check_seed(seed), check_stream(stream)
     if near is None and freeze is None:
-        quick = find_quick(robot, settings, method, detector, target.kind)
+        quick = find_quick(robot, settings, method, collision, target.kind)
         result = quick.solve(target, seed, stream, announce_compile) if quick else None
         if result is not None:
             return result
-    problem = make_problem(robot, choose_settings(settings, method), detector=detector, near=near, freeze=freeze)
+    problem = make_problem(robot, choose_settings(settings, method), collision=collision, near=near, freeze=freeze)
     options = {"seed": seed, "first_stream": stream, "announce_compile": announce_compile}
     return solve_rows(problem, [target], strict=True, **options).row(0)
 
@@ -68,7 +70,7 @@ def solve_many(
     *,
     seed: int = 0,
     method: str = "auto",
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     threads: int | None = None,
@@ -89,7 +91,7 @@ def solve_many(
     if threads is not None and threads < 1:
         raise InputError(f"expected a whole number of at least 1, got {threads}", ("threads",))
     chosen = choose_settings(settings, method)
-    problem = make_problem(robot, chosen, detector=detector, near=near, freeze=freeze)
+    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
     return solve_rows(
         problem,
         targets,

@@ -11,8 +11,9 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.spheres import compute_centres
 from ikde.kernels.surface import compute_surface_from_centres, compute_surface_gap, judge_surfaces
-from ikde.model.pack import pack_detector, pack_robot
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.pack import pack_robot
+from ikde.model.robot import Robot
 from ikde.model.surface import M_STEPS, N_STEPS, covering_angle_rad, surface_directions
 from ikde.solver.joints import JointValues, read_configuration
 
@@ -33,7 +34,7 @@ class SurfaceCheck:
 class _Question:
     """What is asked of a configuration: the detector, the points, and how near is a collision."""
 
-    detector: Detector
+    collision: CollisionModel
     directions: Floats  # [K, 3]
     covering_angle: float  # rad
     limit: float  # m
@@ -42,7 +43,7 @@ class _Question:
 def check_surface(
     robot: Robot,
     q: JointValues,
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     *,
     rule: Rule = "eq. 20",
     m_steps: int = M_STEPS,
@@ -57,7 +58,7 @@ def check_surface(
     Args:
         robot: the robot.
         q: joint values [N] or a mapping by joint name; m and rad.
-        detector: a name, a `Detector`, or None for the robot's default.
+        collision: a detector's name, a `Detector`, a `CollisionModel`, or None for the robot's default.
         rule: `"eq. 18"` or `"eq. 20"`.
         m_steps: steps of the angle m over the full circle.
         n_steps: steps of the angle n over the half circle.
@@ -65,8 +66,8 @@ def check_surface(
     Raises:
         InputError: without a detector, and as `check` does.
     """
-    asked = _read_question(robot, detector, rule, m_steps, n_steps)
-    arrays, packed = pack_robot(robot), pack_detector(robot, asked.detector)
+    asked = _read_question(robot, collision, rule, m_steps, n_steps)
+    arrays, packed = pack_robot(robot), asked.collision.arrays
     T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))
     centres = np.empty((3, packed.radius.size))
     points = np.empty((packed.radius.size, len(asked.directions), 3))
@@ -74,13 +75,13 @@ def check_surface(
     compute_centres(packed, T_world_body, centres)
     compute_surface_from_centres(packed, centres, asked.directions, points)
     gap, pair = compute_surface_gap(packed, points, asked.covering_angle)
-    return SurfaceCheck(collision=gap <= asked.limit, gap_m=gap, pair=robot.pairs(asked.detector)[pair])
+    return SurfaceCheck(collision=gap <= asked.limit, gap_m=gap, pair=asked.collision.pairs[pair])
 
 
 def check_surface_many(
     robot: Robot,
     Q: Floats,
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     *,
     rule: Rule = "eq. 20",
     m_steps: int = M_STEPS,
@@ -90,26 +91,26 @@ def check_surface_many(
 
     Most points are passed over: they are farther from the other sphere's surface than a collision allows.
     """
-    asked = _read_question(robot, detector, rule, m_steps, n_steps)
+    asked = _read_question(robot, collision, rule, m_steps, n_steps)
     collides = np.empty(len(Q), dtype=bool)
-    arrays, packed = pack_robot(robot), pack_detector(robot, asked.detector)
+    arrays, packed = pack_robot(robot), asked.collision.arrays
     Q = np.ascontiguousarray(Q, dtype=float)
     judge_surfaces(arrays, packed, asked.directions, asked.covering_angle, asked.limit, Q, collides)
     return collides
 
 
-def _read_question(robot: Robot, detector: str | Detector | None, rule: Rule, m_steps: int, n_steps: int) -> _Question:
+def _read_question(robot: Robot, choice: CollisionChoice, rule: Rule, m_steps: int, n_steps: int) -> _Question:
     if rule not in get_args(Rule):
         raise InputError(f"expected one of {', '.join(get_args(Rule))}, got {rule!r}", ("rule",))
     if m_steps < 3 or n_steps < 2:
         raise InputError(f"expected at least 3 x 2 steps, got {m_steps} x {n_steps}", ("m_steps",))
-    chosen = robot.detector(detector)
-    if chosen is None:
+    chosen = CollisionModel.of(robot, choice)
+    if not chosen.pairs:
         raise InputError("expected a detector, got none", ("detector",))
     covers = rule == "eq. 20"
     return _Question(
-        detector=chosen,
+        collision=chosen,
         directions=surface_directions(m_steps, n_steps),
         covering_angle=covering_angle_rad(m_steps, n_steps) if covers else 0.0,
-        limit=chosen.safe_distance_m if covers else 0.0,
+        limit=chosen.limit_m if covers else 0.0,
     )

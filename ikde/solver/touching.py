@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector, Pairs, Robot
 from ikde.model.validate import NON_ADJACENT
 from ikde.solver.plain import compute_gaps
@@ -36,14 +37,17 @@ class AlwaysTouching:
 
 
 @lru_cache(maxsize=64)
-def find_always_touching(robot: Robot, detector: Detector) -> AlwaysTouching | None:
+def find_always_touching(collision: CollisionModel) -> AlwaysTouching | None:
     """Pairs within the safe distance in each of 1,000 random configurations inside the limits, the same every time."""
+    robot, detector = collision.robot, collision.detector
+    if detector is None:
+        return None
     drawn = np.random.default_rng(0).uniform(robot.lower, robot.upper, (CONFIGURATIONS, len(robot.joints)))
-    pairs, done = robot.pairs(detector), 0
+    pairs, done = collision.pairs, 0
     while pairs and done < CONFIGURATIONS:
-        piece = drawn[done : done + min(_count_at_once(robot, detector, pairs), FIRST if done == 0 else CONFIGURATIONS)]
-        farthest = compute_gaps(robot, detector.spheres, pairs, piece).max(axis=0)
-        pairs = tuple(pair for pair, gap in zip(pairs, farthest, strict=True) if gap <= detector.safe_distance_m)
+        piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
+        farthest = compute_gaps(collision, piece, pairs).max(axis=0)
+        pairs = tuple(pair for pair, gap in zip(pairs, farthest, strict=True) if gap <= collision.limit_m)
         done += len(piece)
     if not pairs:
         return None
@@ -51,10 +55,10 @@ def find_always_touching(robot: Robot, detector: Detector) -> AlwaysTouching | N
     return AlwaysTouching(pairs=pairs, remedy=remedy, lines=lines)
 
 
-def _count_at_once(robot: Robot, detector: Detector, pairs: Pairs) -> int:
+def _count_at_once(collision: CollisionModel, pairs: Pairs) -> int:
     """Configurations for whose gaps there is room."""
     spheres: Counter[str] = Counter()
-    for row in robot.approximations[detector.spheres]:
+    for row in collision.rows:
         spheres[row.component] += row.count
     return max(1, ROOM // max(len(pairs), *(spheres[a] * spheres[b] for a, b in pairs)))
 

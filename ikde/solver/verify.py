@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import Robot
 from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import AXIS, POSE, Target, Targets
 from ikde.solver.families import label_family
@@ -47,8 +48,7 @@ class Verification:
 class Verdicts:
     """The figures of T configurations against a target each, and the verdicts."""
 
-    robot: Robot
-    detector: Detector | None
+    collision: CollisionModel
     Q: Floats  # [T, N]
     position_error_m: Floats  # [T]
     orientation_error_rad: Floats  # [T]
@@ -64,12 +64,11 @@ class Verdicts:
 
     def row(self, index: int) -> Verification:
         """One configuration's."""
-        pairs = self.robot.pairs(self.detector)
+        robot, pairs = self.collision.robot, self.collision.pairs
         gaps = self.gaps_m[index]
         worst_first = np.argsort(gaps, kind="stable") if pairs else []
-        limit = self.detector.safe_distance_m if self.detector else 0.0
-        colliding = tuple(pairs[k] for k in worst_first if gaps[k] <= limit)
-        outside = zip(self.robot.joints, self.outside[index], strict=True)
+        colliding = tuple(pairs[k] for k in worst_first if gaps[k] <= self.collision.limit_m)
+        outside = zip(robot.joints, self.outside[index], strict=True)
         return Verification(
             position_error_m=float(self.position_error_m[index]),
             orientation_error_rad=float(self.orientation_error_rad[index]),
@@ -80,7 +79,7 @@ class Verdicts:
             outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
             within_tolerance=bool(self.within_tolerance[index]),
             accepted=bool(self.accepted[index]),
-            family=label_family(self.robot, self.Q[index]),
+            family=label_family(robot, self.Q[index]),
         )
 
 
@@ -90,7 +89,7 @@ def verify(
     q: JointValues,
     *,
     settings: SolveSettings | None = None,
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     convention: str | None = None,
 ) -> Verification:
     """Grade joint values against a target.
@@ -100,35 +99,34 @@ def verify(
         target: what the tool is asked to do.
         q: joint values [N] or a mapping by joint name; m and rad.
         settings: the tolerances (default 1e-5 m, 1e-4 rad).
-        detector: a name, a `Detector`, `"none"`, or None for the robot's default.
+        collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
         convention: how `q` is counted; None for the robot's own.
 
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
     Q = read_configuration(robot, q, convention)[None]
-    return verify_many(robot, [target], Q, settings or SolveSettings(), robot.detector(detector)).row(0)
+    return verify_many(CollisionModel.of(robot, collision), [target], Q, settings or SolveSettings()).row(0)
 
 
 def verify_many(
-    robot: Robot,
+    collision: CollisionModel,
     targets: Targets | Sequence[Target],
     Q: Floats,
     settings: SolveSettings,
-    detector: Detector | None,
 ) -> Verdicts:
     """Grade configurations `Q` [T, N] in the robot's own convention, a target each; as `verify`, in bulk."""
+    robot = collision.robot
     T_world_tool = compute_frames(robot, Q)[robot.tool]
     targets = Targets.of(targets)
     position = np.linalg.norm(T_world_tool[:, :3, 3] - targets.p_world_tool, axis=1)
     orientation = compute_orientation_errors(targets, T_world_tool[:, :3, :3])
-    gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), Q) if detector else np.empty((len(Q), 0))
-    free = ~np.any(gaps <= (detector.safe_distance_m if detector else 0.0), axis=1)
+    gaps = compute_gaps(collision, Q)
+    free = ~np.any(gaps <= collision.limit_m, axis=1)
     outside = ~((robot.lower <= Q) & (robot.upper >= Q))
     within = (position <= settings.position_tolerance_m) & (orientation <= settings.orientation_tolerance_rad)
     return Verdicts(
-        robot=robot,
-        detector=detector,
+        collision=collision,
         Q=Q,
         position_error_m=position,
         orientation_error_rad=orientation,

@@ -6,7 +6,8 @@ from functools import partial
 
 from ikde.kernels.jit import compile_clock
 from ikde.model.closed_form import find_ur_arm
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice
+from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import SolveSettings
@@ -31,7 +32,7 @@ class Compiled:
     seconds: float
 
 
-def list_stages(robot: Robot, detector: str | Detector | None = None) -> list[Stage]:
+def list_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
     """What there is to compile: a robot's own kernels for each kind of target, and the engines that serve all."""
     T = compute_frames(robot, robot.home)[robot.tool]
     targets = {
@@ -41,7 +42,7 @@ def list_stages(robot: Robot, detector: str | Detector | None = None) -> list[St
     }
     lm, closed, memetic = (SolveSettings(method=m, restarts=1) for m in ("lm", "analytic", "memetic"))
     paper = SolveSettings.for_method("de").with_changes(restarts=1, generations=1)
-    one, many = partial(solve, robot, detector=detector), partial(_solve_many, robot, detector)
+    one, many = partial(solve, robot, collision=collision), partial(_solve_many, robot, collision)
     stages = {}
     for kind, target in targets.items():
         stages[f"lm, one {kind}"] = partial(one, target, lm)
@@ -65,8 +66,6 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
     return done
 
 
-def _solve_many(
-    robot: Robot, detector: str | Detector | None, targets: list[Target], settings: SolveSettings
-) -> object:
+def _solve_many(robot: Robot, collision: CollisionChoice, targets: list[Target], settings: SolveSettings) -> object:
     """Solves whose answers nobody is going to read: no search for reasons."""
-    return solve_many(robot, targets, settings, detector=detector, explain_failures=False)
+    return solve_many(robot, targets, settings, collision=collision, explain_failures=False)

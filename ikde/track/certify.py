@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Robot
 from ikde.model.spheres import expand_rows
 from ikde.model.tree import Tree, build_tree
 from ikde.solver.plain import compute_frames, compute_gaps
@@ -38,27 +39,26 @@ class Certificate:
         return bool(self.clearance_m > 0.0)
 
 
-def certify(robot: Robot, q: Floats, detector: Detector | None) -> Certificate | None:
+def certify(collision: CollisionModel, q: Floats) -> Certificate | None:
     """Bound the clearance of the motion through `q` [M + 1, N]; None without a pair or a segment: not checked."""
-    if len(q) < 2 or not robot.pairs(detector):
+    if len(q) < 2 or not collision.pairs:
         return None
-    segments = bound_segments(robot, detector, q)
+    segments = bound_segments(collision, q)
     return Certificate(clearance_m=float(segments.min()), segment_m=segments)
 
 
-def bound_segments(robot: Robot, detector: Detector | None, q: Floats) -> Floats:
+def bound_segments(collision: CollisionModel, q: Floats) -> Floats:
     """Lower bound [M] of the clearance in each segment between rows of `q` [M + 1, N]; inf without a pair."""
-    return bound_pairs(robot, detector, q).min(axis=1, initial=np.inf)
+    return bound_pairs(collision, q).min(axis=1, initial=np.inf)
 
 
-def bound_pairs(robot: Robot, detector: Detector | None, q: Floats) -> Floats:
+def bound_pairs(collision: CollisionModel, q: Floats) -> Floats:
     """The same of each pair [M, P]."""
-    pairs = robot.pairs(detector)
-    lower = np.full((max(len(q) - 1, 0), len(pairs)), np.inf)
-    if detector is None or not lower.size:
+    lower = np.full((max(len(q) - 1, 0), len(collision.pairs)), np.inf)
+    if not lower.size:
         return lower
-    radii = travel_radii(robot, detector, np.abs(q).max(axis=0))
-    gaps = compute_gaps(robot, detector.spheres, pairs, q)
+    radii = travel_radii(collision, np.abs(q).max(axis=0))
+    gaps = compute_gaps(collision, q)
     least = gaps.min()
     goal = max(least - max(SHARP_M, SHARP * abs(least)), 0.5 * least if least > 0.0 else -np.inf)
     which, start, end = np.arange(len(lower)), q[:-1], q[1:]
@@ -72,24 +72,24 @@ def bound_pairs(robot: Robot, detector: Detector | None, q: Floats) -> Floats:
             break
         which, start, end, before, after = which[weak], start[weak], end[weak], before[weak], after[weak]
         middle = 0.5 * (start + end)
-        between = compute_gaps(robot, detector.spheres, pairs, middle)
+        between = compute_gaps(collision, middle)
         which = np.concatenate([which, which])
         start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
         before, after = np.concatenate([before, between]), np.concatenate([between, after])
     return lower
 
 
-def travel_radii(robot: Robot, detector: Detector, farthest: Floats) -> Floats:
+def travel_radii(collision: CollisionModel, farthest: Floats) -> Floats:
     """By how much a joint can change each pair's gap [P, N]: m a rad of a turn, 1 for a slide, else 0.
 
     `farthest` [N] is how far joints are from 0 at most, m and rad: a turn moves what a slide has carried outwards more.
     """
-    tree = build_tree(robot)
+    robot, tree = collision.robot, build_tree(collision.robot)
     centres: dict[str, list[tuple[int, Floats]]] = {}
-    for sphere in expand_rows(robot, tree, detector.spheres):
+    for sphere in expand_rows(collision.robot, tree, collision.detector.spheres) if collision.detector else ():
         centres.setdefault(sphere.component, []).append((sphere.body, sphere.p_body_sphere))
-    radii = np.zeros((len(robot.pairs(detector)), len(robot.joints)))
-    for row, names in zip(radii, robot.pairs(detector), strict=True):
+    radii = np.zeros((len(collision.pairs), len(robot.joints)))
+    for row, names in zip(radii, collision.pairs, strict=True):
         chains = [_chain(tree, centres[name][0][0]) for name in names]
         for name, chain, other in zip(names, chains, chains[::-1], strict=True):
             for body in chain:

@@ -92,7 +92,7 @@ class Continuation:
                 best = found
             if found.stop is None:
                 break
-            safe = follower.detector.safe_distance_m if follower.detector else 0.0
+            safe = follower.collision.limit_m
             follower = follower.with_track(margin=safe + WIDER * (follower.track.margin - safe))
         assert best is not None
         return best
@@ -110,7 +110,7 @@ class Continuation:
         """What the solver says about one sample by itself."""
         if sample not in self.asked:
             follower = self.follower
-            told = {"detector": follower.detector or "none", "freeze": self.frozen}
+            told = {"collision": follower.collision, "freeze": self.frozen}
             settings = follower.limits.tolerances
             self.asked[sample] = solve(follower.robot, follower.path.targets()[sample], settings, **told)
         return self.asked[sample]
@@ -130,10 +130,10 @@ class Continuation:
 def cut_at_doubt(found: Found) -> Found:
     """The same up to the first segment that may touch on its way."""
     follower = found.follower
-    bounds = bound_pairs(follower.robot, follower.detector, found.q)
+    bounds = bound_pairs(follower.collision, found.q)
     doubtful = next((k for k, bound in enumerate(bounds.min(axis=1, initial=np.inf)) if not bound > 0.0), None)
     if doubtful is None:
         return found
-    pair = follower.robot.pairs(follower.detector)[int(np.argmin(bounds[doubtful]))]
+    pair = follower.collision.pairs[int(np.argmin(bounds[doubtful]))]
     stop = tell_uncertified(follower, doubtful + 1, pair)
     return replace(found, course=replace(found.course, last=doubtful), stop=stop)

@@ -6,8 +6,9 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
+from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.planar_base import find_planar_base
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
@@ -34,7 +35,7 @@ def follow_path(
     limits: MotionLimits | None = None,
     start: JointValues | None = None,
     seed: int = 0,
-    detector: str | Detector | None = None,
+    collision: CollisionChoice = None,
     freeze: Freeze | None = None,
     settings: TrackSettings | None = None,
     announce_compile: Callable[[], None] | None = None,
@@ -51,7 +52,7 @@ def follow_path(
         limits: None for those of the paper (`MotionLimits.of`).
         start: the configuration at the first pose [N], or by name; None for the one that `continuation` finds best.
         seed: same seed, same bits.
-        detector: a name, a `Detector`, `"none"`, or None for the robot's default.
+        collision: as for `ikde.solve`.
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
         settings: of that method: `ContinuationSettings`, `OptimizedSettings` or `TypicalSettings`; None for its
             usual ones.
@@ -70,31 +71,30 @@ def follow_path(
     check_method(method, settings)
     drive = choose_drive(robot, drive, method)
     limits = MotionLimits.of(robot) if limits is None else limits.check(robot)
-    chosen = robot.detector(detector)
+    model = CollisionModel.of(robot, collision)
     if start is not None:
         start = read_start(robot, start)
-    problem = make_problem(robot, SolveSettings(), detector=chosen or "none", near=start, freeze=freeze)
+    problem = make_problem(robot, SolveSettings(), collision=model, near=start, freeze=freeze)
     frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
-    follower = make_follower(robot, path, drive=drive, limits=limits, detector=chosen, frozen=problem.frozen)
+    follower = make_follower(model, path, drive=drive, limits=limits, frozen=problem.frozen)
     wanted = settings if isinstance(settings, ContinuationSettings) else ContinuationSettings()
     search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), settings=wanted)
     followed = follow_by(method, search, start, settings, announce_compile)
-    return grade_motion(robot, path, followed, drive=drive, method=method, limits=limits, detector=chosen)
+    return grade_motion(model, path, followed, drive=drive, method=method, limits=limits)
 
 
 def grade_motion(
-    robot: Robot,
+    collision: CollisionModel,
     path: ToolPath,
     followed: Followed,
     *,
     drive: Drive,
     method: str,
     limits: MotionLimits,
-    detector: Detector | None,
 ) -> Trajectory:
     """The motion with what the judge and the certificate say about it."""
-    q = followed.q
-    graded = verify_track(robot, path, q, drive=drive, limits=limits, detector=detector)
+    robot, q = collision.robot, followed.q
+    graded = verify_track(collision, path, q, drive=drive, limits=limits)
     deviation_m, deviation_rad = measure_deviation(robot, path, q, drive)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
@@ -112,7 +112,7 @@ def grade_motion(
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,
         verification=graded,
-        certificate=certify(robot, q, detector),
+        certificate=certify(collision, q),
         deviation_m=deviation_m,
         deviation_rad=deviation_rad,
     )

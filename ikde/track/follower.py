@@ -9,9 +9,10 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, TargetArrays, TrackArrays
 from ikde.kernels.tracking import make_sample, track_span
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.planar_base import base_carries
-from ikde.model.robot import FARTHEST, Detector, Robot
+from ikde.model.robot import FARTHEST, Robot
 from ikde.solver.engines.pool import rotation_length_m
 from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
@@ -60,8 +61,7 @@ class Course:
 class Follower:
     """Everything that following one path depends on but the start and the use of the null space."""
 
-    robot: Robot
-    detector: Detector | None
+    collision: CollisionModel
     path: ToolPath
     limits: MotionLimits
     frozen: tuple[str, ...]
@@ -69,6 +69,11 @@ class Follower:
     track: TrackArrays
     target: TargetArrays
     room: Any
+
+    @property
+    def robot(self) -> Robot:
+        """The robot of the collision model."""
+        return self.collision.robot
 
     @property
     def size(self) -> int:
@@ -110,7 +115,7 @@ class Follower:
     def _run(self, course: Course, first: int, last: int) -> int:
         reached, _ = track_span(
             pack_robot(self.robot),
-            pack_detector(self.robot, self.detector),
+            self.collision.arrays,
             self.drive,
             self.track,
             self.target,
@@ -127,46 +132,44 @@ class Follower:
 
 
 def make_follower(
-    robot: Robot,
+    collision: CollisionModel,
     path: ToolPath,
     *,
     drive: str,
     limits: MotionLimits,
-    detector: Detector | None,
     frozen: tuple[str, ...] = (),
 ) -> Follower:
     """Pack robot, path and limits; raises `InputError` for what does not fit the robot."""
+    robot = collision.robot
     limits.check(robot)
     packed = pack_drive(robot, drive, limits, path.dt_s, frozen)
-    if packed.base[0] >= 0 and detector and not base_carries(robot, detector):
-        message = "a base on arcs must carry all that the detector looks at; say omnidirectional, or leave out the rest"
+    if packed.base[0] >= 0 and not base_carries(collision):
+        message = "a base on arcs must carry all that can collide; say omnidirectional, or leave out the rest"
         raise InputError(message, ("detector",))
-    arrays, seen = pack_robot(robot), pack_detector(robot, detector)
     return Follower(
-        robot=robot,
-        detector=detector,
+        collision=collision,
         path=path,
         limits=limits,
         frozen=frozen,
         drive=packed,
-        track=pack_track(robot, limits, detector),
+        track=pack_track(collision, limits),
         target=pack_targets(path.targets()),
-        room=make_sample(arrays, seen, len(robot.joints), len(packed.largest)),
+        room=make_sample(pack_robot(robot), collision.arrays, len(robot.joints), len(packed.largest)),
     )
 
 
-def pack_track(robot: Robot, limits: MotionLimits, detector: Detector | None) -> TrackArrays:
+def pack_track(collision: CollisionModel, limits: MotionLimits) -> TrackArrays:
     """What the kernels are told about limits and tolerances."""
+    robot, safe = collision.robot, collision.limit_m
     ranges = np.array([robot.lower, robot.upper])
     if limits.ranges:
         inside = np.minimum(ROUNDING, 0.5 * (ranges[1] - ranges[0]))
         ranges = ranges + np.array([inside, -inside])
     else:
         ranges = np.array([np.full_like(robot.lower, -FARTHEST), np.full_like(robot.upper, FARTHEST)])
-    safe = detector.safe_distance_m if detector else 0.0
     return TrackArrays(
         ranges=ranges,
-        reach=safe + REACH_M if detector else -np.inf,
+        reach=safe + REACH_M if collision.pairs else -np.inf,
         margin=safe + MARGIN_M,
         rotation_length=rotation_length_m(robot),
         position_goal=min(GOAL_M, SHARE * limits.position_error_m),

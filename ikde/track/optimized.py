@@ -20,7 +20,7 @@ from ikde.kernels.step_evolution import (
     evolve_sample,
     make_step_workspace,
 )
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.model.planar_base import find_planar_base
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import require
@@ -86,7 +86,7 @@ def follow_optimized(
     """Sample after sample from `start` [N] at the path's first pose, up to the first that no population solves."""
     settings = settings or OptimizedSettings()
     robot, samples = follower.robot, follower.path.samples
-    packed, detector = pack_robot(robot), pack_detector(robot, follower.detector)
+    packed, detector = pack_robot(robot), follower.collision.arrays
     search = pack_step_search(follower, settings)
     work = make_step_workspace(packed, detector, len(start), follower.size, settings.population)
     q, steps = np.zeros((samples + 1, len(start))), np.zeros((samples + 1, follower.size))
@@ -140,7 +140,7 @@ def tell_unsolved(
         text = f"{when}: no step within the accelerations stays inside the joint ranges and can brake before they end"
         return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text)
     if verdict == COLLIDES:
-        names = follower.robot.pairs(follower.detector)[pair]  # type: ignore[arg-type]  # a pair has a detector
+        names = follower.collision.pairs[pair]
         text = f"{when}: {names[0]} and {names[1]} collide in {told}"
         return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=names)
     if verdict == LIMITED:

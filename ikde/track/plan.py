@@ -10,9 +10,10 @@ import numpy as np
 from ikde.errors import InputError, nearest
 from ikde.files.entries import UnitsEntry
 from ikde.files.placed import placed
-from ikde.files.robot_entries import read_detector, to_si, with_ranges
+from ikde.files.robot_entries import read_collision, to_si, with_ranges
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import WORLD, Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import WORLD, Robot
 from ikde.solver.joints import JointValues, joints_outside
 from ikde.track.drive import find_wheels, usual_drive
 from ikde.track.limits import MotionLimits
@@ -30,14 +31,12 @@ class TrackPlan:
     """Everything about a track but where its motion goes."""
 
     name: str
-    robot: Robot
-    """With the ranges that the file asks for."""
+    collision: CollisionModel
+    """What counts as self-collision, of the robot with the ranges that the file asks for."""
     path: ToolPath
     drive: Drive
     method: TrackMethod
     limits: MotionLimits
-    detector: Detector | None
-    """What counts as self-collision; None for nothing."""
     start: Floats | None
     """Configuration to start in [N], m and rad; None to choose one."""
     seed: int
@@ -47,6 +46,11 @@ class TrackPlan:
     """What is wrong at a key of the file, as an error in its place."""
     replaced: tuple[str, ...] = ()
     """Keys of which it no longer has what the file says."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot of the collision model."""
+        return self.collision.robot
 
     def __repr__(self) -> str:
         told = f"{self.robot.name}, {self.method}, {self.drive}, {self.path.samples} points"
@@ -92,15 +96,14 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
     drive = _read_drive(spec, robot)
     name = spec.name or (Path(file).stem if file else "track")
     with placed("detector"):
-        detector = read_detector(robot, spec.detector, spec.units)
+        collision = read_collision(robot, spec.detector, spec.units)
     return TrackPlan(
         name=name,
-        robot=robot,
+        collision=collision,
         path=make_path(spec, name, folder),
         drive=drive,
         method=spec.method,
         limits=_read_limits(spec, robot, drive),
-        detector=detector,
         start=_read_start(spec, robot),
         seed=spec.seed,
         file=file,

@@ -8,7 +8,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.kernels.tracking import REACHED, track_sample
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import FARTHEST
 from ikde.solver.digits import at_least
@@ -94,7 +94,7 @@ def _try(follower: Follower, course: Course, sample: int, scale: Floats | float 
     q, step = np.zeros_like(course.q[0]), np.zeros(follower.size)
     status, _, _ = track_sample(
         pack_robot(follower.robot),
-        pack_detector(follower.robot, follower.detector),
+        follower.collision.arrays,
         follower.drive,
         follower.track,
         follower.target,
@@ -111,11 +111,11 @@ def _try(follower: Follower, course: Course, sample: int, scale: Floats | float 
 
 
 def _without_collision(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    found = _try(follower.with_track(reach=-np.inf), course, sample) if follower.detector else None
-    if found is None or follower.detector is None:
+    pairs = follower.collision.pairs
+    found = _try(follower.with_track(reach=-np.inf), course, sample) if pairs else None
+    if found is None:
         return None
-    pairs = follower.robot.pairs(follower.detector)
-    gaps = compute_gaps(follower.robot, follower.detector.spheres, pairs, found[0])
+    gaps = compute_gaps(follower.collision, found[0])
     worst = int(np.argmin(gaps))
     pair, gap = pairs[worst], 1e3 * float(gaps[worst])
     least = 1e3 * follower.track.margin

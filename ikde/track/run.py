@@ -48,7 +48,7 @@ def run_track(
             limits=plan.limits,
             start=plan.start,
             seed=plan.seed,
-            detector=plan.detector or "none",
+            collision=plan.collision,
             announce_compile=announce_compile,
         )
     except InputError as error:

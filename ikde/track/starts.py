@@ -27,7 +27,7 @@ Frozen = Mapping[str, float]
 def draw_starts(follower: Follower, frozen: Frozen, seed: int, draws: int = DRAWS) -> tuple[Floats, SolveResult]:
     """Starts [S, N], all different and within (18), and what the solver says about the first pose."""
     robot, target = follower.robot, follower.path.targets()[0]
-    told = {"detector": follower.detector or "none", "freeze": frozen}
+    told = {"collision": follower.collision, "freeze": frozen}
     first = solve(robot, target, EXACT, seed=seed, **told)
     if not first.reached:
         return np.empty((0, len(robot.joints))), first
@@ -76,8 +76,8 @@ def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
     moved = [name for name, value in frozen.items() if abs(q[robot.joint_names.index(name)] - value) > ROUNDING]
     if moved:
         raise InputError(f"{', '.join(moved)} is not where it is frozen", ("start",))
-    detector = follower.detector or "none"
-    grade = verify(robot, target, q, settings=limits.tolerances, detector=detector)
+    collision = follower.collision
+    grade = verify(robot, target, q, settings=limits.tolerances, collision=collision)
     if grade.self_collision:
         a, b = grade.colliding_pairs[0]
         raise InputError(f"{a} and {b} collide", ("start",))
@@ -85,7 +85,7 @@ def settle_start(follower: Follower, q: Floats, frozen: Frozen) -> Floats:
         raise InputError(f"the tool is farther than {limits.farthest_m:g} m from {limits.center}", ("start",))
     if grade.within_tolerance:
         return q
-    settled = solve(robot, target, EXACT, method="lm", near=q, detector=detector, freeze=frozen)
+    settled = solve(robot, target, EXACT, method="lm", near=q, collision=collision, freeze=frozen)
     if not settled.reached or np.abs(settled.q - q).max() > LARGEST_SHIFT:
         far = f"{1e3 * grade.position_error_m:.3g} mm and {grade.orientation_error_rad:.3g} rad"
         raise InputError(f"expected a configuration at the path's first pose, got one {far} away", ("start",))

@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Robot
 from ikde.track.certify import Certificate
 from ikde.track.dexterity import smallest_singular_values
 from ikde.track.drive import find_wheels, implied_wheel_speed
@@ -22,11 +23,15 @@ Worst = tuple[str, float, float]
 class TrackSummary:
     """A motion with its figures, at its samples 0 .. M and between them."""
 
-    robot: Robot
-    detector: Detector | None
+    collision: CollisionModel
     trajectory: Trajectory
     singular_values: Floats
     """[M + 1] smallest of the arm's Jacobian, m and rad, in what the path asks for."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that moves."""
+        return self.collision.robot
 
     @property
     def verification(self) -> TrackVerification:
@@ -69,16 +74,15 @@ class TrackSummary:
     @cached_property
     def colliding(self) -> list[set[str]]:
         """Components seen within the safe distance of another, for each sample; none without a detector."""
-        safe = self.detector.safe_distance_m if self.detector else 0.0
-        pairs = self.robot.pairs(self.detector)
-        touching = self.verification.gaps_m <= safe
+        pairs = self.collision.pairs
+        touching = self.verification.gaps_m <= self.collision.limit_m
         return [{name for pair in np.flatnonzero(row) for name in pairs[pair]} for row in touching]
 
     @property
     def closest_pair(self) -> tuple[str, str] | None:
         """The pair with the smallest clearance at any sample."""
         gaps = self.verification.gaps_m
-        return self.robot.pairs(self.detector)[int(np.argmin(gaps.min(axis=0)))] if gaps.size else None
+        return self.collision.pairs[int(np.argmin(gaps.min(axis=0)))] if gaps.size else None
 
     @property
     def steps(self) -> Floats:
@@ -145,8 +149,8 @@ class TrackSummary:
         return float(self.verification.distance_m.max()) if asked else None
 
 
-def summarise_track(robot: Robot, detector: Detector | None, trajectory: Trajectory) -> TrackSummary:
-    """A motion with its singular values, of the robot and the detector that it was made with."""
+def summarise_track(collision: CollisionModel, trajectory: Trajectory) -> TrackSummary:
+    """A motion with its singular values, of the collision model that it was made with."""
     base, orientation = trajectory.base_joints, trajectory.path.orientation
-    values = smallest_singular_values(robot, trajectory.q, base, orientation)
-    return TrackSummary(robot=robot, detector=detector, trajectory=trajectory, singular_values=values)
+    values = smallest_singular_values(collision.robot, trajectory.q, base, orientation)
+    return TrackSummary(collision=collision, trajectory=trajectory, singular_values=values)

@@ -14,7 +14,7 @@ from ikde.kernels.arrays import Floats, SearchArrays
 from ikde.kernels.evolution import IGNORE, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.model.planar_base import find_planar_base
 from ikde.solver.settings import require
 from ikde.track.check_settings import LEAST_POPULATION, check_counts, check_numbers
@@ -58,7 +58,7 @@ def follow_typical(
     """The best of every sample's last generation, whatever it is worth: q [K + 1, N], and the seconds of each [K]."""
     settings = settings or TypicalSettings()
     robot, samples = follower.robot, follower.path.samples
-    packed, detector = pack_robot(robot), pack_detector(robot, follower.detector)
+    packed, detector = pack_robot(robot), follower.collision.arrays
     search = pack_search(follower, settings)
     work = make_workspace(packed, detector, len(start), settings.population)
     q, seconds = np.empty((samples + 1, len(start))), np.empty(samples)

@@ -11,7 +11,8 @@ from functools import cached_property
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Robot
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import Bools, compute_orientation_errors
 from ikde.track.drive import base_twist, find_wheels, step_base, wheel_speeds
@@ -99,12 +100,13 @@ class TrackVerification:
 
 
 def verify_track(
-    robot: Robot, path: ToolPath, q: Floats, *, drive: str, limits: MotionLimits, detector: Detector | None
+    collision: CollisionModel, path: ToolPath, q: Floats, *, drive: str, limits: MotionLimits
 ) -> TrackVerification:
     """Grade the joint values `q` [M + 1, N] of the samples 0 .. M, M <= K, against path and limits.
 
     Raises `InputError` for limits that do not fit the robot.
     """
+    robot = collision.robot
     limits.check(robot)
     dt_s = path.dt_s
     targets = path.targets()[: len(q)]
@@ -119,7 +121,7 @@ def verify_track(
     if base[0] >= 0:
         v, omega, across = base_twist(q[:-1, base], q[1:, base], dt_s)
     wheels = wheel_speeds(robot.wheels, v, omega) if robot.wheels else np.full((len(v), 2), np.nan)
-    gaps = compute_gaps(robot, detector.spheres, robot.pairs(detector), q) if detector else np.empty((len(q), 0))
+    gaps = compute_gaps(collision, q)
     centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
     driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)
@@ -142,17 +144,17 @@ def verify_track(
             acceleration=_count_above(np.diff(driven, axis=0) / dt_s, limits.acceleration),
             wheel=_count_above(wheels, limits.wheel_speed_rad_s),
             distance=_count_above(distance, limits.farthest_m),
-            collision=_count_collisions(gaps, detector),
+            collision=_count_collisions(gaps, collision),
             sideways=int((np.abs(across) > ROUNDING).sum()),
         ),
     )
 
 
-def _count_collisions(gaps_m: Floats, detector: Detector | None) -> int | None:
+def _count_collisions(gaps_m: Floats, collision: CollisionModel) -> int | None:
     """Samples of `gaps_m` [M + 1, P] in collision; None if no pair was compared."""
-    if detector is None or not gaps_m.shape[1]:
+    if not collision.pairs:
         return None
-    return int((gaps_m <= detector.safe_distance_m).any(axis=1).sum())
+    return int((gaps_m <= collision.limit_m).any(axis=1).sum())
 
 
 def _count_above(values: Floats, limit: Floats | float | None) -> int:

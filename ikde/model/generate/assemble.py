@@ -8,11 +8,11 @@ import numpy as np
 from ikde.kernels import analytic, lm
 from ikde.kernels.tables import LANES
 from ikde.model.closed_form import find_ur_arm
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import count_sphere_pairs, list_tests
 from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps
 from ikde.model.generate.proofs import drop_implied, drop_proved, proof_margin
-from ikde.model.pack import pack_detector, pack_robot
-from ikde.model.robot import Detector, Robot
+from ikde.model.pack import pack_robot
 
 SWAPPED = re.compile(r"^from ikde\.kernels\.tables import .*\n", re.MULTILINE)
 OWN_IMPORTS = ("from ikde.kernels.jit import leaf_kernel", "from ikde.kernels.trig import sin_cos")
@@ -23,9 +23,10 @@ def make_buffers(robot, detector, joints):
 '''
 
 
-def format_module(robot: Robot, detector: Detector | None, kind: str) -> str:
+def format_module(collision: CollisionModel, kind: str) -> str:
     """The text of a module."""
-    arrays, packed, margin = pack_robot(robot), pack_detector(robot, detector), proof_margin(robot, detector)
+    robot, packed, margin = collision.robot, collision.arrays, proof_margin(collision)
+    arrays = pack_robot(robot)
     every = list_tests(packed)
     needed = drop_implied(every)
     tests = drop_proved(arrays, needed, margin, robot.lower, robot.upper) if np.isfinite(margin) else needed

@@ -19,21 +19,21 @@ import numpy as np
 from ikde.kernels import cache_folder
 from ikde.kernels.cache_files import discard, read_file, read_sealed, write_file, write_sealed
 from ikde.model.closed_form import find_ur_arm
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.proofs import proof_margin
-from ikde.model.pack import pack_detector, pack_robot
-from ikde.model.robot import Detector, Robot
+from ikde.model.pack import pack_robot
 
 
 @lru_cache(maxsize=256)
-def load_module(robot: Robot, detector: Detector | None, kind: str) -> ModuleType:
+def load_module(collision: CollisionModel, kind: str) -> ModuleType:
     """The module for targets of one kind (`position`, `axis`, `pose`); written first if the cache has none yet.
 
     Without a cache it has no file, and every process compiles for itself.
     """
     if not cache_folder.CACHE_IS_WRITABLE:  # what lies there may be anybody's
-        return _run(_format(robot, detector, kind), None)
-    index = robots_folder() / f"{digest_inputs(robot, detector, kind)}.index"
-    return _run(*(_find(index) or _write(index, _format(robot, detector, kind))))
+        return _run(_format(collision, kind), None)
+    index = robots_folder() / f"{digest_inputs(collision, kind)}.index"
+    return _run(*(_find(index) or _write(index, _format(collision, kind))))
 
 
 def robots_folder() -> Path:
@@ -51,12 +51,13 @@ def kernel_kind() -> Literal["written", "tables"]:
     return "tables" if os.environ.get("IKDE_KERNELS") == "tables" else "written"
 
 
-def digest_inputs(robot: Robot, detector: Detector | None, kind: str) -> str:
+def digest_inputs(collision: CollisionModel, kind: str) -> str:
     """SHA-256, hex, of all that a text depends on; no name is."""
+    robot = collision.robot
     closed = kind == "pose" and find_ur_arm(robot) is not None
-    words = (kind, closed, proof_margin(robot, detector), cache_folder.CACHE_FOLDER.name, _own_digest())
+    words = (kind, closed, proof_margin(collision), cache_folder.CACHE_FOLDER.name, _own_digest())
     digest = hashlib.sha256(repr(words).encode())
-    for array in (*pack_robot(robot), *pack_detector(robot, detector)[1:], robot.lower, robot.upper):
+    for array in (*pack_robot(robot), *collision.arrays[1:], robot.lower, robot.upper):
         digest.update(repr(np.shape(array)).encode() + np.asarray(array).tobytes())
     return digest.hexdigest()
 
@@ -70,11 +71,11 @@ def _own_digest() -> str:
     return digest.hexdigest()
 
 
-def _format(robot: Robot, detector: Detector | None, kind: str) -> bytes:
+def _format(collision: CollisionModel, kind: str) -> bytes:
     """The text; the generator is imported only when it has something to write."""
     from ikde.model.generate.assemble import format_module
 
-    return format_module(robot, detector, kind).encode()
+    return format_module(collision, kind).encode()
 
 
 def _find(index: Path) -> tuple[bytes, Path] | None:

@@ -8,9 +8,9 @@ half-widths can move the spheres is free of contact; other boxes are halved. Wha
 import numpy as np
 
 from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Floats, RobotArrays
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import Test
 from ikde.model.generate.lattice import Lattice
-from ikde.model.robot import Detector, Robot
 
 BOXES = 4_000  # looked at for one test before it stays
 SAMPLES = 512
@@ -18,10 +18,9 @@ MARGINS_M = (0.01, 0.1, 1.0)  # proofs hold up to such a safe distance; beyond t
 LARGEST_JOINTS = 4  # between two bodies; beyond it a proof is hopeless
 
 
-def proof_margin(robot: Robot, detector: Detector | None) -> float:
+def proof_margin(collision: CollisionModel) -> float:
     """What proofs must allow for."""
-    distance = detector.safe_distance_m if detector else 0.0
-    return next((margin for margin in MARGINS_M if distance < margin), np.inf)
+    return next((margin for margin in MARGINS_M if collision.limit_m < margin), np.inf)
 
 
 def drop_implied(tests: list[Test]) -> list[Test]:

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ikde.model.robot import Detector, Robot
+from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_pose
@@ -16,12 +17,12 @@ SIZE_IN, DPI = (6.4, 5.7), 84
 def draw_robot(
     robot: Robot,
     q: Sequence[float],
-    detector: str | Detector,
+    choice: CollisionChoice,
     *,
     caption: str,
     target_mm: Sequence[float] | None = None,
 ) -> Figure:
     """The robot at `q` as a detector sees it: arm red, platform blue, colliding components black."""
     target = None if target_mm is None else Target(np.array(target_mm) * 1e-3)
-    figure = plot_pose(robot, np.array(q), detector=robot.detector(detector), target=target, size_in=SIZE_IN)
+    figure = plot_pose(CollisionModel.of(robot, choice), np.array(q), target=target, size_in=SIZE_IN)
     return Figure(image=to_png(figure, dpi=DPI), alt=caption, caption=caption)

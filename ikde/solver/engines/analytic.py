@@ -25,7 +25,7 @@ class Analytic:
         if (question.targets.kind != POSE).any():
             raise InputError("the closed form needs a whole pose: a position and an orientation", ("method",))
         self._arm = find_ur_arm(problem.robot)
-        self._kernels = load_kernels(problem.robot, problem.detector, "pose")
+        self._kernels = load_kernels(problem.collision, "pose")
         self._seeds = make_seeds(problem, "pose")
 
     def prepare(self) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Ints
 from ikde.kernels.lanes import solve_lanes
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.solver.engines.engine import Question
 from ikde.solver.problem import ROUNDING, Problem, pack_search
 
@@ -20,7 +20,7 @@ class DifferentialEvolution:
 
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
-        detector = pack_detector(problem.robot, problem.detector)
+        detector = problem.collision.arrays
         self._detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)
         self._robot, self._search = pack_robot(problem.robot), pack_search(problem)
         self.rows_per_call = _lanes_per_call(problem)

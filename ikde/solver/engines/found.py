@@ -34,7 +34,7 @@ class Found:
 
 def make_found(problem: Problem, count: int) -> Found:
     """Buffers for so many targets, of which nothing is found yet."""
-    pairs = len(problem.robot.pairs(problem.detector))
+    pairs = len(problem.collision.pairs)
     return Found(
         q=np.zeros((count, len(problem.robot.joints))),
         score=np.full((count, 2), np.inf),

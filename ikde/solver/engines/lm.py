@@ -21,7 +21,7 @@ class DampedLeastSquares:
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
         names = {kind: KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
-        self._kernels = {kind: load_kernels(problem.robot, problem.detector, name) for kind, name in names.items()}
+        self._kernels = {kind: load_kernels(problem.collision, name) for kind, name in names.items()}
         self._settings = {
             kind: (make_ranges(problem), make_descent(problem, name), make_seeds(problem, name))
             for kind, name in names.items()

@@ -4,7 +4,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Ints, MemeticArrays
 from ikde.kernels.memetic import solve_memetic_lane
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.solver.engines.engine import Question, make_descent
 from ikde.solver.problem import ROUNDING, pack_search
 
@@ -18,7 +18,7 @@ class Memetic:
 
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
-        detector = pack_detector(problem.robot, problem.detector)
+        detector = problem.collision.arrays
         self._arrays = (
             pack_robot(problem.robot),
             detector._replace(safe_distance=detector.safe_distance + ROUNDING),

@@ -11,11 +11,12 @@ import numpy as np
 from ikde.kernels import cache_folder
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import digest_inputs, kernel_kind, load_module, robots_folder
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.model.planar_base import NO_BASE, find_planar_base
 from ikde.model.reach import arm_length_m
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import Robot
 from ikde.solver.engines import pool_file
 from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem
 
@@ -41,16 +42,16 @@ SHORTEST_M = 1e-3
 Kernels = tuple[Any, Any, Any]
 
 
-def load_kernels(robot: Robot, detector: Detector | None, kind: str) -> Kernels:
+def load_kernels(collision: CollisionModel, kind: str) -> Kernels:
     """The module written for a robot, and what it takes in place of tables: nothing, and the safe distance in m.
 
     With `$IKDE_KERNELS` set to `tables`, the data-driven kernels and the tables.
     """
-    packed = pack_detector(robot, detector)
+    packed = collision.arrays
     safe_distance = packed.safe_distance + ROUNDING
     if runs_on_tables():
-        return _load_tables(), pack_robot(robot), packed._replace(safe_distance=safe_distance)
-    return load_module(robot, detector, kind), 0, safe_distance
+        return _load_tables(), pack_robot(collision.robot), packed._replace(safe_distance=safe_distance)
+    return load_module(collision, kind), 0, safe_distance
 
 
 def runs_on_tables() -> bool:
@@ -71,30 +72,30 @@ def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     if problem.near is not None:
         return sort_pool(problem.robot, kind, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
     ranges = tuple(zip(problem.lower.tolist(), problem.upper.tolist(), strict=True))
-    return _find_pool(problem.robot, problem.detector, kind, ranges)
+    return _find_pool(problem.collision, kind, ranges)
 
 
 @lru_cache(maxsize=32)
-def _find_pool(
-    robot: Robot, detector: Detector | None, kind: str, ranges: tuple[tuple[float, float], ...]
-) -> SeedArrays:
-    """The pool of a robot, a detector and joint ranges; that of the joint limits lies in the cache folder."""
+def _find_pool(collision: CollisionModel, kind: str, ranges: tuple[tuple[float, float], ...]) -> SeedArrays:
+    """The pool of a collision model and joint ranges; that of the joint limits lies in the cache folder."""
+    robot = collision.robot
     lower, upper = np.array(ranges).T.copy()
     whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
     if not whole or runs_on_tables() or not cache_folder.CACHE_IS_WRITABLE:
-        return draw_pool(robot, detector, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
-    path = robots_folder() / f"{digest_pool(robot, detector, kind)}.pool"
+        return draw_pool(collision, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
+    path = robots_folder() / f"{digest_pool(collision, kind)}.pool"
     seeds = pool_file.load_pool(path)
     if seeds is None:
-        seeds = draw_pool(robot, detector, kind, lower, upper, DRAWN)
+        seeds = draw_pool(collision, kind, lower, upper, DRAWN)
         pool_file.save_pool(path, seeds)
     return seeds
 
 
-def digest_pool(robot: Robot, detector: Detector | None, kind: str) -> str:
+def digest_pool(collision: CollisionModel, kind: str) -> str:
     """SHA-256, hex, of all that the pool within the joint limits depends on; no name is."""
-    base, (_, _, distance) = find_base(robot, robot.lower, robot.upper), load_kernels(robot, detector, kind)
-    words = (digest_inputs(robot, detector, kind), distance, base.tolist(), rotation_length_m(robot))
+    robot = collision.robot
+    base, (_, _, distance) = find_base(robot, robot.lower, robot.upper), load_kernels(collision, kind)
+    words = (digest_inputs(collision, kind), distance, base.tolist(), rotation_length_m(robot))
     return hashlib.sha256(repr(words).encode() + _own_source()).hexdigest()
 
 
@@ -104,15 +105,14 @@ def _own_source() -> bytes:
     return Path(__file__).read_bytes() + Path(pool_file.__file__).read_bytes()
 
 
-def draw_pool(
-    robot: Robot, detector: Detector | None, kind: str, lower: Floats, upper: Floats, count: int
-) -> SeedArrays:
+def draw_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats, count: int) -> SeedArrays:
     """Draw `count` free configurations; a tenth of a second for 2^16."""
+    robot = collision.robot
     base = find_base(robot, lower, upper)
     if base[0] >= 0:
         lower, upper = lower.copy(), upper.copy()
         lower[base] = upper[base] = 0.0
-    module, *tables = load_kernels(robot, detector, kind)
+    module, *tables = load_kernels(collision, kind)
     q = np.empty((count, len(lower)))
     with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
         found = module.fill_pool(*tables, lower, upper, q)
