@@ -33,8 +33,9 @@ from ikde.kernels import tables
 from ikde.kernels.arrays import COUNTS, SeedArrays
 from ikde.kernels.blocks import flatten_question
 from ikde.kernels.clearance import judge_centres
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble as generator
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.solver.engines import pool
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import NO_BASE, make_seeds
@@ -92,9 +93,9 @@ def measure(count: int, rounds: int, variants: list[Variant]) -> dict[str, Any]:
     """The variants, interleaved."""
     robot = ikde.load_robot("qiao2021")
     settings = ikde.SolveSettings(position_tolerance_m=1e-6, orientation_tolerance_rad=1e-6)
-    problem = make_problem(robot, settings, detector=None, near=None, freeze=None)
+    problem = make_problem(robot, settings, collision=None, near=None, freeze=None)
     options = {"lower": robot.lower, "upper": robot.upper, "goal": "pose", "count": count, "seed": 3}
-    targets = ReachableSource(robot=robot, detector=problem.detector, **options).read(0, count)
+    targets = ReachableSource(collision=problem.collision, **options).read(0, count)
     seeds = make_seeds(problem, "pose")
     jobs: dict[str, dict[str, Callable[[], Any]]] = {}
     for variant in variants:
@@ -174,7 +175,7 @@ def make_module(robot: ikde.Robot, variant: Variant) -> Any:
     if variant.every_test:
         generator.drop_implied = lambda tests: tests
         generator.drop_proved = lambda robot, tests, margin, lower, upper: tests
-    text = generator.format_module(robot, robot.detector(None), "pose")
+    text = generator.format_module(CollisionModel.of(robot), "pose")
     generator.drop_implied, generator.drop_proved = kept
     made = ModuleType(re.sub(r"\W", "_", variant.name))
     text = (
@@ -227,14 +228,14 @@ def draw_evenly(count: int) -> SeedArrays:
     """As many as are kept of each cell, but from the first that are free."""
     robot = ikde.load_robot("qiao2021")
     kept, pool.PER_CELL = pool.PER_CELL, count
-    seeds = pool.draw_pool(robot, robot.detector(None), "pose", robot.lower, robot.upper, count)
+    seeds = pool.draw_pool(CollisionModel.of(robot), "pose", robot.lower, robot.upper, count)
     pool.PER_CELL = kept
     return seeds
 
 
 def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: Variant) -> dict[str, Callable[[], Any]]:
     """What is timed: each gives its figure."""
-    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    robot, detector = pack_robot(problem.robot), problem.collision.arrays
     is_table = variant.seeds == "tables"
     first = (robot, detector) if is_table else (0, ROUNDING)
     count, joints = len(targets), len(problem.lower)
@@ -276,7 +277,7 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
 def make_check_jobs(problem: Any, variant: Variant, first: tuple[Any, ...]) -> dict[str, Callable[[], Any]]:
     """Nanoseconds of forward kinematics and the yes/no check, configuration by configuration and in lanes."""
     robot = problem.robot
-    arrays, detector = pack_robot(robot), pack_detector(robot, problem.detector)
+    arrays, detector = pack_robot(robot), CollisionModel(robot=robot, detector=problem.collision.detector).arrays
     qs = np.random.default_rng(1).uniform(robot.lower, robot.upper, (16_384, len(robot.joints)))
     hits = np.empty(len(qs), dtype=bool)
     judge_centres(arrays, detector, qs, hits)

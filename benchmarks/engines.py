@@ -27,6 +27,7 @@ import ikde
 from ikde.batch.generators import ReachableSource
 from ikde.kernels.arrays import COUNTS
 from ikde.kernels.blocks import flatten_question
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
@@ -70,7 +71,7 @@ def make_targets(robot: ikde.Robot, kind: str, hard: bool, count: int) -> ikde.T
         case = make_case(f"hard {kind}", count)
         return ikde.Targets(case.p, R_world_tool=case.R if kind == "pose" else None)
     options = {"lower": robot.lower, "upper": robot.upper, "goal": kind, "count": count, "seed": SEED}
-    return ReachableSource(robot=robot, detector=robot.detector(None), **options).read(0, count)
+    return ReachableSource(collision=CollisionModel.of(robot), **options).read(0, count)
 
 
 def measure(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) -> dict[str, Any]:
@@ -122,11 +123,11 @@ def time_python(robot: ikde.Robot, targets: list[ikde.Target], rounds: int) -> n
 
 def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) -> np.ndarray:
     """Microseconds of the engine `lm` inside compiled code: for each target the median of rounds."""
-    problem = make_problem(robot, ikde.SolveSettings(method="lm"), detector=None, near=None, freeze=None)
-    module, *tables = load_kernels(robot, problem.detector, kind)
+    problem = make_problem(robot, ikde.SolveSettings(method="lm"), collision=None, near=None, freeze=None)
+    module, *tables = load_kernels(CollisionModel(robot=robot, detector=problem.collision.detector), kind)
     run = make_loop(module.solve_target)
     block = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
-    pairs = max(len(robot.pairs(problem.detector)), 1)
+    pairs = max(len(CollisionModel(robot=robot, detector=problem.collision.detector).pairs), 1)
     times = np.empty((rounds, len(targets)))
     with np.errstate(over="ignore"):
         run(*tables, *pack_targets(targets[:2]), *block, np.uint64(SEED), pairs, np.empty(2))
@@ -137,10 +138,10 @@ def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int
 
 def time_grader(robot: ikde.Robot, targets: ikde.Targets, q: np.ndarray, rounds: int) -> float:
     """Microseconds a configuration that the grader takes in bulk; median of rounds."""
-    detector, settings, times = robot.detector(None), ikde.SolveSettings(), []
+    detector, settings, times = CollisionModel.of(robot).detector, ikde.SolveSettings(), []
     for _ in range(rounds):
         began = time.perf_counter()
-        compute_figures(robot, detector, targets, q, settings)
+        compute_figures(CollisionModel(robot=robot, detector=detector), targets, q, settings)
         times.append((time.perf_counter() - began) / len(q) * 1e6)
     return float(np.median(times))
 

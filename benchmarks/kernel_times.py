@@ -22,7 +22,8 @@ from ikde.kernels.clearance import collides, compute_clearance
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 
 CONFIGURATIONS, ROUNDS = 20_000, 25
 STAGES = ("forward kinematics", "+ bounding spheres", "+ sphere centres", "+ yes/no check", "+ full clearance")
@@ -50,7 +51,7 @@ def loop(robot, detector, qs, stage, T, bounds, centres):
 def main() -> None:
     """Time every stage on every set of configurations, print and record."""
     robot = ikde.load_robot("qiao2021")
-    arrays, detector = pack_robot(robot), pack_detector(robot, robot.detector("improved"))
+    arrays, detector = pack_robot(robot), CollisionModel.of(robot, "improved").arrays
     buffers = (
         np.empty((len(robot.joints) + 1, 3, 4)),
         np.empty((detector.components.shape[0], 3)),

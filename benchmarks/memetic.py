@@ -34,7 +34,8 @@ from ikde.kernels.damped import make_descent_workspace, take_step
 from ikde.kernels.lanes import solve_lane
 from ikde.kernels.memetic import solve_memetic_lane
 from ikde.kernels.mutation import MIDPOINT
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.plot import style
 from ikde.plot.images import to_png
 from ikde.solver.figures import compute_clearances
@@ -97,7 +98,7 @@ def sample_free(problem: Problem, count: int, rng: np.random.Generator) -> list[
     free: list[np.ndarray] = []
     while len(free) < count:
         Q = rng.uniform(problem.lower, problem.upper, (1000, len(problem.lower)))
-        free += list(Q[~compute_clearances(problem.robot, problem.detector, Q).collides])
+        free += list(Q[~compute_clearances(problem.collision, Q).collides])
     return free[:count]
 
 
@@ -109,8 +110,8 @@ def make_pose(robot: ikde.Robot, q: np.ndarray) -> ikde.Target:
 
 def make_clear(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[Case]:
     """30 mm of clearance with a horizontal tool axis: free configurations whose axis damped steps turn horizontal."""
-    detector = replace(robot.detector(None), name="30 mm", safe_distance_m=CLEARANCE_M)
-    problem = make_problem(robot, ikde.SolveSettings(), detector=detector, near=None, freeze=None)
+    detector = replace(CollisionModel.of(robot).detector, name="30 mm", safe_distance_m=CLEARANCE_M)
+    problem = make_problem(robot, ikde.SolveSettings(), collision=detector, near=None, freeze=None)
     packed, ranges = pack_robot(robot), np.array([problem.lower, problem.upper])
     work = make_descent_workspace(packed, len(robot.joints), 6)
     cases: list[Case] = []
@@ -123,20 +124,23 @@ def make_clear(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[
             target = ikde.Target(T[:3, 3], axis_world_tool=T[:3, 2] * [1.0, 1.0, 0.0] / level)
             for _ in range(50):
                 errors = take_step(packed, pack_targets([target]), 0, ranges, DescentArrays(), q, work)
-            if max(errors) < 1e-9 and not compute_clearances(robot, detector, q[None]).collides[0]:
+            if (
+                max(errors) < 1e-9
+                and not compute_clearances(CollisionModel(robot=robot, detector=detector), q[None]).collides[0]
+            ):
                 cases.append((problem, target))
     return cases[:count]
 
 
 def make_frozen(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[Case]:
     """Poses with the base frozen at home: six joints, no redundancy."""
-    problem = make_problem(robot, ikde.SolveSettings(), detector=None, near=None, freeze=FROZEN)
+    problem = make_problem(robot, ikde.SolveSettings(), collision=None, near=None, freeze=FROZEN)
     return [(problem, make_pose(robot, q)) for q in sample_free(problem, count, rng)]
 
 
 def make_near(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[Case]:
     """Poses with every joint kept within 200 mm or 0.35 rad of a free configuration."""
-    problem = make_problem(robot, ikde.SolveSettings(), detector=None, near=None, freeze=None)
+    problem = make_problem(robot, ikde.SolveSettings(), collision=None, near=None, freeze=None)
     width = np.array([NEAR_M if joint.kind == "prismatic" else NEAR_RAD for joint in robot.joints])
     cases = []
     for q in sample_free(problem, count, rng):
@@ -148,7 +152,7 @@ def make_near(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[C
 
 def make_ordinary(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[Case]:
     """Poses, all joints free."""
-    problem = make_problem(robot, ikde.SolveSettings(), detector=None, near=None, freeze=None)
+    problem = make_problem(robot, ikde.SolveSettings(), collision=None, near=None, freeze=None)
     return [(problem, make_pose(robot, q)) for q in sample_free(problem, count, rng)]
 
 
@@ -180,7 +184,7 @@ def solve(method: Method, case: Case, stream: int, length: int, budget: int) -> 
     settings = {"generations": length // PAPER["population"] - 1, **PAPER, **method.plain} if method.plain else {}
     chosen = problem.with_settings(**settings)
     search = pack_search(chosen)
-    detector = pack_detector(problem.robot, problem.detector)
+    detector = problem.collision.arrays
     detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)
     q, score = np.zeros(len(problem.lower)), np.full(2, np.inf)
     counts, pairs = np.zeros(COUNTS, dtype=np.int64), np.zeros(detector.pairs.shape[0], dtype=np.int64)
@@ -195,7 +199,7 @@ def solve(method: Method, case: Case, stream: int, length: int, budget: int) -> 
         solve_memetic_lane(*where, search._replace(repair=MIDPOINT), memetic, DescentArrays(), *lane, *outputs)
     if not counts[REACHED] or counts[EVALUATIONS] > budget:
         return math.inf
-    graded = ikde.verify(problem.robot, target, q, settings=chosen.settings, detector=problem.detector)
+    graded = ikde.verify(problem.robot, target, q, settings=chosen.settings, collision=problem.collision.detector)
     inside = bool(np.all((problem.lower <= q) & (q <= problem.upper)))
     if not (graded.accepted and inside):
         raise RuntimeError(f"{method} returned a configuration that is no solution: {graded}")

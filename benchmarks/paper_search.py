@@ -31,7 +31,7 @@ RESULTS = Path(__file__).parent / "results" / "paper_search.json"
 def run_cell(robot: ikde.Robot, target: ikde.Target, detector: str, seeds: int, label: str) -> dict[str, Any]:
     """Solve one target with many seeds, one after the other."""
     results = [
-        ikde.solve(robot, target, method="de", detector=detector, seed=seed)
+        ikde.solve(robot, target, method="de", collision=detector, seed=seed)
         for seed in track(range(seeds), description=label, console=Console(stderr=True))
     ]
     seconds = np.array([result.solve_seconds for result in results])

@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.track_file import load_track as load_track
     from ikde.io.trajectory_files import write_trajectory as write_trajectory
     from ikde.io.urdf import format_urdf as format_urdf
+    from ikde.model.collision_model import CollisionModel as CollisionModel
     from ikde.model.convention import from_convention as from_convention
     from ikde.model.convention import to_convention as to_convention
     from ikde.model.robot import Detector as Detector
@@ -80,6 +81,7 @@ _HOME = {
     "robot_names": "ikde.io.robots",
     "format_urdf": "ikde.io.urdf",
     "format_mjcf": "ikde.io.mjcf",
+    "CollisionModel": "ikde.model.collision_model",
     "Robot": "ikde.model.robot",
     "Detector": "ikde.model.robot",
     "Target": "ikde.model.target",

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.model.closed_form import find_ur_arm
+from ikde.model.collision_model import CollisionModel
 from tests.regrade import find_faults
 
 KINDS = ("position", "axis", "pose")
@@ -159,7 +160,7 @@ def ask(robot, question, threads=None):
         orientation_tolerance_rad=orientation,
     )
     freeze = question.freeze or None
-    options = {"seed": question.seed, "detector": question.detector, "near": question.near, "freeze": freeze}
+    options = {"seed": question.seed, "collision": question.detector, "near": question.near, "freeze": freeze}
     targets = [_make_target(kind, T) for kind, T in zip(question.kinds, question.T_world_tool, strict=True)]
     if question.how == "many":
         options |= {"threads": threads, "explain_failures": False}
@@ -272,8 +273,11 @@ def account_for_pairs(robot, grader):
     """How many pairs each detector compares and leaves out, and where ikde and the grader differ on that."""
     counts, faults = Counter(), []
     for name, detector in robot.detectors.items():
-        compared = [frozenset(pair) for pair in robot.pairs(detector)]
-        left_out = {frozenset((pair.a, pair.b)): pair.reason for pair in robot.left_out_pairs(detector)}
+        compared = [frozenset(pair) for pair in CollisionModel(robot=robot, detector=detector).pairs]
+        left_out = {
+            frozenset((pair.a, pair.b)): pair.reason
+            for pair in CollisionModel(robot=robot, detector=detector).left_out_pairs
+        }
         counts.update(detectors=1, compared=len(compared), left_out=len(left_out))
         if set(compared) != grader.compared(name) or len(compared) != len(set(compared)):
             faults.append({"fault": "pairs compared", "detector": name, "ikde": _sort(compared)})

@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector, SphereRow
 from ikde.solver.plain import compute_gaps
 from tests.random_robots import make_frame, make_robot, random_robot
@@ -15,10 +16,10 @@ LEAST_FREE = 0.3  # of the configurations of a random robot
 
 def loosen(robot):
     """The robot with other pairs: as many as leave a share of its configurations free, those seldom hit first."""
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     every = tuple(combinations(robot.components(detector.spheres), 2))
     Q = np.random.default_rng(0).uniform(robot.lower, robot.upper, (200, len(robot.joints)))
-    hits = compute_gaps(robot, detector.spheres, every, Q) <= detector.safe_distance_m
+    hits = compute_gaps(CollisionModel(robot=robot, detector=detector), Q, every) <= detector.safe_distance_m
     kept, hit = [], np.zeros(len(Q), dtype=bool)
     for k in np.argsort(hits.mean(axis=0), kind="stable"):
         if (hit | hits[:, k]).mean() <= 1.0 - LEAST_FREE:
@@ -30,7 +31,7 @@ def loosen(robot):
 SHIPPED = [
     (robot, detector) for robot in map(ikde.load_robot, ikde.robot_names()) for detector in robot.detectors.values()
 ]
-RANDOM = [(robot, robot.detector(None)) for robot in map(loosen, map(random_robot, range(20)))]
+RANDOM = [(robot, CollisionModel.of(robot).detector) for robot in map(loosen, map(random_robot, range(20)))]
 CASES = [*SHIPPED, *RANDOM]
 CONTACT = 1e-9  # m: what is nearer to contact than this is left out
 
@@ -42,7 +43,7 @@ def name_case(case):
 
 def find_gaps(robot, detector, Q):
     """Clearance [T, P] of every pair by plain numpy."""
-    return compute_gaps(robot, detector.spheres, robot.pairs(detector), Q)
+    return compute_gaps(CollisionModel(robot=robot, detector=detector), Q)
 
 
 def away_from_contact(gaps, safe_distance):

@@ -270,9 +270,9 @@ def compute_score(problem, target, q):
     orientation_tolerance = problem.settings.orientation_tolerance_rad - 1e-12
     cost = position + orientation * position_tolerance / orientation_tolerance
     meets = position <= position_tolerance and orientation <= orientation_tolerance
-    if problem.detector is None or problem.settings.collision == "reject":
+    if problem.collision.detector is None or problem.settings.collision == "reject":
         return (0.0, cost), meets
-    depth = compute_depth(problem.robot, problem.detector, q)
+    depth = compute_depth(problem.robot, problem.collision.detector, q)
     return (depth, cost), meets and depth == 0.0
 
 

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.io import robot_file
+from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_gaps
 from tests import regrade, robot_texts
@@ -265,9 +266,9 @@ def forget_a_sphere(robot):
 
 def forget_a_pair(robot):
     """The one that touches most often."""
-    detector, Q = robot.detector(None), random_q(robot, np.random.default_rng(0), 200)
-    pairs = robot.pairs(detector)
-    hits = compute_gaps(robot, detector.spheres, pairs, Q) <= detector.safe_distance_m
+    detector, Q = CollisionModel.of(robot).detector, random_q(robot, np.random.default_rng(0), 200)
+    pairs = CollisionModel(robot=robot, detector=detector).pairs
+    hits = compute_gaps(CollisionModel(robot=robot, detector=detector), Q) <= detector.safe_distance_m
     forgotten = pairs[np.argmax(hits.sum(axis=0))]
     kept = tuple(pair for pair in pairs if pair != forgotten)
     return replace(robot, pair_lists={**robot.pair_lists, detector.pairs: kept})

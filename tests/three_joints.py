@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from tests import reference
 
 FILE = Path(__file__).parent / "three_joints.yaml"
@@ -15,7 +16,7 @@ KINDS = ("position", "axis", "pose")
 
 def is_met(robot, target, q, settings):
     """Whether `q` meets the target inside all limits and free of collision, by the naive twins."""
-    q, detector = np.asarray(q, dtype=float), robot.detector(None)
+    q, detector = np.asarray(q, dtype=float), CollisionModel.of(robot).detector
     if not (np.isfinite(q).all() and (robot.lower <= q).all() and (q <= robot.upper).all()):
         return False
     T_world_tool = reference.compute_frames(robot, q)[robot.tool]
@@ -37,6 +38,6 @@ def free_q(count):
     rng, found = np.random.default_rng(12), []
     while len(found) < count:
         q = rng.uniform(ROBOT.lower + 0.05, ROBOT.upper - 0.05)
-        if reference.compute_clearance(ROBOT, ROBOT.detector(None), q)[0] > 0.03:
+        if reference.compute_clearance(ROBOT, CollisionModel.of(ROBOT).detector, q)[0] > 0.03:
             found.append(q)
     return np.array(found)

@@ -13,9 +13,9 @@ def written_kernels(monkeypatch, change=lambda module: module):
     """Solve as users do, by the modules written for a robot, each of them changed; gives the kinds asked for."""
     asked, load = [], pool.load_module
 
-    def load_changed(robot, detector, kind):
+    def load_changed(collision, kind):
         asked.append(kind)
-        return change(load(robot, detector, kind))
+        return change(load(collision, kind))
 
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
     monkeypatch.setattr(pool, "load_module", load_changed)

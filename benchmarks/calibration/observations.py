@@ -13,6 +13,7 @@ from ikde.bench.approximation import APPROXIMATIONS
 from ikde.bench.solutions import read_row
 from ikde.bench.sweeps import Sweep, compute_clearance, find_onset, read_sweeps, shows_sweep
 from ikde.io.published import load_published
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import approximation_volume_m3
 
@@ -57,7 +58,7 @@ def observe_labels(robot: Robot) -> list[Observation]:
     """Table 5's labels: s rows free with both detectors, f rows colliding with the typical one."""
     labelled = [row for row in load_published()["table_5"] if row["free"] is not None]
     Q = np.array([read_row(robot, row) for row in labelled])
-    typical, improved = (1e3 * compute_clearance(robot, robot.detectors[name], Q) for name in APPROXIMATIONS)
+    typical, improved = (1e3 * compute_clearance(CollisionModel.of(robot, name), Q) for name in APPROXIMATIONS)
     return [
         Observation(
             name=f"Table 5, target {row['target']}, {row['row']}",
@@ -78,7 +79,7 @@ def observe_home(robot: Robot) -> list[Observation]:
         ("improved", 1, "free"),
         ("single", -1, "collides"),
     ):
-        gap = 1e3 * float(compute_clearance(robot, robot.detectors[detector], robot.home[None])[0])
+        gap = 1e3 * float(compute_clearance(CollisionModel.of(robot, detector), robot.home[None])[0])
         found.append(
             Observation(name=f"home, {detector}", printed=printed, ours=f"{gap:+.2f} mm", slack=sign * gap, unit="mm")
         )

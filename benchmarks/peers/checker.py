@@ -14,7 +14,8 @@ import ikde
 from ikde.kernels.clearance import collides
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.spheres import compute_bounds, compute_centres
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 
 _MADE: dict[tuple[str, bytes, bytes], "Checker"] = {}
 
@@ -43,7 +44,7 @@ def make_checker(robot: ikde.Robot, seed: int) -> Checker:
 
 
 def _compile(robot: ikde.Robot) -> Checker:
-    arrays, spheres = pack_robot(robot), pack_detector(robot, robot.detector(None))
+    arrays, spheres = pack_robot(robot), CollisionModel.of(robot).arrays
     lower, upper, joints = robot.lower, robot.upper, len(robot.joints)
     bodies, components, count = len(arrays.bodies), len(spheres.components), spheres.radius.size
 

@@ -9,7 +9,8 @@ from protocol import TOOL_WEIGHT_M, Setup
 from ikde.kernels.clearance import compute_clearance
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.spheres import compute_bounds, compute_centres
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 
 
 def make_objective(setup: Setup) -> tuple[Callable[..., tuple[float, float]], float]:
@@ -18,7 +19,7 @@ def make_objective(setup: Setup) -> tuple[Callable[..., tuple[float, float]], fl
     It gives position error + TOOL_WEIGHT_M x orientation error in m, and the depth of penetration in m, 0 if free.
     """
     robot = setup.robot
-    arrays, spheres = pack_robot(robot), pack_detector(robot, robot.detector(None))
+    arrays, spheres = pack_robot(robot), CollisionModel.of(robot).arrays
     bodies, components, count = len(arrays.bodies), len(spheres.components), spheres.radius.size
     is_pose, weight = setup.is_pose, TOOL_WEIGHT_M
 

@@ -29,6 +29,7 @@ from roster import ROSTER, select
 
 import ikde
 from ikde.batch.machine import describe_machine, describe_versions
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.verify import verify_many
 
 RESULTS = Path(__file__).parent.parent / "results" / "peers.json"
@@ -116,7 +117,7 @@ def grade(case: Case, answers: list[Answer], options: argparse.Namespace) -> np.
     settings = ikde.SolveSettings(
         position_tolerance_m=options.tolerance[0], orientation_tolerance_rad=options.tolerance[1]
     )
-    accepted = verify_many(robot, case.targets()[: len(Q)], Q, settings, robot.detector(None)).accepted
+    accepted = verify_many(CollisionModel.of(robot), case.targets()[: len(Q)], Q, settings).accepted
     return accepted & returned & np.array([seconds <= options.limit for seconds, _ in answers])
 
 

@@ -131,11 +131,10 @@ def grade(plan: TrackPlan, way: Way, runs: list[Followed]) -> dict[str, Any]:
     """The judge's figures of a motion, and times in the middle of its rounds."""
     assert all(np.array_equal(run.q, runs[0].q) for run in runs), f"{way.name}: another motion in another round"
     first, seconds = runs[0], np.median([run.seconds for run in runs], axis=0)
-    told = {"drive": way.drive, "limits": plan.limits, "detector": plan.detector}
     motion = methods.Followed(q=first.q, stop=None, seconds=seconds, search_seconds=float(seconds.sum()))
-    trajectory = grade_motion(plan.robot, plan.path, motion, method=way.name, **told)
+    trajectory = grade_motion(plan.collision, plan.path, motion, method=way.name, drive=way.drive, limits=plan.limits)
     error = trajectory.error_m[1:]
-    figures = measure(summarise_track(plan.robot, plan.detector, trajectory))
+    figures = measure(summarise_track(plan.collision, trajectory))
     return {
         **{key: figures[key] for key in figures if key not in ("median_s", "p99_s", "stop")},
         "points_within_1_mm": int((np.linalg.norm(error, axis=1) <= NEAR_M).sum()),
@@ -149,8 +148,7 @@ def grade(plan: TrackPlan, way: Way, runs: list[Followed]) -> dict[str, Any]:
 
 def count_followed(plan: TrackPlan, ways: list[Way], count: int) -> dict[str, Any]:
     """From how many random starts each way gets to the end, and what was wrong with the rest."""
-    told = {"drive": "omnidirectional", "limits": plan.limits, "detector": plan.detector}
-    follower = make_follower(plan.robot, plan.path, **told)
+    follower = make_follower(plan.collision, plan.path, drive="omnidirectional", limits=plan.limits)
     starts = draw_random_starts(follower, count, plan.seed)
     greedy = Way(name="ikde, its steps alone", run=partial(run_greedy, follower))
     record: dict[str, Any] = {"starts": len(starts), "ways": {}}
@@ -165,8 +163,7 @@ def count_followed(plan: TrackPlan, ways: list[Way], count: int) -> dict[str, An
 def find_fault(plan: TrackPlan, way: Way, followed: Followed) -> str:
     """`followed`, or the first of what is wrong: too short, colliding, beyond a limit, too far from the path."""
     near = replace(plan.limits, position_error_m=NEAR_M, orientation_error_rad=NEAR_RAD)
-    told = {"drive": way.drive, "limits": near, "detector": plan.detector}
-    broken = verify_track(plan.robot, plan.path, followed.q, **told).breaches
+    broken = verify_track(plan.collision, plan.path, followed.q, drive=way.drive, limits=near).breaches
     if len(followed.q) <= plan.path.samples:
         return "ended early"
     if broken.collision:

@@ -35,7 +35,7 @@ class CollisionModel:
                 raise InputError(f"this is a collision model of another {choice.robot.name}", ("collision",))
             return choice
         if isinstance(choice, Detector):
-            check_detector(robot, choice, ("collision",))
+            check_detector(robot, choice, ("detector",))
             return cls(robot=robot, detector=choice)
         name = robot.default_detector if choice is None else choice
         if name == NO_DETECTOR:
@@ -134,7 +134,7 @@ def _check_size(collision: CollisionModel, where: tuple[str | int, ...]) -> None
 def _explain_no_pairs(collision: CollisionModel) -> str:
     left_out = collision.left_out_pairs
     if not left_out:
-        return "there is only one component"
+        return f"{collision.rows[0].component!r} is the only component"
     named = ", ".join(f"{pair.a} - {pair.b} ({pair.reason})" for pair in left_out[:NAMED])
     more = f" and {len(left_out) - NAMED} more" if len(left_out) > NAMED else ""
     return f"{'the only pair is' if len(left_out) == 1 else f'all {len(left_out)} pairs are'} left out: {named}{more}"

@@ -105,8 +105,6 @@ def _draw_spheres(axes: Any, collision: CollisionModel, q: Floats) -> str:
         for centre, radius in zip(centres, radii, strict=True):
             _draw_sphere(axes, centre, radius, color, label=None if label in labelled else f"{label} spheres")
             labelled.add(label)
-    if not pairs:
-        return f"detector {collision.name}: {NOT_CHECKED}"
     closest = pairs[0]
     a, b = components[closest.a], components[closest.b]
     gaps = compute_sphere_gaps(a, b)

@@ -20,7 +20,7 @@ def make_targets(count):
 
 def make_arm(name="auto", detector=None, method="auto", **settings):
     chosen = ikde.SolveSettings.for_method(method).with_changes(**settings)
-    problem = make_problem(ROBOT, chosen, detector=detector, near=None, freeze=None)
+    problem = make_problem(ROBOT, chosen, collision=detector, near=None, freeze=None)
     return Arm(name=name, method=method, problem=problem)
 
 

@@ -44,7 +44,7 @@ def test_units_become_metres_and_radians(qiao):
     assert named["d_x"] == (0.0, 0.0)
     assert problem.near[[1, 4]] == pytest.approx([0.1, np.pi / 4])
     assert (problem.robot.joints[0].lower, problem.robot.joints[0].upper) == pytest.approx((-0.06, 0.06))
-    assert problem.detector.safe_distance_m == pytest.approx(0.005)
+    assert problem.collision.detector.safe_distance_m == pytest.approx(0.005)
 
 
 def test_a_range_may_be_wider_than_the_robots(qiao):
@@ -64,7 +64,7 @@ def test_arms_are_laid_over_solve(qiao):
     over = {"detector": "typical", "settings": {"population": 30}, "ranges": {"d_y": [-2, 2]}}
     plain, changed = make_arms(spec(solve=solve, arms={"plain": {}, "changed": over}), qiao)
     assert (plain.method, changed.method) == ("de", "de")
-    assert (plain.problem.detector.name, changed.problem.detector.name) == ("improved", "typical")
+    assert (plain.problem.collision.name, changed.problem.collision.name) == ("improved", "typical")
     assert (plain.problem.settings.population, changed.problem.settings.population) == (20, 30)
     assert changed.problem.settings.weight == 0.7
     np.testing.assert_array_equal(plain.problem.upper[:2], [1, 5])

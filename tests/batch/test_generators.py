@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.problem import make_problem
 from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
@@ -18,8 +19,7 @@ START, TO = np.array([-1.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.5])
 
 def reachable(robot, goal="pose", count=30, seed=3, detector=None):
     return ReachableSource(
-        robot=robot,
-        detector=robot.detector(detector),
+        collision=CollisionModel.of(robot, detector),
         lower=robot.lower,
         upper=robot.upper,
         goal=goal,
@@ -74,7 +74,7 @@ def test_reachable_targets_ask_for_the_goal(qiao, goal):
 
 
 def test_reachable_targets_are_reached(qiao):
-    problem = make_problem(qiao, SolveSettings(), detector="typical", near=None, freeze=None)
+    problem = make_problem(qiao, SolveSettings(), collision="typical", near=None, freeze=None)
     targets = reachable(qiao, "position", detector="typical").read(0, 10)
     assert search(problem, targets, seed=0, streams=range(10)).counts[:, 0].all()
 

@@ -10,7 +10,7 @@ from ikde.solver.settings import SolveSettings
 
 
 def make_batch(robot, **changes):
-    problem = make_problem(robot, SolveSettings(), detector=None, near=None, freeze=None)
+    problem = make_problem(robot, SolveSettings(), collision=None, near=None, freeze=None)
     batch = Batch(
         name="made",
         robot=robot,

@@ -8,6 +8,7 @@ import pytest
 import ikde
 from ikde.bench.budget import QUICK
 from ikde.bench.detection import check_centres_many, compute_detection, count_pairs, draw_configurations
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.surface import check_surface_many
 from tests.bench.conftest import is_plain
 
@@ -23,7 +24,7 @@ def test_verdicts_are_those_of_check(qiao):
     Q = draw_configurations(qiao, 60)
     for name, detector in qiao.detectors.items():
         expected = [ikde.check(qiao, q, name).collision for q in Q]
-        assert check_centres_many(qiao, Q, detector).tolist() == expected
+        assert check_centres_many(CollisionModel(robot=qiao, detector=detector), Q).tolist() == expected
 
 
 def test_fewer_configurations_are_the_beginning_of_more(qiao):
@@ -33,7 +34,10 @@ def test_fewer_configurations_are_the_beginning_of_more(qiao):
 def test_pairs_of_spheres_are_counted_pair_by_pair(qiao):
     detector = ikde.Detector(name="load", spheres="typical", pairs="load_arm")
     # the load's one sphere against J3, J4, J5, J6 and the spheres of both links and the tool
-    assert count_pairs(qiao, detector) == {"component_pairs": 7, "sphere_pairs": 4 + 3 + 4 + 3}
+    assert count_pairs(CollisionModel(robot=qiao, detector=detector)) == {
+        "component_pairs": 7,
+        "sphere_pairs": 4 + 3 + 4 + 3,
+    }
 
 
 def test_lists_are_told_apart_by_their_pairs_and_verdicts(qiao, section):
@@ -44,7 +48,9 @@ def test_lists_are_told_apart_by_their_pairs_and_verdicts(qiao, section):
         assert {tuple(pair) for pair in row["pairs_added"]} == lists[0] - lists[1]
         assert {tuple(pair) for pair in row["pairs_missing"]} == lists[1] - lists[0]
         verdicts = [
-            check_centres_many(qiao, Q, replace(qiao.detectors[row["approximation"]], pairs=row[key]))
+            check_centres_many(
+                CollisionModel(robot=qiao, detector=replace(qiao.detectors[row["approximation"]], pairs=row[key])), Q
+            )
             for key in ("pairs", "against")
         ]
         assert row["only_this_collides"] == sum(verdicts[0] & ~verdicts[1])
@@ -72,7 +78,7 @@ class TestPuzzles:
 
     def test_eq_18_sees_none_of_880_collisions(self, qiao):
         Q = draw_configurations(qiao, 1000)
-        assert check_centres_many(qiao, Q, qiao.detectors["typical"]).sum() == 880
+        assert check_centres_many(CollisionModel(robot=qiao, detector=qiao.detectors["typical"]), Q).sum() == 880
         assert not check_surface_many(qiao, Q, "typical", rule="eq. 18").any()
 
     def test_eq_20_with_steps_of_10_deg_rejects_everything_and_with_1_deg_not_home(self, qiao):

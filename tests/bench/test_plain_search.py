@@ -12,7 +12,7 @@ from ikde.bench.plain_search import (
     Setup,
     apply_setup,
     collides,
-    make_detector,
+    make_collision,
     make_setup_problem,
     read_targets,
     solve_plainly,
@@ -59,7 +59,7 @@ def test_every_solution_meets_its_target_within_its_ranges(qiao):
     solutions = solve_plainly(qiao, setup, TARGETS["1"], 20)
     assert len(solutions.Q) == 20
     for q in solutions.Q:
-        graded = ikde.verify(robot, TARGETS["1"], q, settings=setup.settings, detector="none")
+        graded = ikde.verify(robot, TARGETS["1"], q, settings=setup.settings, collision="none")
         assert graded.accepted
 
 
@@ -71,9 +71,9 @@ def test_a_sample_is_the_beginning_of_a_larger_one(qiao):
 
 def test_verdicts_are_those_of_check(qiao):
     Q = solve_plainly(qiao, Setup(), TARGETS["2"], 12).Q
-    detector = make_detector(qiao, "typical", "non_adjacent")
-    assert collides(qiao, detector, Q).tolist() == [ikde.check(qiao, q, detector).collision for q in Q]
-    assert collides(qiao, detector, Q[:0]).tolist() == []
+    detector = make_collision(qiao, "typical", "non_adjacent")
+    assert collides(detector, Q).tolist() == [ikde.check(qiao, q, detector).collision for q in Q]
+    assert collides(detector, Q[:0]).tolist() == []
 
 
 def test_the_shipped_run_file_is_the_stated_setting(qiao):
@@ -83,6 +83,6 @@ def test_the_shipped_run_file_is_the_stated_setting(qiao):
     assert arm.problem.settings == problem.settings
     assert arm.problem.lower == pytest.approx(problem.lower, abs=1e-15)
     assert arm.problem.upper == pytest.approx(problem.upper, abs=1e-15)
-    assert (batch.seed, batch.repeats, arm.problem.detector) == (SEED, FULL.solves, None)
+    assert (batch.seed, batch.repeats, arm.problem.collision.detector) == (SEED, FULL.solves, None)
     for target, asked in zip(TARGETS.values(), batch.source.read(0, 2), strict=True):
         assert target.p_world_tool.tolist() == asked.p_world_tool.tolist()

@@ -7,6 +7,7 @@ import pytest
 
 import ikde
 from ikde.bench.sweeps import bisect, compute_clearance, find_onset, read_sweeps, shows_sweep
+from ikde.model.collision_model import CollisionModel
 
 
 @pytest.fixture(scope="module")
@@ -23,9 +24,9 @@ def test_a_motion_goes_from_start_to_end_at_constant_speed(sweeps):
 
 def test_clearance_is_that_of_check(qiao, rng):
     Q = rng.uniform(qiao.lower, qiao.upper, (10, 9))
-    for name, detector in qiao.detectors.items():
+    for name in qiao.detectors:
         expected = [ikde.check(qiao, q, name).clearance_m for q in Q]
-        np.testing.assert_allclose(compute_clearance(qiao, detector, Q), expected, atol=1e-14)
+        np.testing.assert_allclose(compute_clearance(CollisionModel.of(qiao, name), Q), expected, atol=1e-14)
 
 
 def test_bisection_finds_the_end():
@@ -38,7 +39,7 @@ def test_the_onset_lies_where_the_clearance_is_0(qiao, sweeps, name, detector):
     sweep = sweeps[name]
     found = find_onset(qiao, sweep, detector)
     assert found.detected_s - 0.05 <= found.onset_s <= found.detected_s
-    gap = compute_clearance(qiao, sweep.look(qiao, detector), sweep.configurations(np.array([found.onset_s])))
+    gap = compute_clearance(sweep.look(qiao, detector), sweep.configurations(np.array([found.onset_s])))
     assert gap == pytest.approx(0.0, abs=1e-9)
     assert shows_sweep(qiao, sweep, detector)
 

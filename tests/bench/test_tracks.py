@@ -67,8 +67,7 @@ def test_a_method_is_run_with_every_seed_and_from_every_start(plan):
 
 
 def test_random_starts_meet_the_first_pose_and_differ(plan):
-    told = {"drive": "differential", "limits": plan.limits, "detector": plan.detector}
-    follower = make_follower(plan.robot, plan.path, **told)
+    follower = make_follower(plan.collision, plan.path, drive="differential", limits=plan.limits)
     starts = draw_random_starts(follower, 3, seed=1)
     assert len(np.unique(starts.round(6), axis=0)) == 3
     for q in starts:

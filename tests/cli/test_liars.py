@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.track import follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
@@ -25,7 +26,7 @@ OFF_M = 2.0 * ALONE.position_tolerance_m
 
 def find_touching():
     """A configuration inside the limits whose hand is in the post or the floor."""
-    rng, detector = np.random.default_rng(5), ROBOT.detector(None)
+    rng, detector = np.random.default_rng(5), CollisionModel.of(ROBOT).detector
     while True:
         q = rng.uniform(ROBOT.lower, ROBOT.upper)
         if reference.compute_clearance(ROBOT, detector, q)[0] < -0.02:
@@ -123,7 +124,7 @@ def assert_honest_table(lie, table):
     for row in rows:
         q = [row[f"q_{name}"] for name in ROBOT.joint_names]
         assert not row["reached"] or (row["arm"] == "helped" and is_met(ROBOT, target, q, HELPED))
-        touches = reference.compute_clearance(ROBOT, ROBOT.detector(None), np.array(q))[0] <= 0.005
+        touches = reference.compute_clearance(ROBOT, CollisionModel.of(ROBOT).detector, np.array(q))[0] <= 0.005
         assert row["balls_collides"] == touches
 
 

@@ -13,12 +13,13 @@ from ikde.cli.options import (
     check_drawable,
     draw,
     note_unchecked,
-    read_detector,
+    read_collision,
     read_freeze,
     read_q,
 )
 from ikde.cli.output import page_width
 from ikde.errors import FileError, InputError
+from ikde.model.collision_model import CollisionModel
 
 SOLVE = ("solve", "--position", "0.8", "0.5", "1")
 EVERY_COMMAND = [SOLVE, ("fk",), ("check",)]
@@ -113,15 +114,15 @@ def test_joints_may_stand_in_a_file(qiao, tmp_path, content):
 
 
 def test_a_detector_is_read_with_its_changes(qiao):
-    plain = read_detector(qiao, None, None, None, LengthUnit.m)
-    assert plain == qiao.detectors["improved"]
-    changed = read_detector(qiao, "typical", "arm_arm", 25.0, LengthUnit.mm)
+    plain = read_collision(qiao, None, None, None, LengthUnit.m)
+    assert plain.detector == qiao.detectors["improved"]
+    changed = read_collision(qiao, "typical", "arm_arm", 25.0, LengthUnit.mm).detector
     assert (changed.spheres, changed.pairs) == ("typical", "arm_arm")
     assert changed.safe_distance_m == pytest.approx(0.025)
 
 
 def test_no_detector_is_called_none(qiao):
-    assert read_detector(qiao, "none", None, None, LengthUnit.m) == "none"
+    assert read_collision(qiao, "none", None, None, LengthUnit.m).pairs == ()
 
 
 @pytest.mark.parametrize(("columns", "width"), [(20, 60), (80, 80), (300, 120)])
@@ -172,5 +173,5 @@ def test_nothing_is_drawn_without_a_path(qiao, tmp_path, monkeypatch):
 
 
 def test_drawing_writes_the_file(qiao, tmp_path):
-    draw(tmp_path / "a.png", qiao, qiao.home, "none")
+    draw(tmp_path / "a.png", CollisionModel.of(qiao, "none"), qiao.home)
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -6,15 +6,15 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.files.entries import DetectorEntry, UnitsEntry
-from ikde.files.robot_entries import read_detector, to_si, with_ranges
+from ikde.files.robot_entries import read_collision, to_si, with_ranges
 
 SI, MM_DEG = UnitsEntry(), UnitsEntry(length="mm", angle="deg")
 
 
 def test_detectors_are_names_or_the_users_own(qiao):
-    assert read_detector(qiao, None, SI) is qiao.detectors["improved"]
-    assert read_detector(qiao, "none", SI) is None
-    own = read_detector(qiao, DetectorEntry(name="own", spheres="single"), SI)
+    assert read_collision(qiao, None, SI).detector is qiao.detectors["improved"]
+    assert read_collision(qiao, "none", SI).detector is None
+    own = read_collision(qiao, DetectorEntry(name="own", spheres="single"), SI).detector
     assert (own.name, own.spheres, own.pairs, own.safe_distance_m) == ("own", "single", "non_adjacent", 0.0)
 
 
@@ -23,7 +23,7 @@ def test_a_detector_of_the_users_own_compares_something(qiao):
     with pytest.raises(
         InputError, match=r"^pairs: this detector compares nothing: all 55 pairs are left out: M - G \("
     ):
-        read_detector(robot, DetectorEntry(name="own", spheres="single", pairs="empty"), SI)
+        read_collision(robot, DetectorEntry(name="own", spheres="single", pairs="empty"), SI)
 
 
 def test_joint_values_become_metres_and_radians(qiao):

@@ -12,6 +12,7 @@ from ikde.errors import FileError, InputError
 from ikde.io.batch_file import load_batch
 from ikde.io.robots import FOLDER
 from ikde.kernels import cache_folder
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
 from tests.hostile_names import payload
 
@@ -73,7 +74,7 @@ def test_the_run_of_table_4_is_as_the_paper_has_it():
     batch = load_batch(path)
     arm = batch.arms[0]
     assert (batch.name, batch.file, batch.solves) == ("Table 4", str(path), 20_000)
-    assert arm.problem.detector is None
+    assert arm.problem.collision.detector is None
     told = {"strategy": "best/1", "update": "in_place", "bounds": "redraw", "restarts": 1, "collision": "reject"}
     assert arm.problem.settings == ikde.SolveSettings(method="de", position_tolerance_m=5e-5, **told)
     assert [d.name for d in batch.graders] == ["typical_all", "improved_printed", "typical", "improved"]
@@ -102,8 +103,8 @@ def test_a_detector_of_a_run_file_is_never_run(tmp_path, monkeypatch):
     detector = {"name": payload("marker"), "spheres": "typical", "pairs": "non_adjacent"}
     batch = load_batch({**yaml.safe_load(GOOD), "solve": {"detector": detector}, "arms": {}})
     (arm,) = batch.arms
-    assert arm.problem.detector.name == detector["name"]
-    assert load_module(batch.robot, arm.problem.detector, "position")
+    assert arm.problem.collision.detector.name == detector["name"]
+    assert load_module(CollisionModel(robot=batch.robot, detector=arm.problem.collision.detector), "position")
     assert [path.name for path in tmp_path.iterdir()] == ["cache"]
 
 

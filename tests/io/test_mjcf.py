@@ -6,6 +6,7 @@ import pytest
 
 import ikde
 from ikde.io.mjcf import format_mjcf
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_components, compute_gaps
 from tests.conftest import ROBOTS, random_q
 from tests.random_robots import make_frame, make_robot, random_robot
@@ -55,10 +56,10 @@ def test_frames_are_those_of_mujoco(robot, rng):
 
 
 def test_spheres_are_those_of_mujoco(robot, rng):
-    reader, detector = Reader(robot), robot.detector(None)
+    reader, detector = Reader(robot), CollisionModel.of(robot).detector
     for q in random_q(robot, rng, COUNT if detector else 0):
         reader.move(q)
-        for name, (centres, radii) in compute_components(robot, detector.spheres, q).items():
+        for name, (centres, radii) in compute_components(CollisionModel.of(robot), q).items():
             for index, (centre, radius) in enumerate(zip(centres, radii, strict=True)):
                 place = reader.data.geom(f"{name}_{index}").xpos
                 np.testing.assert_allclose(place, centre, **EXACT, err_msg=name)
@@ -66,12 +67,12 @@ def test_spheres_are_those_of_mujoco(robot, rng):
 
 
 def test_contacts_are_the_collisions(robot, rng):
-    reader, detector = Reader(robot), robot.detector(None)
+    reader, detector = Reader(robot), CollisionModel.of(robot).detector
     seen = set()
     for q in random_q(robot, rng, 4 * COUNT if detector else 0):
         reader.move(q)
-        pairs = robot.pairs(detector)
-        gaps = compute_gaps(robot, detector.spheres, pairs, q)
+        pairs = CollisionModel(robot=robot, detector=detector).pairs
+        gaps = compute_gaps(CollisionModel(robot=robot, detector=detector), q)
         collisions = {frozenset(pair) for pair, gap in zip(pairs, gaps, strict=True) if gap < 0.0}
         assert reader.touching() == collisions
         seen |= collisions

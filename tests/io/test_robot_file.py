@@ -15,6 +15,7 @@ from ikde.io import robot_file
 from ikde.io.robot_file import parse_robot
 from ikde.io.robots import FOLDER, load_robot
 from ikde.io.yaml_file import Document
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import AdjacentPair
 from tests.hostile_names import HIDDEN, PRINTABLE, rename_in_file
 
@@ -86,7 +87,7 @@ def test_any_printable_name_is_one(tmp_path, template):
     robot = parse(rename_in_file(GOOD, template.format, NAMES), tmp_path)
     plain = parse(GOOD, tmp_path)
     assert robot.joint_names == tuple(map(template.format, plain.joint_names))
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     assert (detector.name, detector.pairs) == (template.format("coarse"), template.format("all"))
     assert robot.upper.tolist() == plain.upper.tolist()
 
@@ -291,10 +292,10 @@ def test_of_several_detectors_the_default_is_named(tmp_path):
 
 
 def test_no_detector_may_be_the_default_and_none_need_be_there(tmp_path):
-    assert parse(f"{TWO_DETECTORS}default_detector: none\n", tmp_path).detector(None) is None
+    assert parse(f"{TWO_DETECTORS}default_detector: none\n", tmp_path).default_detector == "none"
     bare = GOOD[: GOOD.index("detectors:")]
-    assert parse(bare, tmp_path).detector(None) is None
-    assert parse(bare[: bare.index("spheres:")], tmp_path).detector(None) is None
+    assert parse(bare, tmp_path).default_detector == "none"
+    assert parse(bare[: bare.index("spheres:")], tmp_path).default_detector == "none"
 
 
 @pytest.mark.parametrize("text", ["", "[]", "3", "name: x", "null", "{name: x, joints: [], frames: {}, tool: t}"])

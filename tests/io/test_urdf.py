@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import ikde
 from ikde.io.urdf import format_urdf, rpy_from_rotation
+from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_components
 from tests.conftest import ROBOTS, random_q
@@ -68,11 +69,11 @@ def test_frames_are_those_of_pinocchio(robot, rng):
 
 
 def test_spheres_are_those_of_pinocchio(robot, rng):
-    reader, detector = Reader(robot), robot.detector(None)
+    reader, detector = Reader(robot), CollisionModel.of(robot).detector
     for q in random_q(robot, rng, COUNT if detector else 0):
         reader.move(q)
         found = reader.spheres()
-        components = compute_components(robot, detector.spheres, q)
+        components = compute_components(CollisionModel.of(robot), q)
         assert sorted(found) == sorted(f"component_{name}" for name in components)
         for name, (centres, radii) in components.items():
             expected = np.column_stack([centres, radii])

@@ -9,6 +9,7 @@ from ikde.errors import FileError, InputError
 from ikde.io.mjcf import format_mjcf
 from ikde.io.urdf import format_urdf
 from ikde.io.xml_file import format_document, format_numbers, list_carriers, list_components, reserve_name, write_xml
+from ikde.model.collision_model import CollisionModel
 from tests.random_robots import make_frame, make_robot
 
 FORMATS = pytest.mark.parametrize("write", [format_urdf, format_mjcf])
@@ -38,9 +39,9 @@ def test_components_stand_on_the_frames_of_their_joints(any_robot):
     assert carriers[0] == "world"
     assert len(set(carriers)) == len(any_robot.joints) + 1
     for detector in any_robot.detectors.values():
-        components = list_components(any_robot, detector)
+        components = list_components(CollisionModel(robot=any_robot, detector=detector))
         assert tuple(components) == any_robot.components(detector.spheres)
-    assert list_components(any_robot, None) == {}
+    assert list_components(CollisionModel.of(any_robot, "none")) == {}
 
 
 @FORMATS
@@ -61,12 +62,12 @@ def test_a_name_that_xml_cannot_hold_is_refused(write, qiao):
 @FORMATS
 def test_an_unknown_detector_is_refused(write, qiao):
     with pytest.raises(InputError, match="no detector 'imporved'"):
-        write(qiao, detector="imporved")
+        write(qiao, collision="imporved")
 
 
 @FORMATS
 def test_without_a_detector_there_are_no_spheres(write, qiao):
-    text = write(qiao, detector="none")
+    text = write(qiao, collision="none")
     assert "component_" not in text
     assert "radius" not in text
 
@@ -74,16 +75,18 @@ def test_without_a_detector_there_are_no_spheres(write, qiao):
 @FORMATS
 @pytest.mark.parametrize("name", ["single", "typical", "improved"])
 def test_the_detector_chooses_the_spheres(write, qiao, name):
-    elements = ET.fromstring(write(qiao, detector=name)).iter("collision" if write is format_urdf else "geom")
+    elements = ET.fromstring(write(qiao, collision=name)).iter("collision" if write is format_urdf else "geom")
     names = [element.get("name") for element in elements if element.get("name")]
     rows = qiao.approximations[name]
     assert len(names) == len(set(names)) == sum(row.count for row in rows)
     assert set(names) == {f"{s.component}_{k}" for c in _spheres(qiao, name) for k, s in enumerate(c)}
-    assert write(qiao, detector=name) == write(qiao, detector=replace(qiao.detector(name), name=name))
+    assert write(qiao, collision=name) == write(
+        qiao, collision=replace(CollisionModel.of(qiao, name).detector, name=name)
+    )
 
 
 def _spheres(robot, name):
-    return list_components(robot, robot.detector(name)).values()
+    return list_components(CollisionModel.of(robot, name)).values()
 
 
 def test_a_file_is_written_whole_and_over_an_older_one(tmp_path):

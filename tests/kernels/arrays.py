@@ -5,7 +5,8 @@ import numpy as np
 from ikde.kernels.arrays import DetectorArrays
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.spheres import compute_bounds, compute_centres
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 
 
 def run_bodies(robot, q):
@@ -25,7 +26,7 @@ def run_tool(robot, T_world_body):
 
 def run_spheres(robot, detector, q):
     """Packed detector, centres [3, S] and bounds [C, 3] by the kernels."""
-    packed, T_world_body = pack_detector(robot, detector), run_bodies(robot, q)
+    packed, T_world_body = CollisionModel(robot=robot, detector=detector).arrays, run_bodies(robot, q)
     centres = np.full((3, len(packed.radius)), np.nan)
     bounds = np.full((len(packed.components), 3), np.nan)
     compute_centres(packed, T_world_body, centres)

@@ -4,7 +4,8 @@ import numpy as np
 
 from ikde.kernels.arrays import DRIFT, TrackArrays
 from ikde.kernels.tracking import make_sample
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Targets
 from ikde.solver.forward import forward
 from ikde.track.drive import pack_drive
@@ -39,7 +40,7 @@ class Stand:
 
     def __init__(self, robot, q, name="differential", **limits):
         self.robot, self.q = robot, np.array(q, dtype=float)
-        self.arrays, self.spheres = pack_robot(robot), pack_detector(robot, robot.detector(None))
+        self.arrays, self.spheres = pack_robot(robot), CollisionModel.of(robot).arrays
         self.drive, self.track = make_drive(robot, name, **limits), make_track(robot)
         self.size = len(self.drive.largest)
         self.work = make_sample(self.arrays, self.spheres, len(self.q), self.size)

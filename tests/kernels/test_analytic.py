@@ -10,8 +10,9 @@ from ikde.kernels import analytic
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH
 from ikde.kernels.closed_form import ANGLES, BRANCHES, solve_ur_arm
 from ikde.model.closed_form import find_ur_arm, pack_ur_arm
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import verify_many
@@ -30,7 +31,7 @@ BASE = np.array([0, 1, 2])
 
 def free_q(robot, rng, count):
     """Configurations inside the limits that are free of collision."""
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     Q = random_q(robot, rng, 20 * count)
     return Q[(find_gaps(robot, detector, Q) > detector.safe_distance_m).all(axis=1)][:count]
 
@@ -50,8 +51,8 @@ def make_pool(robot, rng):
 
 def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None, streams=None):
     """The outputs of the kernel, by tables or by a module of the robot's own."""
-    detector, arm, count = robot.detector(None), find_ur_arm(robot), len(targets)
-    packed, arrays = pack_detector(robot, detector), pack_robot(robot)
+    detector, arm, count = CollisionModel.of(robot).detector, find_ur_arm(robot), len(targets)
+    packed, arrays = CollisionModel(robot=robot, detector=detector).arrays, pack_robot(robot)
     tables = (arrays, packed._replace(safe_distance=packed.safe_distance + 1e-12))
     safe_distance_m = detector.safe_distance_m if detector else 0.0
     tables = tables if module is PLAIN else (0, safe_distance_m + 1e-12)
@@ -88,7 +89,7 @@ def test_what_is_reached_is_exact_free_and_inside_the_limits(robot, rng):
     found = run(robot, targets, make_pool(robot, rng))
     reached = found.counts[:, REACHED] == 1
     assert reached.mean() > 0.9
-    verdicts = verify_many(robot, targets, found.q, EXACT, robot.detector(None))
+    verdicts = verify_many(CollisionModel.of(robot), targets, found.q, EXACT)
     assert verdicts.accepted[reached].all()
     assert verdicts.within_tolerance[found.score[:, 0] == 0.0].all()
 
@@ -116,14 +117,14 @@ def test_counts_add_up(robot, rng):
     assert (found.score[met & ~reached] == [0.0, UNKNOWN_DEPTH]).all()
     assert np.isinf(found.score[~met]).all()
     # Who is not reached keeps one that meets the target but collides.
-    verdicts = verify_many(robot, targets, found.q, EXACT, robot.detector(None))
+    verdicts = verify_many(CollisionModel.of(robot), targets, found.q, EXACT)
     assert verdicts.within_tolerance[met].all()
     assert not verdicts.accepted[met & ~reached].any()
 
 
 def test_near_a_configuration_the_nearest_free_branch_is_taken(rng):
     """Against all branches, each judged by plain numpy."""
-    detector, width, seen = UR5.detector(None), UR5.upper - UR5.lower, 0
+    detector, width, seen = CollisionModel.of(UR5).detector, UR5.upper - UR5.lower, 0
     for q in free_q(UR5, rng, 25):
         near = random_q(UR5, rng)
         T = compute_frames(UR5, q)[UR5.tool]
@@ -148,7 +149,7 @@ def test_the_first_base_near_a_configuration_is_its_own(rng):
 
 @every_robot
 def test_a_module_of_the_robots_own_finds_the_same(robot, rng):
-    module = run_text(format_module(robot, robot.detector(None), "pose"))
+    module = run_text(format_module(CollisionModel.of(robot), "pose"))
     targets, seeds = make_targets(robot, random_q(robot, rng, 20)), make_pool(robot, rng)
     by_tables, own = run(robot, targets, seeds), run(robot, targets, seeds, module=module)
     for name in ("q", "score", "counts"):
@@ -177,7 +178,7 @@ def test_random_arms_whatever_carries_them(seed, rng):
     robot = random_ur_robot(seed)
     targets = make_targets(robot, random_q(robot, rng, 6))
     found = run(robot, targets, no_seeds(robot), budget=60)
-    verdicts = verify_many(robot, targets, found.q, EXACT, None)
+    verdicts = verify_many(CollisionModel.of(robot, "none"), targets, found.q, EXACT)
     reached = found.counts[:, REACHED] == 1
     assert verdicts.accepted[reached].all()
     assert reached.sum() >= 2

@@ -5,7 +5,8 @@ import pytest
 
 from ikde.kernels.arrays import DescentArrays
 from ikde.kernels.blocks import flatten_grader, flatten_question, unpack_grader, unpack_question
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 from tests.conftest import random_q
 from tests.kernels.seeding import no_seeds, pack_seeds
 from tests.kernels.test_figures import ROBOTS, terms_of
@@ -22,7 +23,7 @@ def assert_same(ours, theirs):
 @pytest.mark.parametrize("robot", ROBOTS[::3], ids=lambda robot: robot.name)
 def test_the_graders_tables_come_back(robot):
     for detector in (None, *robot.detectors.values()):
-        packed = pack_robot(robot), pack_detector(robot, detector), terms_of(robot, 0.25, 0.5)
+        packed = pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms_of(robot, 0.25, 0.5)
         for ours, theirs in zip(packed, unpack_grader(*flatten_grader(*packed)), strict=True):
             assert_same(ours, theirs)
 

@@ -13,7 +13,8 @@ from ikde.kernels.clearance import (
     judge_centres,
 )
 from ikde.kernels.evolution import DEPTH_STEP, compute_depth
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 from tests import reference
 from tests.conftest import random_q
 from tests.kernels.arrays import run_bodies, run_spheres, two_spheres
@@ -25,7 +26,7 @@ SEEDS = range(40)
 def sample(seed, rng, count=8):
     """Configurations of a random robot: (robot, detector, q, packed detector, centres, bounds)."""
     robot = random_robot(seed)
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     for q in random_q(robot, rng, count):
         yield robot, detector, q, *run_spheres(robot, detector, q)
 
@@ -123,7 +124,7 @@ def test_touching_at_the_safe_distance_collides_with_the_smallest_depth():
 
 
 def test_without_pairs_the_clearance_is_infinite(qiao):
-    detector = pack_detector(qiao, None)
+    detector = CollisionModel.of(qiao, "none").arrays
     bounds, centres = np.zeros((0, 3)), np.zeros((3, 0))
     assert compute_clearance(detector, bounds, centres) == (math.inf, -1)
     assert not collides(detector, bounds, centres)
@@ -133,7 +134,7 @@ def test_without_pairs_the_clearance_is_infinite(qiao):
 def test_rows_are_judged_one_by_one(seed, rng):
     robot = random_robot(seed)
     qs, verdicts = random_q(robot, rng, 20), np.zeros(20, dtype=bool)
-    packed = pack_detector(robot, robot.detector(None))
+    packed = CollisionModel.of(robot).arrays
     judge_centres(pack_robot(robot), packed, qs, verdicts)
-    seen = [run_spheres(robot, robot.detector(None), q) for q in qs]
+    seen = [run_spheres(robot, CollisionModel.of(robot).detector, q) for q in qs]
     assert verdicts.tolist() == [bool(collides(packed, bounds, centres)) for packed, centres, bounds in seen]

@@ -10,7 +10,8 @@ from ikde.kernels.clearing import MOST_CONTACTS, add_contacts, clear_step, find_
 from ikde.kernels.damped import compute_error, make_descent_workspace, take_step
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.spheres import compute_bounds, compute_centres
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from tests import reference
 from tests.conftest import random_q
@@ -24,8 +25,8 @@ class Placed:
 
     def __init__(self, robot, q, target=None, rows=6 + MOST_CONTACTS):
         self.robot, self.q = robot, np.array(q)
-        self.detector = robot.detector(None)
-        self.arrays, self.spheres = pack_robot(robot), pack_detector(robot, self.detector)
+        self.detector = CollisionModel.of(robot).detector
+        self.arrays, self.spheres = pack_robot(robot), CollisionModel(robot=robot, detector=self.detector).arrays
         self.work = make_descent_workspace(self.arrays, len(q), rows)
         self.bounds = np.empty((self.spheres.components.shape[0], 3))
         self.centres = np.empty((3, self.spheres.radius.size))
@@ -51,7 +52,7 @@ class Placed:
 
 
 def clearances(robot, q):
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     return reference.compute_pair_clearances(
         reference.list_spheres(robot, detector, q), robot.pair_lists[detector.pairs]
     )

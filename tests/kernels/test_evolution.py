@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ikde.kernels.evolution import evolve, find_best, is_better, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.rng import seed_stream
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import make_problem, pack_search
 from ikde.solver.settings import SolveSettings
@@ -27,7 +27,7 @@ def make_case(robot, *, rule="feasibility", freeze=None, **changes):
     """A small problem; the rule `ignore` is that of a robot without a detector."""
     chosen = {"population": 8, "generations": 10, "collision": "reject" if rule == "ignore" else rule, **changes}
     detector = "none" if rule == "ignore" else None
-    return make_problem(robot, SolveSettings(**chosen), detector=detector, near=None, freeze=freeze)
+    return make_problem(robot, SolveSettings(**chosen), collision=detector, near=None, freeze=freeze)
 
 
 def make_target(robot, kind, rng):
@@ -39,7 +39,7 @@ def make_target(robot, kind, rng):
 
 def run_evolve(problem, target, seed=1):
     """The kernel's outcome as the twin returns it."""
-    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    robot, detector = pack_robot(problem.robot), problem.collision.arrays
     work = make_workspace(robot, detector, len(problem.lower), problem.settings.population)
     state = np.zeros(1, dtype=np.uint64)
     seed_stream(np.uint64(seed), np.int64(2), 3, state)
@@ -117,7 +117,7 @@ def test_a_met_target_is_free_under_feasibility(qiao, rng):
         x, score, best, meets, _, _ = run_evolve(problem, target, seed)
         assert meets
         assert score[best, 1] == 0.0
-        assert reference.compute_depth(qiao, problem.detector, x[best]) == 0.0
+        assert reference.compute_depth(qiao, problem.collision.detector, x[best]) == 0.0
 
 
 @pytest.mark.parametrize(("rule", "update"), list(itertools.product(RULES, UPDATES)))

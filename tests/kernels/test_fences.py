@@ -7,6 +7,7 @@ from ikde.kernels import fences as kernels
 from ikde.kernels.drive import take_drive_step
 from ikde.kernels.fences import MOST_PAIRS, make_fences
 from ikde.kernels.tracking import pose
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.track.drive import step_base
 from tests.conftest import random_q
@@ -35,20 +36,22 @@ def rows_at(stand, step):
 
 @pytest.mark.parametrize("name", ["differential", "omnidirectional"])
 def test_pairs_are_the_nearest_with_their_gaps_and_slopes(qiao, rng, name):
-    detector = qiao.detector(None)
-    pairs = qiao.pairs(detector)
+    detector = CollisionModel.of(qiao).detector
     for _ in range(2):
         stand = Stand(qiao, random_q(qiao, rng), name)
         stand.q[:2] = 0.0
         stand.track = stand.track._replace(reach=0.3)
         step = rng.uniform(-1, 1, stand.size)
         slack, slope, pair = rows_at(stand, step)
-        gaps = compute_gaps(qiao, detector.spheres, pairs, end_of(stand, step))
+        gaps = compute_gaps(CollisionModel(robot=qiao, detector=detector), end_of(stand, step))
         near = np.sort(gaps[gaps < 0.3])[:MOST_PAIRS]
         np.testing.assert_allclose(np.sort(slack), near - stand.track.margin, atol=1e-12)
         for k in range(stand.size):
             move = DIFFERENCE * np.eye(stand.size)[k]
-            ends = [compute_gaps(qiao, detector.spheres, pairs, end_of(stand, step + d))[pair] for d in (move, -move)]
+            ends = [
+                compute_gaps(CollisionModel(robot=qiao, detector=detector), end_of(stand, step + d))[pair]
+                for d in (move, -move)
+            ]
             np.testing.assert_allclose(slope[:, k], (ends[0] - ends[1]) / (2 * DIFFERENCE), atol=1e-6)
 
 

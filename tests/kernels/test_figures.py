@@ -13,7 +13,8 @@ from ikde.kernels.clearance import compute_clearance
 from ikde.kernels.figures import LANES, compute_figures
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Targets
 from tests.conftest import random_q
 from tests.kernels.arrays import freeze, run_bodies, run_spheres, run_tool
@@ -32,7 +33,9 @@ def run(robot, detector, targets, Q, terms=None):
     """Figures [T, 3], pairs [T] and verdicts [T] by the grader."""
     figures, pairs = np.full((len(Q), 3), np.nan), np.full(len(Q), -9, dtype=np.int64)
     accepted = np.zeros(len(Q), dtype=np.bool_)
-    block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms or terms_of(robot))
+    block = flatten_grader(
+        pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms or terms_of(robot)
+    )
     compute_figures(*block, *pack_targets(targets), np.ascontiguousarray(Q), figures, pairs, accepted)
     return figures, pairs, accepted
 
@@ -79,7 +82,7 @@ def test_the_bits_are_those_of_the_scalar_kernels(robot, rng):
 @pytest.mark.parametrize("count", [0, 1, 2, 3, LANES - 1, LANES, LANES + 1, 3 * LANES])
 def test_a_configuration_does_not_hang_on_its_neighbours(qiao, rng, count):
     Q = random_q(qiao, rng, 3 * LANES)
-    targets, detector = targets_near(qiao, Q, rng), qiao.detector(None)
+    targets, detector = targets_near(qiao, Q, rng), CollisionModel.of(qiao).detector
     whole, piece = run(qiao, detector, targets, Q), run(qiao, detector, targets[:count], Q[:count])
     for every, some in zip(whole, piece, strict=True):
         assert some.tobytes() == every[:count].tobytes()
@@ -89,7 +92,7 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
     Q = random_q(qiao, rng, 400)
     Q[::3, 2] = qiao.upper[2] + 1e-15 * np.arange(134)
     Q[5] = np.nan
-    targets, detector = targets_near(qiao, Q[:5].repeat(80, axis=0), rng), qiao.detector(None)
+    targets, detector = targets_near(qiao, Q[:5].repeat(80, axis=0), rng), CollisionModel.of(qiao).detector
     figures, _, _ = run(qiao, detector, targets, Q)
     position, orientation = np.nanmedian(figures[:, 0]), np.nanmedian(figures[:, 1])
     _, _, accepted = run(qiao, detector, targets, Q, terms_of(qiao, position, orientation))
@@ -103,8 +106,8 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
 
 def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
     q, targets = qiao.home[None], Targets(np.zeros((1, 3)))
-    (position, _, clearance), *_ = run(qiao, qiao.detector(None), targets, q)[0]
-    detector = pack_detector(qiao, qiao.detector(None))
+    (position, _, clearance), *_ = run(qiao, CollisionModel.of(qiao).detector, targets, q)[0]
+    detector = CollisionModel.of(qiao).arrays
     for safe_distance, tolerance, expected in (
         (clearance, position, False),
         (np.nextafter(clearance, 0.0), position, True),
@@ -131,7 +134,7 @@ def test_it_shares_no_code_with_the_search():
 def test_it_is_vectorised(qiao, monkeypatch):
     fresh = numba.njit(error_model="numpy", nogil=True)(compute_figures.py_func)  # of cached code there is no text
     monkeypatch.setattr(f"{__name__}.compute_figures", fresh)
-    run(qiao, qiao.detector(None), Targets(np.zeros((1, 3))), qiao.home[None])
+    run(qiao, CollisionModel.of(qiao).detector, Targets(np.zeros((1, 3))), qiao.home[None])
     text = next(iter(fresh.inspect_asm().values()))
     if "vsubpd" not in text:
         pytest.skip("a machine without wide registers")

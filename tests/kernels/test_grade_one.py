@@ -6,8 +6,9 @@ import pytest
 import ikde
 from ikde.kernels.blocks import Terms, flatten_grader
 from ikde.kernels.grade_one import grade_one
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import KINDS
 from tests.conftest import random_q
 from tests.kernels.test_figures import ROBOTS, run, targets_near, terms_of
@@ -21,7 +22,7 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
     for detector in (None, *robot.detectors.values()):
         terms = terms_of(robot, 0.5, 1.0)
         figures, pairs, accepted = run(robot, detector, targets, Q, terms)
-        block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms)
+        block = flatten_grader(pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms)
         for row, q in enumerate(Q):
             *errors, pair, verdict = grade_one(*block, *pack_targets(targets.take(np.array([row]))), q)
             assert np.array(errors).tobytes() == figures[row].tobytes()
@@ -31,7 +32,7 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
 @pytest.mark.parametrize("kind", KINDS)
 def test_it_shares_no_code_with_what_searches_by_written_kernels(qiao, kind):
     """Sines, cosines and arc tangents excepted; arguments are taken apart by functions that compute nothing."""
-    module = run_text(format_module(qiao, qiao.detector(None), kind))
+    module = run_text(format_module(CollisionModel.of(qiao), kind))
     search = reachable(module.solve_target) | reachable(module.solve_targets) | reachable(module.fill_pool)
     shared = {name for name in reachable(grade_one) & search if not name.startswith("ikde.kernels.trig.")}
     assert shared == set()
@@ -41,7 +42,7 @@ def test_it_shares_no_code_with_what_searches_by_written_kernels(qiao, kind):
 
 def test_what_is_outside_the_limits_is_not_accepted(qiao):
     q, wide = qiao.home.copy(), Terms(np.array([qiao.lower, qiao.upper]), np.inf, np.inf)
-    block = flatten_grader(pack_robot(qiao), pack_detector(qiao, None), wide)
+    block = flatten_grader(pack_robot(qiao), CollisionModel.of(qiao, "none").arrays, wide)
     target = pack_targets([ikde.Target((0.0, 0.0, 0.0))])
     assert grade_one(*block, *target, q)[4]
     q[4] = qiao.upper[4] + 1e-9

@@ -103,8 +103,8 @@ for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
         for detector in (None, "none"):
             for collision in ("reject", "feasibility"):
                 changed = settings.with_changes(collision=collision)
-                ikde.solve(robot, target, changed, detector=detector, near=robot.home)
-                ikde.solve(robot, target, settings, detector=detector, freeze=robot.joint_names[:1])
+                ikde.solve(robot, target, changed, collision=detector, near=robot.home)
+                ikde.solve(robot, target, settings, collision=detector, freeze=robot.joint_names[:1])
     ikde.solve_many(robot, [pose, pose], settings, threads=2)
 print(len(solve_lanes.signatures), len(compute_figures.signatures))
 """

@@ -5,7 +5,8 @@ import pytest
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, OUTSIDE, REACHED
 from ikde.kernels.lanes import is_inside, set_box, solve_lane
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import make_problem, pack_search
 from ikde.solver.settings import SolveSettings
@@ -47,7 +48,7 @@ def test_a_box_has_its_share_of_the_range_on_either_side(attempt):
 
 
 def test_without_near_the_first_box_is_the_whole_range(qiao):
-    problem = make_problem(qiao, SolveSettings(), detector=None, near=None, freeze=None)
+    problem = make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=None)
     search = pack_search(problem)
     lower, upper = run_box(0, search.first_box, search.ranges)
     np.testing.assert_array_equal([lower, upper], [qiao.lower, qiao.upper])
@@ -62,8 +63,8 @@ def test_on_a_limit_is_inside():
 def run_lane(robot, target, blocks, *, seed=3, detector=None, near=None, **changes):
     """Run the attempts block by block: (q, score, counts, pair counts)."""
     settings = SolveSettings(**{"population": 8, "generations": 40, "update": "generation", **changes})
-    problem = make_problem(robot, settings, detector=detector, near=near, freeze=None)
-    packed, spheres = pack_robot(robot), pack_detector(robot, problem.detector)
+    problem = make_problem(robot, settings, collision=detector, near=near, freeze=None)
+    packed, spheres = pack_robot(robot), CollisionModel(robot=robot, detector=problem.collision.detector).arrays
     q, score, counts = np.zeros(len(robot.joints)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)
     pairs = np.zeros(len(spheres.pairs), dtype=np.int64)
     search, targets = pack_search(problem), pack_targets([target])
@@ -131,7 +132,7 @@ def test_the_score_of_a_reached_target_is_zero(qiao):
     assert tuple(score) == (0.0, 0.0)
     T = reference.compute_frames(qiao, q)["tool"]
     assert reference.compute_position_error(T, HARD) <= 0.05
-    assert reference.compute_depth(qiao, qiao.detector(None), q) == 0.0
+    assert reference.compute_depth(qiao, CollisionModel.of(qiao).detector, q) == 0.0
 
 
 def test_the_kept_configuration_has_the_lowest_cost_of_all_attempts(qiao):

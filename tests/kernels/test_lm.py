@@ -13,9 +13,10 @@ from ikde.kernels import lm
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH, DescentArrays
 from ikde.kernels.blocks import flatten_question
 from ikde.kernels.tables import LANES
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
 from ikde.model.generate.module import load_module
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.reach import arm_length_m
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.plain import compute_frames
@@ -38,7 +39,7 @@ by_tables = plain_module(lm)
 @cache
 def generated(robot, kind):
     """The module of a robot, not compiled."""
-    return run_text(format_module(robot, robot.detector(None), kind))
+    return run_text(format_module(CollisionModel.of(robot), kind))
 
 
 def make_target(T, kind):
@@ -48,7 +49,7 @@ def make_target(T, kind):
 
 def make_targets(robot, kind, count, rng):
     """Targets that a configuration free of collision meets, and one in ten that is out of reach."""
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     Q = random_q(robot, rng, 20 * count)
     free = (find_gaps(robot, detector, Q) > detector.safe_distance_m).all(axis=1)
     assert free.sum() >= count
@@ -59,7 +60,7 @@ def make_targets(robot, kind, count, rng):
 
 def make_question(robot, kind, count=2 * LANES + 5, budget=6, seed=3):
     """Targets, streams and budgets of differing size; starts from a pool of free configurations."""
-    rng, detector = np.random.default_rng(seed), robot.detector(None)
+    rng, detector = np.random.default_rng(seed), CollisionModel.of(robot).detector
     targets = make_targets(robot, kind, count, rng)
     base = robot.name == "qiao2021"
     Q = random_q(robot, rng, 400)
@@ -84,7 +85,7 @@ def make_question(robot, kind, count=2 * LANES + 5, budget=6, seed=3):
 
 
 def make_outputs(asked):
-    count, pairs = len(asked.targets), len(asked.robot.pairs(asked.robot.detector(None)))
+    count, pairs = len(asked.targets), len(CollisionModel.of(asked.robot).pairs)
     return (
         np.zeros((count, len(asked.robot.joints))),
         np.full((count, 2), np.inf),
@@ -95,9 +96,9 @@ def make_outputs(asked):
 
 def tables_of(asked, module):
     """What stands in place of robot and detector."""
-    detector = asked.robot.detector(None)
+    detector = CollisionModel.of(asked.robot).detector
     if module is by_tables:
-        packed = pack_detector(asked.robot, detector)
+        packed = CollisionModel(robot=asked.robot, detector=detector).arrays
         return pack_robot(asked.robot), packed._replace(safe_distance=packed.safe_distance + 1e-12)
     return 0, detector.safe_distance_m + 1e-12
 
@@ -182,7 +183,7 @@ def test_data_driven_rows_are_the_same_side_by_side():
 def test_what_is_reached_is_accepted_by_plain_numpy(asked, answers):
     q, _, counts, _ = answers
     reached = counts[:, REACHED] == 1
-    verdicts = verify_many(asked.robot, asked.targets, q, SETTINGS, asked.robot.detector(None))
+    verdicts = verify_many(CollisionModel.of(asked.robot), asked.targets, q, SETTINGS)
     assert verdicts.accepted[reached].all()
     assert reached[asked.budgets > 1].mean() > 0.4
     assert not reached[5::10].any()
@@ -235,14 +236,14 @@ def test_the_data_driven_instance_reaches_the_same_targets(kind):
         _, _, counts, _ = solve_singly(generated(robot, kind), asked)
         q, _, others, _ = solve_singly(by_tables, asked)
         np.testing.assert_array_equal(counts[:, [REACHED, ATTEMPTS]], others[:, [REACHED, ATTEMPTS]])
-        verdicts = verify_many(robot, asked.targets, q, SETTINGS, robot.detector(None))
+        verdicts = verify_many(CollisionModel.of(robot), asked.targets, q, SETTINGS)
         assert verdicts.accepted[others[:, REACHED] == 1].all()
 
 
 def assert_compiled_like_plain(robot, kind):
     """Machine code of both, vector instructions and all, and plain Python: the same bits."""
     asked = make_question(robot, kind)
-    compiled = load_module(robot, robot.detector(None), kind)
+    compiled = load_module(CollisionModel.of(robot), kind)
     expected = solve_singly(generated(robot, kind), asked)
     assert_same_bits(solve_singly(compiled, asked), expected)
     assert_same_bits(solve_together(compiled, asked, (6,)), expected)
@@ -266,14 +267,14 @@ def test_compiled_kernels_of_a_large_robot_give_the_same_bits(kind):
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 def test_the_pool_is_free_and_the_same_for_everybody(robot):
-    module, told = generated(robot, "position"), robot.detector(None).safe_distance_m + 1e-12
+    module, told = generated(robot, "position"), CollisionModel.of(robot).detector.safe_distance_m + 1e-12
     pools = [np.full((40, len(robot.joints)), np.nan) for _ in range(2)]
     with quietly():
         found = [module.fill_pool(0, told, robot.lower, robot.upper, pool) for pool in pools]
     assert found == [40, 40]
     assert pools[0].tobytes() == pools[1].tobytes()
     assert np.all((robot.lower <= pools[0]) & (pools[0] <= robot.upper))
-    assert (find_gaps(robot, robot.detector(None), pools[0]) > told).all()
+    assert (find_gaps(robot, CollisionModel.of(robot).detector, pools[0]) > told).all()
 
 
 def test_a_pool_that_cannot_be_filled_says_how_far_it_came(qiao):

@@ -21,7 +21,8 @@ from ikde.kernels.memetic import (
     sort_members,
 )
 from ikde.kernels.rng import seed_stream
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import make_problem, pack_search
 from ikde.solver.settings import SolveSettings
@@ -39,7 +40,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarn
 
 def make_case(robot, *, detector=None, near=None, freeze=None, **changes):
     settings = SolveSettings(bounds="midpoint", **changes)
-    return make_problem(robot, settings, detector=detector, near=near, freeze=freeze)
+    return make_problem(robot, settings, collision=detector, near=near, freeze=freeze)
 
 
 def make_target(robot, kind, q):
@@ -53,12 +54,12 @@ def free_q(robot, problem, rng):
     """A configuration inside the problem's ranges that is free."""
     while True:
         q = rng.uniform(problem.lower, problem.upper)
-        if problem.detector is None or reference.compute_depth(robot, problem.detector, q) == 0.0:
+        if problem.collision.detector is None or reference.compute_depth(robot, problem.collision.detector, q) == 0.0:
             return q
 
 
 def run_evolve(problem, target, memetic, seed=1):
-    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    robot, detector = pack_robot(problem.robot), problem.collision.arrays
     work = make_memetic_workspace(robot, detector, len(problem.lower), memetic)
     state, box = np.zeros(1, dtype=np.uint64), np.array([problem.lower, problem.upper])
     seed_stream(np.uint64(seed), np.int64(2), 3, state)
@@ -69,7 +70,7 @@ def run_evolve(problem, target, memetic, seed=1):
 
 def run_lane(problem, target, memetic=None, *, seed=1, stream=0, blocks=((0, 6),)):
     """(q, score, counts, pairs) of a lane."""
-    robot, detector = pack_robot(problem.robot), pack_detector(problem.robot, problem.detector)
+    robot, detector = pack_robot(problem.robot), problem.collision.arrays
     q, score, counts = np.zeros(len(problem.lower)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)
     outputs = (q, score, counts, np.zeros(detector.pairs.shape[0], dtype=np.int64))
     where = (robot, detector, pack_targets([target]), 0, pack_search(problem), memetic or QUICK, DescentArrays())
@@ -116,7 +117,7 @@ def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rng):
 
 
 def test_members_are_sorted_and_the_worst_dropped(qiao, rng):
-    detector = pack_detector(qiao, qiao.detector(None))
+    detector = CollisionModel.of(qiao).arrays
     work = make_memetic_workspace(pack_robot(qiao), detector, 9, MemeticArrays(first_population=30))
     members = work.members
     members.x[:], members.score[:, 0] = rng.uniform(size=(30, 9)), rng.uniform(size=30)
@@ -154,7 +155,7 @@ def test_what_is_reached_is_verified(any_robot, kind, rng):
 
 
 def test_clearance_and_frozen_joints_are_kept(qiao, rng):
-    detector = replace(qiao.detector(None), safe_distance_m=0.02)
+    detector = replace(CollisionModel.of(qiao).detector, safe_distance_m=0.02)
     freeze = {"d_x": 0.1, "d_y": 1.0 / 3.0, "q_z": -0.2}
     problem = make_case(qiao, detector=detector, freeze=freeze)
     for stream in range(3):
@@ -162,7 +163,7 @@ def test_clearance_and_frozen_joints_are_kept(qiao, rng):
         q, _, counts, _ = run_lane(problem, target, MemeticArrays(), stream=stream, blocks=[(0, 20)])
         assert counts[REACHED] == 1
         assert q[:3].tolist() == list(freeze.values())
-        assert ikde.verify(qiao, target, q, detector=detector).accepted
+        assert ikde.verify(qiao, target, q, collision=detector).accepted
 
 
 def test_near_a_configuration_the_first_box_is_kept(qiao, rng):
@@ -174,7 +175,7 @@ def test_near_a_configuration_the_first_box_is_kept(qiao, rng):
 
 
 def test_a_pose_that_only_collides_is_counted_with_its_pair(qiao):
-    detector = replace(qiao.detector(None), safe_distance_m=0.2)  # the wrist's own pairs are nearer
+    detector = replace(CollisionModel.of(qiao).detector, safe_distance_m=0.2)  # the wrist's own pairs are nearer
     problem = make_case(qiao, detector=detector)
     _, score, counts, pairs = run_lane(problem, Target((0.8, 0.5, 1.0)), blocks=[(0, 3)])
     assert counts[[REACHED, ATTEMPTS, COLLIDING]].tolist() == [0, 3, 3]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.kernels.placing import place_by_key_points, place_by_transformation
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import frame_names, pack_robot
 from tests import reference
 from tests.conftest import random_q
@@ -17,7 +18,7 @@ DIRECTIONS, _ = reference.make_directions(4, 6)
 def test_both_ways_place_the_same_centres(seed, rng):
     robot = random_robot(seed)
     q = random_q(robot, rng)
-    packed, expected, _ = run_spheres(robot, robot.detector(None), q)
+    packed, expected, _ = run_spheres(robot, CollisionModel.of(robot).detector, q)
     bodies = np.zeros((len(robot.joints) + 1, 3, 4))
     frames = np.zeros((len(frame_names(robot)), 3, 4))
     for place, poses in ((place_by_transformation, (bodies,)), (place_by_key_points, (bodies, frames))):
@@ -31,7 +32,7 @@ def test_both_ways_place_the_same_centres(seed, rng):
 def test_both_ways_place_points_on_the_spheres(seed, rng):
     robot = random_robot(seed)
     q = random_q(robot, rng)
-    packed, expected, _ = run_spheres(robot, robot.detector(None), q)
+    packed, expected, _ = run_spheres(robot, CollisionModel.of(robot).detector, q)
     bodies = np.zeros((len(robot.joints) + 1, 3, 4))
     frames = np.zeros((len(frame_names(robot)), 3, 4))
     for place, poses in ((place_by_transformation, (bodies,)), (place_by_key_points, (bodies, frames))):

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 
 import ikde
 from ikde.kernels.sampling import MOST_DRAWS, SAMPLING, sample_ball, sample_box, sample_poses
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 from tests import reference
 from tests.random_robots import random_robot
 
@@ -46,7 +47,7 @@ def ball(center, radius, filled, seed, first, count):
 
 
 def poses(robot, seed, first, count, detector=None):
-    packed = pack_robot(robot), pack_detector(robot, robot.detector(detector))
+    packed = pack_robot(robot), CollisionModel.of(robot, detector).arrays
     return run(sample_poses, *packed, robot.lower, robot.upper, seed=seed, first=first, out=np.empty((count, 3, 4)))
 
 
@@ -89,7 +90,7 @@ def test_a_ball_equals_the_twin(seed, first, center, filled):
 @pytest.mark.parametrize("seed", SOMETIMES_FREE)
 def test_poses_equal_the_twin(seed):
     robot = random_robot(seed)
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     for k, T in enumerate(poses(robot, seed, 7, 4)):
         stream = reference.Stream.for_attempt(seed, 7 + k, int(SAMPLING))
         q = draw_from(stream, robot.lower, robot.upper)
@@ -121,7 +122,7 @@ def test_points_fill_a_ball_and_its_surface_evenly():
 
 def test_a_robot_that_is_never_free_is_found_out():
     robot = random_robot(0)
-    packed = pack_robot(robot), pack_detector(robot, robot.detector(None))
+    packed = pack_robot(robot), CollisionModel.of(robot).arrays
     found = sample_poses(*packed, robot.lower, robot.upper, np.uint64(0), np.int64(0), np.empty((2, 3, 4)))
     assert (found, MOST_DRAWS) == (0, 100_000)
 

@@ -17,7 +17,7 @@ from ikde.kernels.step_evolution import (
     judge_step,
     make_step_workspace,
 )
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.track.optimized import OptimizedSettings, pack_step_search
 from tests.track.paper_tasks import follower_of, short_task, start_of
 
@@ -29,7 +29,10 @@ class Case:
 
     def __init__(self, robot, *, changes=None, drive="differential", task=1, **limits):
         self.follower = follower_of(robot, short_task(task), drive=drive, **limits)
-        self.robot, self.detector = pack_robot(robot), pack_detector(robot, self.follower.detector)
+        self.robot, self.detector = (
+            pack_robot(robot),
+            self.follower.collision.arrays,
+        )
         self.search = pack_step_search(self.follower, OptimizedSettings())._replace(**(changes or {}))
         self.q, self.size = start_of(robot.name, task).copy(), self.follower.size  # read-only would compile anew
         self.work = make_step_workspace(self.robot, self.detector, len(self.q), self.size, self.search.population)

@@ -11,6 +11,7 @@ from ikde.kernels.surface import (
     smallest_squared_distance,
     surfaces_collide,
 )
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests import reference
 from tests.conftest import random_q
@@ -43,7 +44,7 @@ def test_directions_have_length_one_and_none_is_farther_than_the_covering_angle(
 @pytest.mark.parametrize("seed", range(12))
 def test_points_from_centres_are_those_of_eq_11(seed, rng):
     robot = random_robot(seed)
-    q, name = random_q(robot, rng), robot.detector(None)
+    q, name = random_q(robot, rng), CollisionModel.of(robot).detector
     detector, centres, _ = run_spheres(robot, name, q)
     spheres = reference.list_spheres(robot, name, q)
     expected = reference.compute_surface_from_centres(
@@ -56,7 +57,7 @@ def test_points_from_centres_are_those_of_eq_11(seed, rng):
 def test_transformed_points_are_fixed_in_their_body(seed, rng):
     robot = random_robot(seed)
     q = random_q(robot, rng)
-    detector, _, _ = run_spheres(robot, robot.detector(None), q)
+    detector, _, _ = run_spheres(robot, CollisionModel.of(robot).detector, q)
     points = by_transformation(detector, run_bodies(robot, q), DIRECTIONS)
     T_world_body = reference.compute_bodies(pack_robot(robot), q)
     for body, first, last in detector.components:
@@ -68,7 +69,7 @@ def test_transformed_points_are_fixed_in_their_body(seed, rng):
 
 def test_both_ways_put_every_point_on_its_sphere(qiao, rng):
     q = random_q(qiao, rng)
-    detector, centres, _ = run_spheres(qiao, qiao.detector(None), q)
+    detector, centres, _ = run_spheres(qiao, CollisionModel.of(qiao).detector, q)
     clouds = from_centres(detector, centres, DIRECTIONS), by_transformation(detector, run_bodies(qiao, q), DIRECTIONS)
     for points in clouds:
         distances = np.linalg.norm(points - centres.T[:, None], axis=2)
@@ -79,7 +80,7 @@ def test_both_ways_put_every_point_on_its_sphere(qiao, rng):
 @pytest.mark.parametrize("seed", range(12))
 def test_the_gap_equals_brute_force(seed, covering_angle, rng):
     robot = random_robot(seed)
-    detector, centres, _ = run_spheres(robot, robot.detector(None), random_q(robot, rng))
+    detector, centres, _ = run_spheres(robot, CollisionModel.of(robot).detector, random_q(robot, rng))
     points = from_centres(detector, centres, DIRECTIONS)
     sizes = [last - first for _, first, last in detector.components]
     group_of = np.repeat(np.arange(len(sizes)), sizes)
@@ -133,7 +134,7 @@ def test_eq_20_sees_distant_spheres_apart():
 @pytest.mark.parametrize("seed", range(12))
 def test_the_quick_verdict_is_that_of_the_gap(seed, covering_angle, limit, rng):
     robot = random_robot(seed)
-    detector, centres, _ = run_spheres(robot, robot.detector(None), random_q(robot, rng))
+    detector, centres, _ = run_spheres(robot, CollisionModel.of(robot).detector, random_q(robot, rng))
     gap, _ = compute_surface_gap(detector, from_centres(detector, centres, DIRECTIONS), covering_angle)
     assert surfaces_collide(detector, centres, DIRECTIONS, covering_angle, limit) == (gap <= limit)
 
@@ -148,9 +149,10 @@ def test_the_quick_verdict_holds_from_deep_inside_to_far_apart(distance):
 
 def test_rows_are_judged_one_by_one(qiao, rng):
     qs, verdicts = random_q(qiao, rng, 50), np.zeros(50, dtype=bool)
-    packed = run_spheres(qiao, qiao.detector(None), qs[0])[0]
+    packed = run_spheres(qiao, CollisionModel.of(qiao).detector, qs[0])[0]
     judge_surfaces(pack_robot(qiao), packed, DIRECTIONS, 0.0, 0.01, qs, verdicts)
     expected = [
-        surfaces_collide(packed, run_spheres(qiao, qiao.detector(None), q)[1], DIRECTIONS, 0.0, 0.01) for q in qs
+        surfaces_collide(packed, run_spheres(qiao, CollisionModel.of(qiao).detector, q)[1], DIRECTIONS, 0.0, 0.01)
+        for q in qs
     ]
     assert verdicts.tolist() == expected

@@ -5,6 +5,7 @@ import pytest
 
 from ikde.kernels.arrays import CLEARANCE
 from ikde.kernels.tracking import NO_STEP, NO_WAY, REACHED, STUCK, make_sample, track_sample, track_span
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.target import Targets
 from ikde.solver.forward import forward
@@ -29,7 +30,7 @@ def free_q(robot, rng):
     while True:
         q = random_q(robot, rng)
         q[:3] = 0.0
-        if compute_gaps(robot, "improved", robot.pairs(robot.detector(None)), q).min() > 0.02:
+        if compute_gaps(CollisionModel.of(robot), q).min() > 0.02:
             return q
 
 
@@ -48,7 +49,7 @@ def test_a_near_target_is_met(qiao, rng, name, kind):
         np.testing.assert_allclose(T[:3, 3], target.T_world_tool[0, :, 3], atol=1e-9)
         if kind != "position":
             np.testing.assert_allclose(T[:3, 2], target.T_world_tool[0, :, 2], atol=1e-7)
-        gaps = compute_gaps(qiao, "improved", qiao.pairs(qiao.detector(None)), q)
+        gaps = compute_gaps(CollisionModel.of(qiao), q)
         if gaps.min() < 0.1:
             assert least == pytest.approx(gaps.min() - 1e-4, abs=1e-9)
 

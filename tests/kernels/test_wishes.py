@@ -7,6 +7,7 @@ from ikde.kernels import tracking, wishes
 from ikde.kernels.arrays import CLEARANCE, DRIFT, LIMITS, MANIPULABILITY
 from ikde.kernels.drive import take_drive_step
 from ikde.kernels.fences import MOST_PAIRS
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_gaps
 from tests.conftest import random_q
 from tests.kernels.driving import Stand
@@ -64,9 +65,9 @@ def test_agility_is_a_gradient(qiao, rng, name, kind):
 
 def step_gaps(stand, step):
     """Clearance of each pair [P] at the end of a step."""
-    end, detector = np.empty(9), stand.robot.detector(None)
+    end, detector = np.empty(9), CollisionModel.of(stand.robot).detector
     plain(take_drive_step)(stand.drive, stand.q, step, end)
-    return compute_gaps(stand.robot, detector.spheres, stand.robot.pairs(detector), end)
+    return compute_gaps(CollisionModel(robot=stand.robot, detector=detector), end)
 
 
 @pytest.mark.parametrize("name", NAMES)

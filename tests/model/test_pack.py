@@ -5,7 +5,8 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import BODY, FIRST, LAST, MOVES_TOOL, PARENT
-from ikde.model.pack import frame_names, pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import frame_names, pack_robot, pack_targets
 from ikde.model.target import Target, Targets
 from tests.random_robots import random_robot
 
@@ -24,7 +25,7 @@ def packed_arrays(robot):
         Target([1, 2, 3], axis_world_tool=[0, 1, 1]),
         Target([1, 2, 3], R_world_tool=np.eye(3)),
     ]
-    detectors = (pack_detector(robot, None), pack_detector(robot, robot.detector(None)))
+    detectors = (CollisionModel.of(robot, "none").arrays, CollisionModel.of(robot).arrays)
     for packed in (pack_robot(robot), *detectors, pack_targets(targets)):
         yield from ((name, value) for name, value in packed._asdict().items() if name != "safe_distance")
 
@@ -41,7 +42,7 @@ def test_arrays_are_ordered_read_only_and_of_one_dtype(robot):
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 def test_spheres_and_rows_are_cut_without_gaps(robot):
-    detector = pack_detector(robot, robot.detector(None))
+    detector = CollisionModel.of(robot).arrays
     count = len(detector.radius)
     for table, first, last in ((detector.components, FIRST, LAST), (detector.rows, 2, 3)):
         assert table[0, first] == 0
@@ -54,10 +55,10 @@ def test_spheres_and_rows_are_cut_without_gaps(robot):
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 def test_the_component_with_more_spheres_comes_first_in_a_pair(robot):
-    detector = pack_detector(robot, robot.detector(None))
+    detector = CollisionModel.of(robot).arrays
     sizes = detector.components[:, LAST] - detector.components[:, FIRST]
     assert np.all(sizes[detector.pairs[:, 0]] >= sizes[detector.pairs[:, 1]])
-    assert len(detector.pairs) == len(robot.pair_lists[robot.detector(None).pairs])
+    assert len(detector.pairs) == len(robot.pair_lists[CollisionModel.of(robot).detector.pairs])
     assert set(detector.pairs.ravel()) == set(range(len(detector.components)))
 
 
@@ -68,7 +69,7 @@ def test_parents_come_first_and_the_tool_last(robot):
     assert (names[0], names[-1]) == ("world", robot.tool)
     assert sorted(names) == sorted(["world", *(frame.name for frame in robot.frames)])
     assert packed.bodies[packed.frame_body[-1], MOVES_TOOL] == 1
-    assert np.all(pack_detector(robot, robot.detector(None)).components[:, BODY] < len(packed.bodies))
+    assert np.all(CollisionModel.of(robot).arrays.components[:, BODY] < len(packed.bodies))
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
@@ -86,11 +87,11 @@ def test_bodies_of_the_paper_robot_keep_exact_right_angles():
 def test_packing_twice_gives_the_same_arrays():
     robot = ROBOTS[0]
     assert pack_robot(robot) is pack_robot(robot)
-    assert pack_detector(robot, robot.detector("typical")) is pack_detector(robot, robot.detector("typical"))
+    assert CollisionModel.of(robot, "typical").arrays is CollisionModel.of(robot, "typical").arrays
 
 
 def test_no_detector_packs_to_nothing_to_look_at():
-    detector = pack_detector(ROBOTS[0], None)
+    detector = CollisionModel.of(ROBOTS[0], "none").arrays
     assert detector.pairs.shape == (0, 2)
     assert detector.p_body_sphere.shape == (3, 0)
     assert detector.safe_distance == 0.0
@@ -99,7 +100,7 @@ def test_no_detector_packs_to_nothing_to_look_at():
 def test_components_in_no_pair_are_not_packed():
     robot = ROBOTS[0]
     detector = ikde.Detector(name="few", spheres="improved", pairs="platform_arm", safe_distance_m=0.01)
-    packed = pack_detector(robot, detector)
+    packed = CollisionModel(robot=robot, detector=detector).arrays
     assert len(packed.components) == len({name for pair in robot.pair_lists["platform_arm"] for name in pair})
     assert packed.safe_distance == 0.01
 

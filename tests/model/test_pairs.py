@@ -6,6 +6,7 @@ from itertools import combinations
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import component_bodies, describe_link, explain_no_detector
 from ikde.model.robot import AdjacentPair, Detector, LeftOutPair, SphereRow
 from ikde.model.tree import build_tree
@@ -27,7 +28,7 @@ def make_chain(carriers="abcd", **changes):
 
 
 def reasons(robot, detector=EVERY):
-    return {f"{pair.a}{pair.b}": pair.reason for pair in robot.left_out_pairs(detector)}
+    return {f"{pair.a}{pair.b}": pair.reason for pair in CollisionModel(robot=robot, detector=detector).left_out_pairs}
 
 
 @pytest.mark.parametrize(
@@ -60,7 +61,7 @@ def test_pairs_two_joints_apart_are_compared_although_the_body_in_between_is_bar
 def test_the_platform_is_compared_with_the_upper_arm_beyond_a_bare_shoulder(tmp_path):
     (tmp_path / "bare.yaml").write_text(BARE)
     robot = ikde.load_robot(tmp_path / "bare.yaml")
-    assert robot.pairs(robot.detector(None)) == (("platform", "upper_arm"), ("platform", "forearm"))
+    assert CollisionModel.of(robot).pairs == (("platform", "upper_arm"), ("platform", "forearm"))
 
 
 def test_declared_pairs_are_left_out_in_either_order_with_their_reason():
@@ -87,7 +88,7 @@ def test_what_the_tree_shows_comes_before_what_is_declared_and_that_before_lists
 
 def test_a_list_may_compare_what_is_linked():
     robot = make_chain("ab", pair_lists={"some": (("A", "B"),)})
-    assert robot.left_out_pairs(replace(EVERY, pairs="some")) == ()
+    assert CollisionModel(robot=robot, detector=replace(EVERY, pairs="some")).left_out_pairs == ()
 
 
 def test_components_of_one_body_are_neighbours():
@@ -98,7 +99,7 @@ def test_components_of_one_body_are_neighbours():
 
 
 def test_without_a_detector_nothing_is_listed(qiao):
-    assert qiao.left_out_pairs(None) == qiao.pairs(None) == ()
+    assert CollisionModel.of(qiao, "none").left_out_pairs == CollisionModel.of(qiao, "none").pairs == ()
 
 
 def every_case():
@@ -106,24 +107,24 @@ def every_case():
         robot = ikde.load_robot(name)
         yield from ((robot, detector) for detector in robot.detectors.values())
     for robot in map(random_robot, range(20)):
-        yield robot, robot.detector(None)
+        yield robot, CollisionModel.of(robot).detector
         if robot.pair_lists[NON_ADJACENT]:
-            yield robot, replace(robot.detector(None), pairs=NON_ADJACENT)
+            yield robot, replace(CollisionModel.of(robot).detector, pairs=NON_ADJACENT)
 
 
 @pytest.mark.parametrize("case", list(every_case()), ids=lambda case: f"{case[0].name}-{case[1].name}-{case[1].pairs}")
 def test_every_pair_of_components_is_compared_or_left_out_with_a_reason(case):
     robot, detector = case
-    compared = [frozenset(pair) for pair in robot.pairs(detector)]
-    left_out = [frozenset((pair.a, pair.b)) for pair in robot.left_out_pairs(detector)]
+    compared = [frozenset(pair) for pair in CollisionModel(robot=robot, detector=detector).pairs]
+    left_out = [frozenset((pair.a, pair.b)) for pair in CollisionModel(robot=robot, detector=detector).left_out_pairs]
     every = {frozenset(pair) for pair in combinations(robot.components(detector.spheres), 2)}
     assert set(compared) | set(left_out) == every
     assert len(compared) + len(left_out) == len(every)
-    assert all(pair.reason for pair in robot.left_out_pairs(detector))
+    assert all(pair.reason for pair in CollisionModel(robot=robot, detector=detector).left_out_pairs)
 
 
 def test_the_shipped_robots_compare_as_many_pairs_as_ever():
-    count = {name: len(r.pairs(r.detector(None))) for name in ikde.robot_names() for r in [ikde.load_robot(name)]}
+    count = {name: len(CollisionModel.of(r).pairs) for name in ikde.robot_names() for r in [ikde.load_robot(name)]}
     assert count == {"panda": 21, "qiao2021": 35, "qiao2021_dh": 0, "ur5": 15}
     assert len(ikde.load_robot("qiao2021").pair_lists[NON_ADJACENT]) == 33
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import SphereRow
 from ikde.model.spheres import Sphere, approximation_volume_m3, bounding_sphere, expand_rows, row_offsets
 from ikde.model.tree import build_tree
@@ -64,7 +65,7 @@ def test_even_spheres_begin_and_end_with_their_line(count):
 @pytest.mark.parametrize("seed", range(15))
 def test_expanded_rows_are_the_twins_spheres(seed):
     robot = random_robot(seed)
-    tree, detector = build_tree(robot), robot.detector(None)
+    tree, detector = build_tree(robot), CollisionModel.of(robot).detector
     T_zero = reference.compute_frames(robot, np.zeros(len(robot.joints)))
     origin = {tree.frame_body[f.name]: f.name for f in robot.frames if f.joint is not None} | {0: "world"}
     looked_at = {component for pair in robot.pair_lists[detector.pairs] for component in pair}

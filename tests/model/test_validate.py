@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError, nearest
-from ikde.model import robot as robot_module
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import AdjacentPair, Detector, Joint, Robot, SphereRow, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.random_robots import make_frame
@@ -80,7 +80,7 @@ def test_whatever_bears_a_name_may_be_called_what_can_be_printed(hidden):
 def test_a_detector_of_pythons_own_is_called_what_can_be_printed():
     robot = check_robot(make_draft())
     with pytest.raises(InputError, match=r"^detector\.name: expected a name of printable characters"):
-        robot.detector(Detector(name="a\nb", spheres="fine", pairs="some"))
+        CollisionModel.of(robot, Detector(name="a\nb", spheres="fine", pairs="some"))
 
 
 def replace_frame(name, **changes):
@@ -351,7 +351,7 @@ def test_a_detector_compares_so_many_spheres_at_most():
 
 
 def test_a_detector_compares_so_many_pairs_at_most(monkeypatch):
-    monkeypatch.setattr(robot_module, "MOST_PAIRS", 1)
+    monkeypatch.setattr("ikde.model.collision_model.MAX_PAIRS", 1)
     message = "expected at most 1 pairs of components, got 2"
     pairs = {"some": (("G", "A"), ("G", "B"))}
     reject(message, "detectors", "d", "pairs", pair_lists=pairs, detectors=make_detector())
@@ -364,9 +364,9 @@ def test_a_safe_distance_is_a_number(distance):
 
 
 def test_no_detector_of_pythons_own_is_called_as_none_at_all(qiao):
-    own = replace(qiao.detector(None), name="none")
+    own = replace(CollisionModel.of(qiao).detector, name="none")
     with pytest.raises(InputError, match="'none' is taken: it stands for no detector at all"):
-        qiao.detector(own)
+        CollisionModel.of(qiao, own)
 
 
 def make_detector(**changes):
@@ -401,11 +401,11 @@ def test_every_approximation_describes_the_same_components():
 def test_a_detector_made_by_hand_is_checked_when_it_is_used():
     robot = check_robot(make_draft(pair_lists={**make_draft().pair_lists, "none": ()}))
     good = Detector(name="mine", spheres="fine", pairs=NON_ADJACENT)
-    assert robot.detector(good) is good
+    assert CollisionModel.of(robot, good).detector is good
     wrong = ({"spheres": "fin"}, {"pairs": "all"}, {"pairs": "none"}, {"safe_distance_m": -1.0})
     for bad in (*wrong, {"safe_distance_m": np.nan}):
         with pytest.raises(InputError, match="detector"):
-            robot.detector(replace(good, **bad))
+            CollisionModel.of(robot, replace(good, **bad))
 
 
 def test_names_are_unique():
@@ -436,7 +436,7 @@ def test_an_unknown_default_detector():
 
 
 def test_no_detector_may_be_the_default():
-    assert check_robot(make_draft(default_detector="none")).detector(None) is None
+    assert CollisionModel.of(check_robot(make_draft(default_detector="none"))).detector is None
 
 
 # ---- conventions

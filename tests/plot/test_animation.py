@@ -31,7 +31,7 @@ def test_bones_lead_to_the_tool(qiao, motion):
 
 def test_spheres_have_their_parts(qiao, motion):
     data = make_animation(motion)
-    count = sum(row.count for row in qiao.approximations[motion.detector.spheres])
+    count = sum(row.count for row in qiao.approximations[motion.collision.detector.spheres])
     assert np.shape(data["centres"]) == (21, count, 3)
     assert len(data["radii"]) == len(data["parts"]) == count
     assert {data["names"][part] for part in data["base"]} == {"M", "G"}

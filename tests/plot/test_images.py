@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from ikde.errors import printable
+from ikde.model.collision_model import CollisionModel
 from ikde.plot.charts import Bars, Line, plot_bars, plot_lines
 from ikde.plot.images import INK, to_png, to_svg
 from ikde.plot.panels import Panel, plot_panels
@@ -104,5 +105,5 @@ def test_letters_that_the_type_does_not_have_are_no_news():
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
 def test_a_robot_of_any_name_is_drawn(tmp_path, qiao, kind):
     robot = replace(qiao, name="手臂 $\\frac{ <b>")
-    save_figure(plot_pose(robot, robot.home), tmp_path / f"a.{kind}")
+    save_figure(plot_pose(CollisionModel.of(robot, "none"), robot.home), tmp_path / f"a.{kind}")
     assert (tmp_path / f"a.{kind}").stat().st_size > 1000

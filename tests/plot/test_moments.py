@@ -43,14 +43,14 @@ def test_a_collision_nearby_is_shown_instead(folded):
 
 
 def test_every_sphere_is_a_circle_and_collisions_are_black(qiao, motion, folded):
-    count = sum(row.count for row in qiao.approximations[motion.detector.spheres])
+    count = sum(row.count for row in qiao.approximations[motion.collision.detector.spheres])
     views = plot_moments(motion, [0, 20]).axes
     assert [len(circles(axes)) for axes in views] == [count, count]
     worst = int(np.argmin(folded.verification.gaps_m.min(axis=1)))
     (view,) = plot_moments(folded, [worst]).axes
     black = [patch for patch in circles(view) if patch.get_facecolor()[:3] == to_rgb(COLLIDING)]
     names = folded.colliding[worst]
-    rows = qiao.approximations[folded.detector.spheres]
+    rows = qiao.approximations[folded.collision.detector.spheres]
     assert len(black) == sum(row.count for row in rows if row.component in names)
     assert "collide" in view.get_title()
 

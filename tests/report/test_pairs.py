@@ -7,9 +7,10 @@ from itertools import combinations
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.proofs import drop_proved, proof_margin
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.report.pairs import format_pairs, pairs_json
 from ikde.report.units import Units
 from tests.bare_robot import BARE
@@ -25,19 +26,19 @@ def load(text, tmp_path):
 
 
 def show(robot, detector, units=MM, width=100):
-    return format_pairs(robot, detector, units, width=width)
+    return format_pairs(CollisionModel(robot=robot, detector=detector), units, width=width)
 
 
 def test_json_accounts_for_every_pair(any_robot):
     for detector in any_robot.detectors.values():
-        data = json.loads(json.dumps(pairs_json(any_robot, detector), allow_nan=False))
+        data = json.loads(json.dumps(pairs_json(CollisionModel(robot=any_robot, detector=detector)), allow_nan=False))
         told = [frozenset((pair["a"], pair["b"])) for pair in (*data["compared"], *data["left_out"])]
         assert len(told) == len(set(told))
         assert set(told) == {frozenset(pair) for pair in combinations(any_robot.components(detector.spheres), 2)}
 
 
 def test_json_has_the_clearance_at_home_worst_first_and_the_reasons(qiao):
-    data = pairs_json(qiao, qiao.detector("typical"))
+    data = pairs_json(CollisionModel.of(qiao, "typical"))
     checked = ikde.check(qiao, qiao.home, "typical").pairs
     assert [(p["a"], p["b"], p["clearance_at_home_m"]) for p in data["compared"]] == [
         (p.a, p.b, p.clearance_m) for p in checked
@@ -51,12 +52,18 @@ def test_json_has_the_clearance_at_home_worst_first_and_the_reasons(qiao):
 
 
 def test_pairs_that_are_proved_apart_count_as_compared(qiao):
-    detector = qiao.detector(None)
-    tests, arrays = list_tests(pack_detector(qiao, detector)), pack_robot(qiao)
-    kept = drop_proved(arrays, tests, proof_margin(qiao, detector), qiao.lower, qiao.upper)
-    proved = {qiao.pairs(detector)[test.pair] for test in tests} - {qiao.pairs(detector)[test.pair] for test in kept}
+    detector = CollisionModel.of(qiao).detector
+    tests, arrays = list_tests(CollisionModel(robot=qiao, detector=detector).arrays), pack_robot(qiao)
+    kept = drop_proved(
+        arrays, tests, proof_margin(CollisionModel(robot=qiao, detector=detector)), qiao.lower, qiao.upper
+    )
+    proved = {CollisionModel(robot=qiao, detector=detector).pairs[test.pair] for test in tests} - {
+        CollisionModel(robot=qiao, detector=detector).pairs[test.pair] for test in kept
+    }
     assert proved
-    assert proved <= {(pair["a"], pair["b"]) for pair in pairs_json(qiao, detector)["compared"]}
+    assert proved <= {
+        (pair["a"], pair["b"]) for pair in pairs_json(CollisionModel(robot=qiao, detector=detector))["compared"]
+    }
 
 
 def test_text_has_a_line_a_pair(any_robot):
@@ -69,17 +76,22 @@ def test_text_has_a_line_a_pair(any_robot):
             [pair.a, "-", pair.b, f"{1e3 * pair.clearance_m:.2f}"] for pair in pairs
         ]
         assert [" ".join(line.split()) for line in rows if left_out < lines.index(line)] == [
-            f"{pair.a} - {pair.b} {pair.reason}" for pair in any_robot.left_out_pairs(detector)
+            f"{pair.a} - {pair.b} {pair.reason}"
+            for pair in CollisionModel(robot=any_robot, detector=detector).left_out_pairs
         ]
 
 
 def test_text_counts_pairs_first(qiao, tmp_path):
-    assert show(qiao, qiao.detector(None)).startswith("collision: detector improved compares 35 pairs, 20 left out\n")
+    assert show(qiao, CollisionModel.of(qiao).detector).startswith(
+        "collision: detector improved compares 35 pairs, 20 left out\n"
+    )
     robot = load(
         BARE.replace("{spheres: s,", "{spheres: s, pairs: one,") + "pairs: {one: {pairs: {platform: [forearm]}}}",
         tmp_path,
     )
-    assert show(robot, robot.detector(None)).startswith("collision: detector d compares 1 pair, 2 left out\n")
+    assert show(robot, CollisionModel.of(robot).detector).startswith(
+        "collision: detector d compares 1 pair, 2 left out\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -92,21 +104,21 @@ def test_text_counts_pairs_first(qiao, tmp_path):
 def test_no_detector_is_said(name, words):
     robot = ikde.load_robot(name)
     assert show(robot, None).endswith(words)
-    assert pairs_json(robot, None) is None
+    assert pairs_json(CollisionModel.of(robot, "none")) is None
 
 
 @pytest.mark.parametrize("width", [40, 100])
 def test_pairs_that_always_touch_are_named_with_the_line_to_add_in_one_piece(width, tmp_path):
     robot = load(ALWAYS, tmp_path)
     line = 'adjacent: {pairs: {platform: {upper_arm: "why they may touch"}}}'
-    assert line in show(robot, robot.detector(None), width=width).splitlines()
-    assert "platform - upper_arm touches in each of" in show(robot, robot.detector(None))
-    data = pairs_json(robot, robot.detector(None))
+    assert line in show(robot, CollisionModel.of(robot).detector, width=width).splitlines()
+    assert "platform - upper_arm touches in each of" in show(robot, CollisionModel.of(robot).detector)
+    data = pairs_json(CollisionModel.of(robot))
     assert (data["always_touching"], data["to_add"]) == ([["platform", "upper_arm"]], [line])
     assert ["platform", "upper_arm"] in [[pair["a"], pair["b"]] for pair in data["compared"]]
 
 
 def test_names_and_reasons_in_brackets_are_shown_as_they_are(tmp_path):
     robot = load(BARE.replace("upper_arm, from", "'[red]arm', from"), tmp_path)
-    assert "platform - [red]arm" in show(robot, robot.detector(None))
-    assert "[red]arm - forearm" in show(robot, replace(robot.detector(None)))
+    assert "platform - [red]arm" in show(robot, CollisionModel.of(robot).detector)
+    assert "[red]arm - forearm" in show(robot, replace(CollisionModel.of(robot).detector))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Provenance
 from ikde.report.robot import format_robot, format_robots, robot_json, robots_json
 from ikde.report.units import Units
@@ -28,7 +29,7 @@ def test_the_list_has_a_line_a_robot():
 
 
 def test_json_is_plain_and_in_metres_and_radians(any_robot):
-    data = json.loads(json.dumps(robot_json(any_robot, any_robot.detector(None)), allow_nan=False))
+    data = json.loads(json.dumps(robot_json(CollisionModel.of(any_robot)), allow_nan=False))
     assert [joint["lower"] for joint in data["joints"]] == any_robot.lower.tolist()
     assert [joint["home"] for joint in data["joints"]] == any_robot.home.tolist()
     assert [frame["name"] for frame in data["frames"]] == [frame.name for frame in any_robot.frames]
@@ -37,7 +38,7 @@ def test_json_is_plain_and_in_metres_and_radians(any_robot):
 
 
 def test_json_counts_spheres_pairs_and_sources(qiao):
-    data = robot_json(qiao, qiao.detector(None))
+    data = robot_json(CollisionModel.of(qiao))
     assert data["approximations"]["improved"]["spheres"] == sum(row.count for row in qiao.approximations["improved"])
     assert {name: len(pairs) for name, pairs in data["pair_lists"].items()} == {
         name: len(pairs) for name, pairs in qiao.pair_lists.items()
@@ -47,7 +48,7 @@ def test_json_counts_spheres_pairs_and_sources(qiao):
 
 
 def test_text_has_every_joint_frame_and_detector(any_robot):
-    text = format_robot(any_robot, None, MM_DEG)
+    text = format_robot(CollisionModel.of(any_robot, "none"), MM_DEG)
     assert text.startswith(f"{any_robot.name}: {any_robot.title}")
     for joint in any_robot.joints:
         shown = words_of(text, joint.name)
@@ -58,60 +59,60 @@ def test_text_has_every_joint_frame_and_detector(any_robot):
 
 
 def test_text_says_where_limits_and_offsets_come_from(qiao):
-    text = format_robot(qiao, None, MM_DEG)
+    text = format_robot(CollisionModel.of(qiao, "none"), MM_DEG)
     assert words_of(text, "d_x")[-1] == "calibrated"
     assert words_of(text, "q1")[-1] == "published"
     assert words_of(text, "load_centre")[-1] == "calibrated"
 
 
 def test_wheels_are_shown_with_their_sources(qiao, unwheeled):
-    text = format_robot(qiao, None, MM_DEG)
+    text = format_robot(CollisionModel.of(qiao, "none"), MM_DEG)
     assert words_of(text, "radius") == ["radius", "100", "published"]
     assert words_of(text, "half_track") == ["half_track", "259", "calibrated"]
-    assert words_of(format_robot(qiao, None, Units()), "half_track")[1] == "0.259"
-    assert robot_json(qiao, qiao.detector(None))["wheels"] == {"radius_m": 0.1, "half_track_m": 0.259}
-    assert "half_track" not in format_robot(replace(unwheeled, provenance={}), None, MM_DEG)
-    assert robot_json(unwheeled, None)["wheels"] is None
+    assert words_of(format_robot(CollisionModel.of(qiao, "none"), Units()), "half_track")[1] == "0.259"
+    assert robot_json(CollisionModel.of(qiao))["wheels"] == {"radius_m": 0.1, "half_track_m": 0.259}
+    assert "half_track" not in format_robot(CollisionModel.of(replace(unwheeled, provenance={}), "none"), MM_DEG)
+    assert robot_json(CollisionModel.of(unwheeled, "none"))["wheels"] is None
 
 
 def test_text_names_the_unit_of_the_offsets(qiao):
-    assert "offset [mm]" in format_robot(qiao, None, MM_DEG)
-    assert "offset [m]" in format_robot(qiao, None, Units())
+    assert "offset [mm]" in format_robot(CollisionModel.of(qiao, "none"), MM_DEG)
+    assert "offset [m]" in format_robot(CollisionModel.of(qiao, "none"), Units())
 
 
 def test_pairs_are_those_of_the_detector_that_is_asked_for(qiao):
     for name in qiao.detectors:
-        shown = format_robot(qiao, qiao.detector(name), MM_DEG)
+        shown = format_robot(CollisionModel.of(qiao, name), MM_DEG)
         assert f"collision: detector {name} compares 35 pairs, 20 left out" in shown
-        assert robot_json(qiao, qiao.detector(name))["collision"]["detector"] == name
-    assert robot_json(qiao, None)["collision"] is None
+        assert robot_json(CollisionModel.of(qiao, name))["collision"]["detector"] == name
+    assert robot_json(CollisionModel.of(qiao, "none"))["collision"] is None
 
 
 def test_json_has_the_pairs_that_the_file_declares_adjacent(qiao):
-    declared = robot_json(qiao, None)["adjacent"]
+    declared = robot_json(CollisionModel.of(qiao, "none"))["adjacent"]
     assert [(pair["a"], pair["b"]) for pair in declared] == [("M", "J2"), ("L2", "J5"), ("J4", "J5")]
     assert all(pair["reason"] for pair in declared)
 
 
 @pytest.mark.parametrize("width", [80, 120])
 def test_tables_fit_the_page(any_robot, width):
-    text = format_robot(any_robot, any_robot.detector(None), MM_DEG, width=width)
+    text = format_robot(CollisionModel.of(any_robot), MM_DEG, width=width)
     assert max(map(len, text.splitlines())) <= width
 
 
 def test_the_default_detector_is_marked(qiao):
-    text = format_robot(qiao, None, MM_DEG)
+    text = format_robot(CollisionModel.of(qiao, "none"), MM_DEG)
     assert "improved (default)" in text
     assert "typical (default)" not in text
 
 
 def test_citations_in_brackets_are_shown_as_they_are(qiao):
-    assert "[Qiao2021, eq. 22]" in format_robot(qiao, None, MM_DEG)
+    assert "[Qiao2021, eq. 22]" in format_robot(CollisionModel.of(qiao, "none"), MM_DEG)
 
 
 def test_a_title_in_brackets_is_shown_as_it_is(qiao):
     robot = replace(qiao, title="arm [v2] of [/] mine")
-    assert "arm [v2] of [/] mine" in format_robot(robot, None, MM_DEG)
+    assert "arm [v2] of [/] mine" in format_robot(CollisionModel.of(robot, "none"), MM_DEG)
     assert "arm [v2] of [/] mine" in format_robots([robot])
 
 
@@ -121,4 +122,4 @@ def test_sources_are_counted(qiao):
         provenance={("a",): Provenance(kind="derived", text="one place")}
         | {("b",): Provenance(kind="derived", text="one place")},
     )
-    assert "2" in words_of(format_robot(robot, None, MM_DEG), "derived")
+    assert "2" in words_of(format_robot(CollisionModel.of(robot, "none"), MM_DEG), "derived")

@@ -56,13 +56,13 @@ def test_json_of_a_failure_names_reason_hint_and_pairs(qiao, blocked):
 
 
 def test_json_without_a_detector_has_nulls(qiao):
-    data = solve_json(qiao, ikde.solve(qiao, TARGET, detector="none"))
+    data = solve_json(qiao, ikde.solve(qiao, TARGET, collision="none"))
     assert (data["clearance_m"], data["closest_pair"], data["self_collision"]) == (None, None, None)
     assert '"self_collision": null' in json.dumps(data)
 
 
 def test_without_a_detector_the_text_says_that_nothing_was_checked(qiao):
-    text = format_solve(qiao, ikde.solve(qiao, TARGET, detector="none"), Units())
+    text = format_solve(qiao, ikde.solve(qiao, TARGET, collision="none"), Units())
     assert text.splitlines()[0].endswith("inside the limits, self-collision not checked")
     for name in ("clearance", "self-collision"):
         assert "not checked" in next(line for line in text.splitlines() if line.strip().startswith(name))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.report.track import format_track, gap_mm, largest_wheel_speed, list_figures, singular, track_json
 from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.random_robots import make_frame, make_robot
@@ -140,7 +141,8 @@ def test_what_is_left_of_a_range_has_the_units_of_its_joint(qiao, plan):
 
 def test_joints_without_ends_have_no_range_left(qiao, plan):
     joints = tuple(replace(joint, lower=-np.inf, upper=np.inf) for joint in qiao.joints)
-    motion = replace(make_measured(qiao), robot=replace(qiao, joints=joints))
+    endless = CollisionModel.of(replace(qiao, joints=joints))
+    motion = replace(make_measured(qiao), collision=endless)
     assert not any("range" in name for name in rows_of(motion))
     assert track_json(plan, motion)["least_range_left"] is None
 

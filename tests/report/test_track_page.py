@@ -89,11 +89,11 @@ def test_it_says_who_measured(page):
 
 def make_empty(motion):
     """The same, but not even its start was met."""
-    was, robot, detector = motion.trajectory, motion.robot, motion.detector
-    told = {"drive": was.drive, "method": was.method, "limits": was.limits, "detector": detector}
+    was = motion.trajectory
+    told = {"drive": was.drive, "method": was.method, "limits": was.limits}
     nothing = Followed(q=was.q[:0], stop=was.stop, seconds=was.seconds[:0], search_seconds=0.25)
-    empty = grade_motion(robot, was.path, nothing, **told)
-    return summarise_track(robot, detector, empty)
+    empty = grade_motion(motion.collision, was.path, nothing, **told)
+    return summarise_track(motion.collision, empty)
 
 
 def test_nothing_followed_is_a_short_page(qiao, plan):

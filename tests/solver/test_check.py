@@ -100,10 +100,10 @@ def test_a_detector_of_ones_own_is_used(qiao):
     [
         ([0.0] * 8, {}, "expected 9 joint values"),
         ([np.nan] * 9, {}, "finite"),
-        ([0.0] * 9, {"detector": "improv"}, "no detector 'improv'"),
+        ([0.0] * 9, {"collision": "improv"}, "no detector 'improv'"),
         ([0.0] * 9, {"convention": "dh"}, "no convention 'dh'"),
-        ([0.0] * 9, {"detector": ikde.Detector(name="a", spheres="b", pairs="arm_arm")}, "'b'"),
-        ([0.0] * 9, {"detector": ikde.Detector(name="a", spheres="typical", pairs="b")}, "'b'"),
+        ([0.0] * 9, {"collision": ikde.Detector(name="a", spheres="b", pairs="arm_arm")}, "'b'"),
+        ([0.0] * 9, {"collision": ikde.Detector(name="a", spheres="typical", pairs="b")}, "'b'"),
     ],
 )
 def test_what_does_not_fit_the_robot_is_refused(qiao, q, options, words):

@@ -120,7 +120,7 @@ def test_an_arm_without_a_base_gives_its_families(rng):
     """A pose of a UR5 well inside its reach has several of the eight families, each of which is found."""
     robot = ikde.load_robot("ur5")
     target = make_target(robot, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
-    found = ikde.solve_distinct(robot, target, 8, detector="none")
+    found = ikde.solve_distinct(robot, target, 8, collision="none")
     assert {result.family for result in found} == set(FAMILIES)
 
 
@@ -131,4 +131,4 @@ def test_an_unknown_rank_is_refused(qiao):
 
 def test_without_a_detector_nothing_is_ranked_by_clearance(qiao):
     with pytest.raises(InputError, match="rank: without a detector no clearance is known to rank by"):
-        ikde.solve_distinct(qiao, TARGET, 2, rank="clearance", detector="none")
+        ikde.solve_distinct(qiao, TARGET, 2, rank="clearance", collision="none")

@@ -8,6 +8,7 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
+from ikde.model.collision_model import CollisionModel
 from ikde.model.reach import reach_excess_m
 from ikde.solver.engines.found import make_found
 from ikde.solver.figures import compute_figures
@@ -105,7 +106,7 @@ def test_self_collision_names_frozen_joints_if_freeing_them_helps(qiao):
 
 
 def test_a_detector_that_collides_everywhere_is_named_by_its_pairs(qiao):
-    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK, detector="single", freeze=PARKED)
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK, collision="single", freeze=PARKED)
     assert result.stop_reason == "self_collision"
     assert ("M", "LT") in result.blocking_pairs
     assert result.detector == "single"
@@ -124,14 +125,14 @@ def test_a_pair_that_always_touches_is_named_with_the_line_to_add(tmp_path):
 
 @pytest.mark.parametrize(("target", "helps"), [(TARGET, True), (INSIDE_THE_PLATFORM, False)])
 def test_leaving_out_what_always_touches_is_told_if_nothing_else_is_in_the_way(qiao, target, helps):
-    result = ikde.solve(qiao, target, ikde.SolveSettings(restarts=4), detector="single", freeze=PARKED)
+    result = ikde.solve(qiao, target, ikde.SolveSettings(restarts=4), collision="single", freeze=PARKED)
     assert result.reason.startswith("M - L1 touches in each of 1,000 random configurations")
     assert (result.hint == "these pairs left out: a solution was found that touches in no others") is helps
     assert result.hint is None or helps
-    rest = tuple(pair for pair in qiao.pairs(qiao.detector("single")) if pair != ("M", "L1"))
+    rest = tuple(pair for pair in CollisionModel.of(qiao, "single").pairs if pair != ("M", "L1"))
     spared = replace(qiao, pair_lists={**qiao.pair_lists, "rest": rest})
     detector = ikde.Detector(name="rest", spheres="single", pairs="rest")
-    assert ikde.verify(spared, target, result.q, detector=detector).accepted is helps
+    assert ikde.verify(spared, target, result.q, collision=detector).accepted is helps
 
 
 def test_what_is_reached_is_not_searched_for_pairs_that_touch(qiao, monkeypatch):
@@ -179,7 +180,7 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monk
             "excess_m": nothing,
             "seconds": nothing,
             "engine": np.zeros(1, dtype=np.int64),
-            "figures": compute_figures(qiao, qiao.detector(None), targets, qiao.home[None]),
+            "figures": compute_figures(CollisionModel.of(qiao), targets, qiao.home[None]),
         }
         return Found(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)
 
@@ -195,7 +196,7 @@ def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, mon
     def unlucky(problem, targets, **options):
         found = make_found(problem, len(targets))
         found.counts[:, [ATTEMPTS, COLLIDING]] = 3
-        figures = compute_figures(qiao, qiao.detector(None), targets, found.q)
+        figures = compute_figures(CollisionModel.of(qiao), targets, found.q)
         found.figures.put(np.arange(len(targets)), figures)
         return found
 

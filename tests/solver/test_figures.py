@@ -7,6 +7,7 @@ import pytest
 
 import ikde
 from ikde.errors import VerificationError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver import figures as module
 from ikde.solver.figures import (
     AGREEMENT,
@@ -32,8 +33,8 @@ def targets_of_every_kind(robot, count):
 def test_kernels_and_plain_numpy_agree_on_every_robot(any_robot, rng):
     Q, targets = random_q(any_robot, rng, 60), targets_of_every_kind(any_robot, 60)
     for detector in [None, *any_robot.detectors.values()]:
-        figures = compute_figures(any_robot, detector, targets, Q)
-        verdicts = verify_many(any_robot, targets, Q, SETTINGS, detector)
+        figures = compute_figures(CollisionModel(robot=any_robot, detector=detector), targets, Q)
+        verdicts = verify_many(CollisionModel(robot=any_robot, detector=detector), targets, Q, SETTINGS)
         assert np.all(compute_disagreement(targets, figures, verdicts) < 0.1 * AGREEMENT)
         if detector is None:
             assert set(figures.closest_pair) == {-1}
@@ -44,9 +45,9 @@ def test_kernels_and_plain_numpy_agree_on_every_robot(any_robot, rng):
 
 def test_a_figure_that_is_not_a_number_never_agrees(qiao):
     targets, Q = targets_of_every_kind(qiao, 2), np.array([qiao.home, qiao.home])
-    figures = compute_figures(qiao, qiao.detector(None), targets, Q)
+    figures = compute_figures(CollisionModel.of(qiao), targets, Q)
     figures.clearance_m[1] = np.nan
-    verdicts = verify_many(qiao, targets, Q, SETTINGS, qiao.detector(None))
+    verdicts = verify_many(CollisionModel.of(qiao), targets, Q, SETTINGS)
     agree = compute_disagreement(targets, figures, verdicts) <= AGREEMENT
     assert agree.tolist() == [True, False]
 
@@ -54,8 +55,8 @@ def test_a_figure_that_is_not_a_number_never_agrees(qiao):
 def test_far_from_the_origin_agreement_is_relative(qiao):
     q = qiao.home
     target = [ikde.Target((5e4, 0.0, 0.0))]
-    figures = compute_figures(qiao, None, target, q[None])
-    verdicts = verify_many(qiao, target, q[None], SETTINGS, None)
+    figures = compute_figures(CollisionModel.of(qiao, "none"), target, q[None])
+    verdicts = verify_many(CollisionModel.of(qiao, "none"), target, q[None], SETTINGS)
     absolute = abs(figures.position_error_m[0] - verdicts.position_error_m[0])
     assert compute_disagreement(target, figures, verdicts)[0] == pytest.approx(absolute / 5e4)
 
@@ -75,13 +76,13 @@ def stretch(robot, share):
 def test_the_largest_robot_that_loads_is_graded_wherever_its_target_is(seed):
     robot, rng = stretch(random_robot(seed), 5e4), np.random.default_rng(seed)
     Q, targets = random_q(robot, rng, 60), targets_of_every_kind(random_robot(seed), 60)
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     figures, verdicts = (
-        compute_figures(robot, detector, targets, Q),
-        verify_many(robot, targets, Q, SETTINGS, detector),
+        compute_figures(CollisionModel(robot=robot, detector=detector), targets, Q),
+        verify_many(CollisionModel(robot=robot, detector=detector), targets, Q, SETTINGS),
     )
     assert np.all(compute_disagreement(targets, figures, verdicts) <= 0.1 * AGREEMENT)
-    assert len(compute_clearances(robot, detector, Q).clearance_m) == 60
+    assert len(compute_clearances(CollisionModel(robot=robot, detector=detector), Q).clearance_m) == 60
 
 
 def test_a_small_robot_is_graded_to_the_last_digit(qiao):
@@ -92,20 +93,20 @@ def test_a_small_robot_is_graded_to_the_last_digit(qiao):
 def test_clearances_are_what_check_says(qiao, rng):
     Q = random_q(qiao, rng, 50)
     for name in ("typical", "improved"):
-        seen = compute_clearances(qiao, qiao.detector(name), Q)
+        seen = compute_clearances(CollisionModel.of(qiao, name), Q)
         checked = [ikde.check(qiao, q, name) for q in Q]
         assert seen.clearance_m == pytest.approx([c.clearance_m for c in checked], abs=1e-12)
         assert seen.collides.tolist() == [c.collision for c in checked]
 
 
 def test_a_clearance_that_only_the_kernels_see_raises(qiao, monkeypatch):
-    monkeypatch.setattr(module, "compute_gaps", lambda robot, spheres, pairs, Q: np.full((len(Q), 1), 0.5))
+    monkeypatch.setattr(module, "compute_gaps", lambda collision, Q: np.full((len(Q), 1), 0.5))
     with pytest.raises(VerificationError, match="disagree"):
-        compute_clearances(qiao, qiao.detector(None), qiao.home[None])
+        compute_clearances(CollisionModel.of(qiao), qiao.home[None])
 
 
 def test_a_clearance_that_is_not_a_number_is_never_free(qiao):
-    detector = qiao.detector(None)
-    figures = compute_figures(qiao, detector, targets_of_every_kind(qiao, 3), np.tile(qiao.home, (3, 1)))
+    collision = CollisionModel.of(qiao)
+    figures = compute_figures(collision, targets_of_every_kind(qiao, 3), np.tile(qiao.home, (3, 1)))
     figures.clearance_m[1] = np.nan
-    assert judge_clearances(figures, detector).tolist() == [False, True, False]
+    assert judge_clearances(figures, collision).tolist() == [False, True, False]

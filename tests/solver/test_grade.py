@@ -9,6 +9,7 @@ import pytest
 import ikde
 from ikde.errors import VerificationError
 from ikde.kernels.arrays import COUNTS, REACHED
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Targets
 from ikde.solver import referee as module
 from ikde.solver.engines.found import make_found
@@ -27,8 +28,8 @@ def lie_about(monkeypatch, figure, by, only=None):
     """Let the kernels' figures be off; `only`: for this target alone."""
     honest = module.compute_figures
 
-    def lying(robot, detector, targets, Q, settings, limits):
-        figures = honest(robot, detector, targets, Q, settings, limits)
+    def lying(collision, targets, Q, settings, limits):
+        figures = honest(collision, targets, Q, settings, limits)
         points = [tuple(target.p_world_tool) for target in targets]
         guilty = np.array([only is None or point == tuple(only.p_world_tool) for point in points])
         return replace(figures, **{figure: getattr(figures, figure) + np.where(guilty, by, 0.0)})
@@ -86,7 +87,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
         engine = np.zeros(len(targets), dtype=np.int64)
         score = np.zeros((len(targets), 2))
         some = {"score": score, "excess_m": nothing, "seconds": nothing, "engine": engine}
-        some["figures"] = compute_figures(qiao, qiao.detector(None), targets, q, QUICK)
+        some["figures"] = compute_figures(CollisionModel.of(qiao), targets, q, QUICK)
         return Found(q=q, counts=counts, pair_counts=pair_counts, **some)
 
     monkeypatch.setattr("ikde.solver.rows.search", boast)
@@ -99,11 +100,14 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
 @pytest.mark.parametrize("verify_rows", ["all", "sample"])
 def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
     """Its figures are true and its verdicts are not: those of plain numpy count as well."""
-    problem, detector = make_problem(qiao, QUICK, detector=None, near=None, freeze=None), qiao.detector(None)
+    problem, detector = (
+        make_problem(qiao, QUICK, collision=None, near=None, freeze=None),
+        CollisionModel.of(qiao).detector,
+    )
     outside = qiao.home + np.where(qiao.slides, 0.0, 9.0)
     for q, asked in ((qiao.home, TARGETS[0]), (outside, ikde.Target(forward(qiao, outside)[qiao.tool][:3, 3]))):
         targets = Targets.of([asked])
-        figures = compute_figures(qiao, detector, targets, q[None], QUICK)
+        figures = compute_figures(CollisionModel(robot=qiao, detector=detector), targets, q[None], QUICK)
         found = replace(make_found(problem, 1), q=q[None], figures=replace(figures, accepted=np.ones(1, dtype=bool)))
         graded = grade(problem, targets, found, seed=0, strict=False, probe=False, verify=verify_rows)
         assert graded.verified.all()

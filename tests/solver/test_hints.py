@@ -30,7 +30,7 @@ def with_ranges(robot, ranges):
 
 
 def hint(robot, target, freeze=None, settings=LM):
-    result = ikde.solve(robot, target, settings, freeze=freeze, detector="none")
+    result = ikde.solve(robot, target, settings, freeze=freeze, collision="none")
     assert result.stop_reason == "out_of_reach"
     return result.hint
 
@@ -169,17 +169,17 @@ def test_what_was_tried_is_done_again_and_reaches():
         q = rng.uniform(robot.lower, robot.upper)
         target = ikde.Target(ikde.forward(robot, q)[robot.tool][:3, 3] + rng.choice([0.0, 0.1]) * rng.normal(size=3))
         frozen = {name: None for name in robot.joint_names if rng.random() < 0.4}
-        result = ikde.solve(robot, target, LM, freeze=frozen, detector="none")
+        result = ikde.solve(robot, target, LM, freeze=frozen, collision="none")
         told = result.hint or ""
         names = re.sub("^a wider range for |^free |: a solution was found.*", "", told).split(", ")
         if told.startswith("free") and "was found" in told:
             assert names == list(frozen)
-            assert ikde.solve(robot, target, LM, detector="none").reached
+            assert ikde.solve(robot, target, LM, collision="none").reached
             kinds["free"] += 1
         if told.startswith("a wider range"):
             assert not set(names) & set(frozen)
             wide = widen(robot, frozen, names)
-            assert ikde.solve(wide, target, freeze=frozen, detector="none", seed=1).reached
+            assert ikde.solve(wide, target, freeze=frozen, collision="none", seed=1).reached
             kinds["wider"] += 1
         if "was found" in told:
             assert result.stop_reason == "limits"
@@ -189,7 +189,7 @@ def test_what_was_tried_is_done_again_and_reaches():
 
 def test_an_engine_that_claims_too_much_makes_no_hint(qiao):
     """A short search is believed only as far as plain numpy confirms it."""
-    problem = make_problem(qiao, LM, detector=None, near=None, freeze={"d_x": 0.0})
+    problem = make_problem(qiao, LM, collision=None, near=None, freeze={"d_x": 0.0})
     probe = Probe(TARGET, 0, 0, 0.0)
     found = probe.run(problem)
     assert probe.confirms(problem, found)
@@ -202,12 +202,12 @@ def test_what_collides_answers_nothing(qiao):
     q = qiao.home.copy()
     q[4] = 2.5
     target = ikde.Target(ikde.forward(qiao, q)[qiao.tool][:3, 3])
-    problems = [make_problem(qiao, LM, detector=name, near=None, freeze=None) for name in (None, "none")]
+    problems = [make_problem(qiao, LM, collision=name, near=None, freeze=None) for name in (None, "none")]
     assert [meets(problem, target, q) for problem in problems] == [False, True]
 
 
 def test_a_solution_inside_the_limits_asks_for_no_wider_range(qiao, monkeypatch):
-    problem = make_problem(qiao, LM, detector=None, near=None, freeze=None)
+    problem = make_problem(qiao, LM, collision=None, near=None, freeze=None)
     probe = Probe(TARGET, 0, 0, 0.0)
     inside = probe.run(problem)
     monkeypatch.setattr(Probe, "run", lambda self, problem, **told: inside)
@@ -218,9 +218,9 @@ def test_a_solution_inside_the_limits_asks_for_no_wider_range(qiao, monkeypatch)
 @pytest.mark.parametrize("seed", [2, 5])
 def test_going_on_is_told_if_it_helps(qiao, seed):
     coarse = ikde.SolveSettings(update="in_place", generations=400, restarts=1, position_tolerance_m=1e-5)
-    missed = ikde.solve(qiao, TARGET, coarse, detector="none", seed=seed)
+    missed = ikde.solve(qiao, TARGET, coarse, collision="none", seed=seed)
     assert missed.hint == "more restarts: a solution was found by going on"
-    again = ikde.solve(qiao, TARGET, coarse.with_changes(restarts=25), detector="none", seed=seed)
+    again = ikde.solve(qiao, TARGET, coarse.with_changes(restarts=25), collision="none", seed=seed)
     assert again.reached
     assert again.attempts > 1
 
@@ -230,7 +230,7 @@ def test_going_on_begins_where_the_search_ended(qiao, monkeypatch):
     monkeypatch.setattr(Probe, "run", lambda self, problem, **told: asked.append(told))
     monkeypatch.setattr(Probe, "confirms", lambda self, problem, found: False)
     for settings, first in ((LM, 20), (ikde.SolveSettings(), 20), (ikde.SolveSettings(method="lm"), 1000)):
-        problem = make_problem(qiao, settings, detector=None, near=None, freeze=None)
+        problem = make_problem(qiao, settings, collision=None, near=None, freeze=None)
         try_longer(problem, Probe(TARGET, 0, 0, 0.0))
         assert asked.pop() == {"first_attempt": first, "attempts": 2}
 
@@ -244,12 +244,12 @@ def near_miss(robot, *, position_m=0.0, turn_rad=0.0):
     c, s = np.cos(turn_rad), np.sin(turn_rad)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     target = ikde.Target(T[:3, 3] + [position_m, 0.0, 0.0], R_world_tool=T[:3, :3] @ turn)
-    return target, make_problem(robot, ikde.SolveSettings(), detector=None, near=None, freeze=None)
+    return target, make_problem(robot, ikde.SolveSettings(), collision=None, near=None, freeze=None)
 
 
 def ask_tolerance(robot, q, *, detector=None, **miss):
     target, problem = near_miss(robot, **miss)
-    graded = verify(robot, target, q, settings=problem.settings, detector=detector)
+    graded = verify(robot, target, q, settings=problem.settings, collision=detector)
     return hint_at_tolerance(problem, target, q, graded)
 
 
@@ -289,10 +289,10 @@ def test_no_tolerance_makes_up_for_a_collision_or_a_limit(qiao):
     T = ikde.forward(qiao, q)[qiao.tool]
     colliding = ikde.Target(T[:3, 3] + [2e-5, 0.0, 0.0])
     assert hint_at_tolerance(problem, colliding, q, verify(qiao, colliding, q)) is None
-    unchecked = make_problem(qiao, ikde.SolveSettings(), detector="none", near=None, freeze=None)
-    assert hint_at_tolerance(unchecked, colliding, q, verify(qiao, colliding, q, detector="none"))
+    unchecked = make_problem(qiao, ikde.SolveSettings(), collision="none", near=None, freeze=None)
+    assert hint_at_tolerance(unchecked, colliding, q, verify(qiao, colliding, q, collision="none"))
     narrow = with_ranges(qiao, {"d_x": (0.1, 0.2)})
-    problem = make_problem(narrow, ikde.SolveSettings(), detector="none", near=None, freeze=None)
+    problem = make_problem(narrow, ikde.SolveSettings(), collision="none", near=None, freeze=None)
     assert hint_at_tolerance(problem, target, qiao.home, verify(qiao, target, qiao.home)) is None
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ikde.model.robot import SphereRow
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Detector, SphereRow
 from ikde.solver.plain import (
     compute_components,
     compute_frames,
@@ -102,7 +103,8 @@ def test_components_carry_their_spheres_along():
         SphereRow(component="bar", start="tip", end="tip", radius_m=0.07),
     )
     robot = replace(slider_and_elbow(), approximations={"rows": rows})
-    components = compute_components(robot, "rows", np.array([0.5, np.pi / 2]))
+    collision = CollisionModel(robot=robot, detector=Detector(name="d", spheres="rows", pairs=""))
+    components = compute_components(collision, np.array([0.5, np.pi / 2]))
     assert list(components) == ["bar", "box"]
     centres, radii = components["bar"]
     assert centres == pytest.approx(np.array([[0.5, 0, 0.5], [0.75, 0, 0.5], [0.75, 0, 0.5]]))
@@ -125,6 +127,6 @@ def test_the_gap_of_spheres_within_each_other_is_negative():
 def test_many_configurations_are_one_after_the_other(any_robot, rng):
     Q = random_q(any_robot, rng, 7)
     for detector in any_robot.detectors.values():
-        pairs = any_robot.pairs(detector)
-        one_by_one = [compute_gaps(any_robot, detector.spheres, pairs, q) for q in Q]
-        assert compute_gaps(any_robot, detector.spheres, pairs, Q) == pytest.approx(np.array(one_by_one), abs=1e-14)
+        collision = CollisionModel(robot=any_robot, detector=detector)
+        one_by_one = [compute_gaps(collision, q) for q in Q]
+        assert compute_gaps(collision, Q) == pytest.approx(np.array(one_by_one), abs=1e-14)

@@ -11,7 +11,7 @@ from ikde.solver.problem import make_problem, pack_search
 
 
 def make(robot, settings=None, **options):
-    given = {"detector": None, "near": None, "freeze": None} | options
+    given = {"collision": None, "near": None, "freeze": None} | options
     return make_problem(robot, settings or ikde.SolveSettings(), **given)
 
 
@@ -31,7 +31,7 @@ def test_nothing_frozen_leaves_the_limits(qiao):
     assert problem.lower.tolist() == qiao.lower.tolist()
     assert problem.upper.tolist() == qiao.upper.tolist()
     assert (problem.frozen, problem.near) == ((), None)
-    assert problem.detector == qiao.detectors["improved"]
+    assert problem.collision.detector == qiao.detectors["improved"]
 
 
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_changed_settings_leave_the_rest(qiao):
 )
 def test_the_collision_rule_is_packed(qiao, detector, collision, rule):
     settings = ikde.SolveSettings(collision=collision)
-    assert pack_search(make(qiao, settings, detector=detector)).collision_rule == rule
+    assert pack_search(make(qiao, settings, collision=detector)).collision_rule == rule
 
 
 def test_numbers_are_packed_as_they_are(qiao):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.grade import confirm
 from ikde.solver.problem import make_problem
 from ikde.solver.quick import Quick, find_quick
@@ -21,13 +22,13 @@ AUTO = SolveSettings.for_method("auto")
 
 def solve_quick(robot, target, seed, stream, detector=None):
     """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
-    quick = Quick(robot, AUTO, robot.detector(detector), target.kind)
+    quick = Quick(CollisionModel.of(robot, detector), AUTO, target.kind)
     quick.solve(target, seed, stream, None)
     return quick.solve(target, seed, stream, None)
 
 
 def solve_long(robot, target, settings, seed, stream):
-    problem = make_problem(robot, settings, detector=None, near=None, freeze=None)
+    problem = make_problem(robot, settings, collision=None, near=None, freeze=None)
     return solve_rows(problem, [target], seed=seed, first_stream=stream).row(0)
 
 

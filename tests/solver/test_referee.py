@@ -5,6 +5,7 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS, Targets
 from ikde.solver import referee as module
 from ikde.solver.plain import compute_frames
@@ -22,7 +23,7 @@ def make_targets(robot, kind, count, rng):
 
 
 def make(robot, **settings):
-    return make_problem(robot, ikde.SolveSettings(**settings), detector="none", near=None, freeze=None)
+    return make_problem(robot, ikde.SolveSettings(**settings), collision="none", near=None, freeze=None)
 
 
 @pytest.mark.parametrize("method", ["lm", "memetic"])
@@ -37,7 +38,7 @@ def test_for_any_tolerance_what_an_engine_calls_reached_is_accepted(kind, method
         problem = make(robot, method=method, position_tolerance_m=size, orientation_tolerance_rad=float(turn))
         targets = make_targets(robot, kind, 40 if method == "lm" else 4, rng)
         found = search(problem, targets, seed=1, streams=range(len(targets)))
-        accepted = verify_many(robot, targets, found.q, problem.settings, None).accepted
+        accepted = verify_many(CollisionModel.of(robot, "none"), targets, found.q, problem.settings).accepted
         reached = found.counts[:, REACHED] == 1
         assert reached.any()
         assert accepted[reached].all()
@@ -46,7 +47,7 @@ def test_for_any_tolerance_what_an_engine_calls_reached_is_accepted(kind, method
 def test_loose_tolerances_lose_no_target(rng):
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=0.1, orientation_tolerance_rad=1.0)
-    rows = ikde.solve_many(robot, make_targets(robot, "pose", 400, rng), settings, detector="none", method="lm")
+    rows = ikde.solve_many(robot, make_targets(robot, "pose", 400, rng), settings, collision="none", method="lm")
     assert rows.reached.all()
 
 
@@ -60,8 +61,8 @@ def refuse(monkeypatch, *rounds):
     """Let the grader refuse these rows, round after round."""
     honest, left = module.compute_figures, [set(rows) for rows in rounds]
 
-    def strict(robot, detector, targets, Q, settings, limits):
-        figures = honest(robot, detector, targets, Q, settings, limits)
+    def strict(collision, targets, Q, settings, limits):
+        figures = honest(collision, targets, Q, settings, limits)
         rows = left.pop(0) if left else set()
         for place, target in enumerate(targets):
             if round(10.0 * target.p_world_tool[1]) in rows:
@@ -75,7 +76,7 @@ TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
 
 
 def test_a_refused_row_goes_on_with_its_next_attempt(qiao, monkeypatch):
-    problem = make_problem(qiao, ikde.SolveSettings(method="lm"), detector=None, near=None, freeze=None)
+    problem = make_problem(qiao, ikde.SolveSettings(method="lm"), collision=None, near=None, freeze=None)
     plain = search(problem, TARGETS, seed=7, streams=range(5))
     refuse(monkeypatch, {1, 3}, {3})
     found = search(problem, TARGETS, seed=7, streams=range(5))
@@ -89,8 +90,8 @@ def test_a_refused_row_goes_on_with_its_next_attempt(qiao, monkeypatch):
 def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, monkeypatch):
     honest, tried = module.compute_figures, []
 
-    def strict(robot, detector, targets, Q, settings, limits):
-        figures = honest(robot, detector, targets, Q, settings, limits)
+    def strict(collision, targets, Q, settings, limits):
+        figures = honest(collision, targets, Q, settings, limits)
         figures.accepted[:] = False
         tried.append(len(Q))
         return figures
@@ -105,7 +106,7 @@ def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, m
 def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(rng):
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=1e-16, orientation_tolerance_rad=1e-16, restarts=40, method="lm")
-    rows = ikde.solve_many(robot, make_targets(robot, "pose", 30, rng), settings, detector="none", verify="all")
+    rows = ikde.solve_many(robot, make_targets(robot, "pose", 30, rng), settings, collision="none", verify="all")
     assert 0 < rows.reached.sum() < 30
-    plain = verify_many(robot, rows.targets, rows.q, settings, None)
+    plain = verify_many(CollisionModel.of(robot, "none"), rows.targets, rows.q, settings)
     assert plain.accepted[rows.reached].all()

@@ -174,7 +174,7 @@ def test_a_frozen_joint_outside_its_limits_is_refused(qiao):
 
 def test_the_safe_distance_is_kept(qiao):
     careful = replace(qiao.detectors["improved"], safe_distance_m=0.03)
-    result = ikde.solve(qiao, TARGET, detector=careful)
+    result = ikde.solve(qiao, TARGET, collision=careful)
     assert result.reached
     assert result.clearance_m > 0.03
 
@@ -247,7 +247,7 @@ def test_unreached_targets_are_told_from_bound_and_counts_alone(qiao):
     ("options", "words"),
     [
         ({"method": "ga"}, "no method is called 'ga'"),
-        ({"detector": "improv"}, "no detector 'improv'"),
+        ({"collision": "improv"}, "no detector 'improv'"),
         ({"near": [1, 2]}, "expected 9 joint values"),
         ({"near": [np.nan] * 9}, "finite"),
         ({"freeze": ["q9"]}, "no joint 'q9'"),

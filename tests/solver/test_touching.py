@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.solver import touching as module
 from ikde.solver.touching import TO_FILL_IN, find_always_touching
 from tests.bare_robot import BARE
@@ -22,18 +23,18 @@ def load(text, tmp_path):
 
 
 def find(robot):
-    return find_always_touching(robot, robot.detector(None))
+    return find_always_touching(CollisionModel.of(robot))
 
 
 @pytest.mark.parametrize("name", ikde.robot_names())
 def test_no_shipped_robot_touches_itself_always(name):
     robot = ikde.load_robot(name)
-    assert robot.detector(None) is None or find(robot) is None
+    assert CollisionModel.of(robot).detector is None or find(robot) is None
 
 
 def test_one_sphere_a_component_is_known_to_touch_always(qiao):
     """[Qiao2021, section 5.3.1]: even at home. Its pairs are a list of the file, so no line would help."""
-    touching = find_always_touching(qiao, qiao.detector("single"))
+    touching = find_always_touching(CollisionModel.of(qiao, "single"))
     assert (touching.pairs, touching.lines) == ((("M", "L1"),), ())
     assert touching.remedy == "take it out of the pair list formula_22"
 
@@ -44,13 +45,16 @@ def test_a_pair_that_is_ever_apart_is_not_called_so(tmp_path):
 
 def test_the_safe_distance_counts(tmp_path):
     robot = load(BARE, tmp_path)
-    far = replace(robot.detector(None), safe_distance_m=10.0)
-    assert find_always_touching(robot, far).pairs == robot.pairs(far)
+    far = replace(CollisionModel.of(robot).detector, safe_distance_m=10.0)
+    assert (
+        find_always_touching(CollisionModel(robot=robot, detector=far)).pairs
+        == CollisionModel(robot=robot, detector=far).pairs
+    )
 
 
 def test_a_pair_that_touches_always_stays_compared(tmp_path):
     robot = load(FAT, tmp_path)
-    assert ("platform", "upper_arm") in robot.pairs(robot.detector(None))
+    assert ("platform", "upper_arm") in CollisionModel.of(robot).pairs
     assert str(find(robot)) == "platform - upper_arm touches in each of 1,000 random configurations"
 
 
@@ -87,7 +91,7 @@ def test_names_that_yaml_would_read_otherwise_are_quoted(name, tmp_path):
 def test_configurations_lie_inside_the_limits(tmp_path, monkeypatch):
     robot, seen = load(BARE, tmp_path), []
 
-    def record(robot, spheres, pairs, q):
+    def record(collision, q, pairs):
         seen.append(q)
         return -np.ones((len(q), len(pairs)))
 
@@ -104,9 +108,9 @@ def test_many_spheres_are_compared_a_few_configurations_at_a_time(tmp_path, monk
     expected = find(robot).pairs
     find_always_touching.cache_clear()
 
-    def record(robot, spheres, pairs, q):
+    def record(collision, q, pairs):
         sizes.append(len(q) * len(pairs))
-        return honest(robot, spheres, pairs, q)
+        return honest(collision, q, pairs)
 
     monkeypatch.setattr(module, "compute_gaps", record)
     monkeypatch.setattr(module, "ROOM", 300)

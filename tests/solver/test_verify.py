@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.verify import compute_orientation_errors, verify_many
 from tests.conftest import random_q
 
@@ -64,9 +65,9 @@ def test_a_position_target_has_no_orientation_error(rng):
 def test_exactly_on_a_limit_is_inside_and_one_bit_beyond_is_not(qiao, side, index):
     q = qiao.home
     q[index] = getattr(qiao, side)[index]
-    assert ikde.verify(qiao, here(qiao, q), q, detector="none").accepted
+    assert ikde.verify(qiao, here(qiao, q), q, collision="none").accepted
     q[index] = np.nextafter(q[index], -np.inf if side == "lower" else np.inf)
-    graded = ikde.verify(qiao, here(qiao, q), q, detector="none")
+    graded = ikde.verify(qiao, here(qiao, q), q, collision="none")
     assert graded.within_tolerance
     assert graded.outside_limits == (qiao.joint_names[index],)
     assert not graded.accepted
@@ -115,13 +116,13 @@ def test_clearance_and_pairs_are_those_of_check(qiao):
 def test_touching_at_the_safe_distance_collides(qiao):
     clearance = ikde.check(qiao, qiao.home).clearance_m
     judge = replace(qiao.detectors["improved"], safe_distance_m=clearance)
-    graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, detector=judge)
+    graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, collision=judge)
     assert graded.self_collision
     assert not graded.accepted
 
 
 def test_without_a_detector_self_collision_is_not_checked(qiao):
-    graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, detector="none")
+    graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, collision="none")
     assert (graded.clearance_m, graded.closest_pair, graded.self_collision) == (None, None, None)
     assert graded.accepted
 
@@ -143,7 +144,7 @@ def test_in_bulk_every_row_is_its_own_verification(any_robot, rng):
     T = ikde.forward(any_robot, any_robot.home)[any_robot.tool]
     kinds = [{}, {"axis_world_tool": T[:3, 0]}, {"R_world_tool": T[:3, :3]}]
     targets = [ikde.Target(T[:3, 3], **kinds[k % 3]) for k in range(12)]
-    verdicts = verify_many(any_robot, targets, Q, ikde.SolveSettings(), any_robot.detector(None))
+    verdicts = verify_many(CollisionModel.of(any_robot), targets, Q, ikde.SolveSettings())
     for k, (target, q) in enumerate(zip(targets, Q, strict=True)):
         row, single = verdicts.row(k), ikde.verify(any_robot, target, q)
         assert row.position_error_m == pytest.approx(single.position_error_m, abs=1e-14)

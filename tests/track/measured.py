@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames
 from ikde.track.drive import step_base
 from ikde.track.follow_path import grade_motion
@@ -31,12 +32,12 @@ def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="ax
         orientation=orientation,
         R_world_tool=None if orientation == "free" else tool[rows, :3, :3],
     )
-    chosen = robot.detector(changes.pop("detector", None))
+    collision = CollisionModel.of(robot, changes.pop("detector", None))
     limits = MotionLimits.of(robot, **changes)
-    told = {"drive": drive, "method": "continuation", "limits": limits, "detector": chosen}
+    told = {"drive": drive, "method": "continuation", "limits": limits}
     followed = Followed(q=q, stop=stop, seconds=np.full(steps, 2e-5), search_seconds=0.25)
-    motion = grade_motion(robot, path, followed, **told)
-    return summarise_track(robot, chosen, motion)
+    motion = grade_motion(collision, path, followed, **told)
+    return summarise_track(collision, motion)
 
 
 def make_still(robot, **changes):

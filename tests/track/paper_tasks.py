@@ -5,6 +5,7 @@ from pathlib import Path
 
 import ikde
 from ikde.io.track_file import load_track
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.settings import SolveSettings
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
@@ -35,10 +36,9 @@ def start_of(robot_name, number):
 def follower_of(robot, path, *, drive="differential", detector=True, frozen=(), **limits):
     """A path made ready, with the paper's limits but for changes."""
     return make_follower(
-        robot,
+        CollisionModel(robot=robot, detector=CollisionModel.of(robot).detector if detector else None),
         path,
         drive=drive,
         limits=MotionLimits.of(robot, **limits),
-        detector=robot.detector(None) if detector else None,
         frozen=frozen,
     )

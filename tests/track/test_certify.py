@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import bound_pairs, bound_segments, certify, halfway, measure_deviation, travel_radii
@@ -21,8 +22,12 @@ DENSE = 100
 def sample_densely(robot, detector, q):
     """Smallest clearance [M] of each segment at many places."""
     shares = np.linspace(0, 1, DENSE + 1)[:, None]
-    pairs = robot.pairs(detector)
-    return np.array([compute_gaps(robot, detector.spheres, pairs, a + shares * (b - a)).min() for a, b in pairwise(q)])
+    return np.array(
+        [
+            compute_gaps(CollisionModel(robot=robot, detector=detector), a + shares * (b - a)).min()
+            for a, b in pairwise(q)
+        ]
+    )
 
 
 def walk(robot, rng, steps, size):
@@ -34,23 +39,23 @@ def walk(robot, rng, steps, size):
 
 @pytest.mark.parametrize("size", [0.02, 0.3, 3.0])
 def test_it_never_promises_too_much_and_hardly_too_little(qiao, rng, size):
-    detector = qiao.detector(None)
+    detector = CollisionModel.of(qiao).detector
     for _ in range(2):
         q = walk(qiao, rng, 12, size)
-        lower = bound_segments(qiao, detector, q)
+        lower = bound_segments(CollisionModel(robot=qiao, detector=detector), q)
         seen = sample_densely(qiao, detector, q)
         assert (lower <= seen + 1e-12).all()
         assert lower.min() > seen.min() - max(2e-4, 0.03 * abs(seen.min())) - 1e-3 * size
 
 
 def test_each_pair_has_a_bound_of_its_own(qiao, rng):
-    detector = qiao.detector(None)
+    detector = CollisionModel.of(qiao).detector
     q = walk(qiao, rng, 6, 0.3)
-    lower = bound_pairs(qiao, detector, q)
-    np.testing.assert_array_equal(lower.min(axis=1), bound_segments(qiao, detector, q))
+    lower = bound_pairs(CollisionModel(robot=qiao, detector=detector), q)
+    np.testing.assert_array_equal(lower.min(axis=1), bound_segments(CollisionModel(robot=qiao, detector=detector), q))
     shares = np.linspace(0, 1, DENSE + 1)[:, None]
     for row, (a, b) in zip(lower, pairwise(q), strict=True):
-        seen = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), a + shares * (b - a)).min(axis=0)
+        seen = compute_gaps(CollisionModel(robot=qiao, detector=detector), a + shares * (b - a)).min(axis=0)
         assert (row <= seen + 1e-12).all()
 
 
@@ -58,10 +63,10 @@ def test_each_pair_has_a_bound_of_its_own(qiao, rng):
 @pytest.mark.parametrize("seed", range(25))
 def test_it_holds_for_any_tree_and_beyond_its_ranges(seed, beyond):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     q = walk(robot, rng, 6, 2.0)
     q[:, robot.slides] += beyond * (robot.upper - robot.lower)[robot.slides]
-    lower = bound_segments(robot, detector, q)
+    lower = bound_segments(CollisionModel(robot=robot, detector=detector), q)
     assert (lower <= sample_densely(robot, detector, q) + 1e-12).all()
 
 
@@ -86,25 +91,25 @@ def test_what_slides_beyond_its_range_is_carried_farther(tmp_path):
     (tmp_path / "telescope.yaml").write_text(TELESCOPE)
     robot = ikde.load_robot(tmp_path / "telescope.yaml")
     past_the_post = np.array([[-0.3, 1.0], [0.3, 1.0]])
-    assert bound_segments(robot, robot.detector(None), past_the_post)[0] <= -0.1
+    assert bound_segments(CollisionModel.of(robot), past_the_post)[0] <= -0.1
 
 
 def test_a_contact_between_free_samples_is_seen(qiao):
-    detector = qiao.detector(None)
+    detector = CollisionModel.of(qiao).detector
     sweep = np.tile(qiao.home, (400, 1))
     sweep[:, 3], sweep[:, 4] = np.linspace(qiao.lower[3], qiao.upper[3], 400), 1.2
-    free = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), sweep).min(axis=1) > 0.01
+    free = compute_gaps(CollisionModel(robot=qiao, detector=detector), sweep).min(axis=1) > 0.01
     first = int(np.flatnonzero(free[:-1] & ~free[1:])[0])
     last = first + 1 + int(np.argmax(free[first + 1 :]))
     q = sweep[[first, last]]
-    lower = bound_segments(qiao, detector, q)
+    lower = bound_segments(CollisionModel(robot=qiao, detector=detector), q)
     assert free[[first, last]].all()
     assert lower[0] <= sample_densely(qiao, detector, q)[0] < 0.01
 
 
 def test_only_joints_between_two_components_count(qiao):
-    radii = travel_radii(qiao, qiao.detector(None), qiao.upper)
-    pairs = qiao.pairs(qiao.detector(None))
+    radii = travel_radii(CollisionModel.of(qiao), qiao.upper)
+    pairs = CollisionModel.of(qiao).pairs
     np.testing.assert_array_equal(radii[:, :3], 0.0)
     row = radii[pairs.index(("J1", "J4"))]
     np.testing.assert_array_equal(row != 0.0, [False] * 4 + [True] * 2 + [False] * 3)
@@ -117,33 +122,33 @@ def test_a_base_does_not_enter(qiao, rng):
     moved = q.copy()
     moved[:, :3] += rng.uniform(-3, 3, (6, 3))
     np.testing.assert_allclose(
-        bound_segments(qiao, qiao.detector(None), q), bound_segments(qiao, qiao.detector(None), moved), atol=1e-12
+        bound_segments(CollisionModel.of(qiao), q), bound_segments(CollisionModel.of(qiao), moved), atol=1e-12
     )
 
 
 def test_without_a_detector_nothing_can_touch(qiao, rng):
-    assert (bound_segments(qiao, None, walk(qiao, rng, 3, 1.0)) == np.inf).all()
+    assert (bound_segments(CollisionModel.of(qiao, "none"), walk(qiao, rng, 3, 1.0)) == np.inf).all()
 
 
 @pytest.mark.parametrize("samples", [0, 1])
 def test_without_a_segment_there_is_no_certificate(qiao, samples):
     path = ToolPath.through([[0, 0, 1], [0, 0.1, 1]], dt_s=0.02)
     q = np.zeros((samples, 9))
-    assert certify(qiao, q, qiao.detector(None)) is None
+    assert certify(CollisionModel.of(qiao), q) is None
     assert [len(values) for values in measure_deviation(qiao, path, q, "differential")] == [0, 0]
 
 
 def test_without_a_detector_or_pairs_there_is_no_certificate(qiao, rng):
     q = walk(qiao, rng, 3, 0.1)
-    assert certify(qiao, q, None) is None
+    assert certify(CollisionModel.of(qiao, "none"), q) is None
     nothing = replace(qiao.detectors["improved"], pairs="nothing")
-    assert certify(replace(qiao, pair_lists={"nothing": ()}), q, nothing) is None
+    assert certify(CollisionModel(robot=replace(qiao, pair_lists={"nothing": ()}), detector=nothing), q) is None
 
 
 def test_a_certificate_is_the_least_of_its_segments(qiao, rng):
     q = walk(qiao, rng, 4, 0.1)
-    proof = certify(qiao, q, qiao.detector(None))
-    np.testing.assert_array_equal(proof.segment_m, bound_segments(qiao, qiao.detector(None), q))
+    proof = certify(CollisionModel.of(qiao), q)
+    np.testing.assert_array_equal(proof.segment_m, bound_segments(CollisionModel.of(qiao), q))
     assert proof.clearance_m == proof.segment_m.min()
     assert proof.is_free is bool(proof.clearance_m > 0.0)
 
@@ -172,9 +177,9 @@ def test_deviation_is_from_where_the_path_is_halfway(qiao):
 
 @pytest.mark.parametrize("room", [1e-4, 1e-6])
 def test_free_samples_are_not_doubted_for_lack_of_halvings(qiao, monkeypatch, room):
-    detector, shares = qiao.detector(None), np.linspace(0.0, 1.0, 9)[:, None]
+    detector, shares = CollisionModel.of(qiao).detector, np.linspace(0.0, 1.0, 9)[:, None]
     q = qiao.home + 0.2 * shares * np.ones(9)
-    least = compute_gaps(qiao, detector.spheres, qiao.pairs(detector), q).min()
+    least = compute_gaps(CollisionModel(robot=qiao, detector=detector), q).min()
     # as if the nearest pair kept no more than `room` at the samples
     monkeypatch.setattr("ikde.track.certify.compute_gaps", lambda *told: compute_gaps(*told) - (least - room))
-    assert bound_segments(qiao, detector, q).min() > 0.0
+    assert bound_segments(CollisionModel(robot=qiao, detector=detector), q).min() > 0.0

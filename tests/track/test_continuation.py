@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ikde.model.collision_model import CollisionModel
 from ikde.track import continuation
 from ikde.track.continuation import Continuation, Found, cut_at_doubt
 from ikde.track.follower import MARGIN_M, make_follower
@@ -14,9 +15,9 @@ from tests.track.tracks import follow_task, make_line, robot
 
 
 def search(path, drive="differential", safe_m=0.0):
-    detector = replace(robot().detector(None), safe_distance_m=safe_m)
-    told = {"limits": MotionLimits.of(robot()), "detector": detector}
-    follower = make_follower(robot(), path, drive=drive, **told)
+    detector = replace(CollisionModel.of(robot()).detector, safe_distance_m=safe_m)
+    collision = CollisionModel(robot=robot(), detector=detector)
+    follower = make_follower(collision, path, drive=drive, limits=MotionLimits.of(robot()))
     return Continuation(follower=follower, frozen={}, seed=0)
 
 
@@ -37,8 +38,8 @@ def test_nothing_to_find_is_a_stop():
 
 def test_a_first_pose_too_far_from_the_platform_is_a_stop():
     limits = MotionLimits.of(robot(), farthest_m=0.1, center="Oc")
-    told = {"drive": "differential", "detector": robot().detector(None)}
-    follower = make_follower(robot(), make_line([0.9, 0, 1.0], [0.9, 0, 1.1], 5), limits=limits, **told)
+    path = make_line([0.9, 0, 1.0], [0.9, 0, 1.1], 5)
+    follower = make_follower(CollisionModel.of(robot()), path, limits=limits, drive="differential")
     found = Continuation(follower=follower, frozen={}, seed=0).find(None).stop
     assert (found.sample, found.reason, found.limit) == (0, TrackStopReason.DISTANCE_LIMIT, "Oc")
 
@@ -49,7 +50,7 @@ def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
     course = looking.follower.follow(looking.follower.begin(motion.q[0], np.array([0.3, 0.3, 0.3])), 100)
     found = Found(course=course, follower=looking.follower, stop=None)
     assert cut_at_doubt(found) is found
-    pairs = found.follower.robot.pairs(found.follower.detector)
+    pairs = found.follower.collision.pairs
     bounds = np.ones((100, len(pairs)))
     bounds[63, 5:7], bounds[70, 2] = (0.0, -0.1), -1.0
     monkeypatch.setattr(continuation, "bound_pairs", lambda *_: bounds)

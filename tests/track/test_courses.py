@@ -7,6 +7,7 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import DRIFT
+from ikde.model.collision_model import CollisionModel
 from ikde.track import courses
 from ikde.track.courses import USES, ContinuationSettings, choose_course, farthest
 from ikde.track.follower import make_follower
@@ -19,7 +20,12 @@ USUAL = ContinuationSettings()
 
 
 def make(path, drive="differential"):
-    return make_follower(robot(), path, drive=drive, limits=MotionLimits.of(robot()), detector=robot().detector(None))
+    return make_follower(
+        CollisionModel.of(robot()),
+        path,
+        drive=drive,
+        limits=MotionLimits.of(robot()),
+    )
 
 
 def shorten(path, samples):

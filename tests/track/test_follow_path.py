@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 import ikde
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import certify
@@ -44,9 +45,9 @@ pairs: {post: {pairs: {post: [mast]}}}
 
 
 def judge(motion, detector="improved"):
-    told = {"drive": motion.drive, "detector": robot().detector(detector)}
-    verdict = verify_track(robot(), motion.path, motion.q, limits=motion.limits, **told)
-    return verdict, certify(robot(), motion.q, told["detector"])
+    collision = CollisionModel.of(robot(), detector)
+    verdict = verify_track(collision, motion.path, motion.q, limits=motion.limits, drive=motion.drive)
+    return verdict, certify(collision, motion.q)
 
 
 def must_hold(motion):
@@ -96,7 +97,7 @@ def pass_through(orientation, turns, seed):
             middle[index], rate[index] = 0.0, 0.6 * 0.005 * np.pi
         q = middle + np.outer(np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 201)) * 200 / np.pi, rate)
         inside = ((robot().lower < q) & (q < robot().upper)).all()
-        if inside and compute_gaps(robot(), "improved", robot().pairs(robot().detector(None)), q).min() > 0.02:
+        if inside and compute_gaps(CollisionModel.of(robot()), q).min() > 0.02:
             break
     T = forward(robot(), q)["tool"]
     asked = {"pose": {"R_world_tool": T[:, :3, :3]}, "axis": {"axis_world_tool": T[:, :3, 2]}, "free": {}}[orientation]
@@ -211,7 +212,7 @@ def test_every_limit_is_kept(told, drive):
 
 
 def test_without_a_detector_nothing_is_said_about_clearance():
-    motion = follow_path(robot(), make_line([0.9, 0, 1.0], [0.9, 0.1, 1.0], 20), detector="none")
+    motion = follow_path(robot(), make_line([0.9, 0, 1.0], [0.9, 0.1, 1.0], 20), collision="none")
     assert motion.reached
     assert (motion.clearance_m, motion.certified_clearance_m, motion.certificate) == (None, None, None)
     assert motion.breaches.collision is None
@@ -284,8 +285,8 @@ def test_a_base_on_arcs_carries_all_that_is_looked_at(tmp_path):
     path = make_line([0.2, 0.0, 0.5], [0.21, 0.0, 0.5], 5)
     post = ikde.Detector(name="post", spheres="round", pairs="post")
     with pytest.raises(InputError, match=r"^detector: a base on arcs must carry all that the detector looks at"):
-        follow_path(cart, path, detector=post)
-    assert follow_path(cart, path, detector=post, drive="omnidirectional").reached
+        follow_path(cart, path, collision=post)
+    assert follow_path(cart, path, collision=post, drive="omnidirectional").reached
 
 
 def test_without_ranges_the_solver_that_keeps_them_has_no_say():
@@ -311,8 +312,8 @@ def test_from_any_start_the_motion_keeps_all_limits(task, drive, seed, pick, off
     whole, limits = load_task(task).path, MotionLimits.of(robot())
     turns = None if whole.R_world_tool is None else whole.R_world_tool[:121]
     path = ToolPath(dt_s=0.02, p_world_tool=whole.p_world_tool[:121], orientation=whole.orientation, R_world_tool=turns)
-    told = {"drive": drive, "limits": limits, "detector": robot().detector(None)}
-    starts, _ = draw_starts(make_follower(robot(), path, **told), {}, seed)
+    follower = make_follower(CollisionModel.of(robot()), path, drive=drive, limits=limits)
+    starts, _ = draw_starts(follower, {}, seed)
     start = move_tool(starts[pick % len(starts)], off_m, np.random.default_rng(seed))
     motion = follow_path(robot(), path, drive=drive, start=start, seed=seed)
     must_hold(motion)

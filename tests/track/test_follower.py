@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames
 from ikde.track.follower import MARGIN_M, REACH_M, make_follower
 from ikde.track.limits import MotionLimits
@@ -16,8 +17,8 @@ USE = np.array([0.3, 0.3, 0.3])
 def start():
     """A configuration at the first pose of task 1, and its follower."""
     motion = follow_task("task1", "differential")
-    told = {"limits": MotionLimits.of(robot()), "detector": robot().detector(None)}
-    return motion.q[0], make_follower(robot(), motion.path, drive="differential", **told)
+    limits = MotionLimits.of(robot())
+    return motion.q[0], make_follower(CollisionModel.of(robot()), motion.path, drive="differential", limits=limits)
 
 
 def test_it_goes_on_where_it_stopped(start):
@@ -55,16 +56,16 @@ def test_it_stops_where_it_cannot_go_on(start):
 
 def test_what_the_kernels_are_told():
     path = make_line([0.9, 0, 1], [0.9, 0.1, 1], 5)
-    told = {"drive": "omnidirectional", "detector": robot().detector(None)}
+    collision, drive = CollisionModel.of(robot()), "omnidirectional"
     limits = MotionLimits.of(robot(), position_error_m=1e-10)
-    track = make_follower(robot(), path, limits=limits, **told).track
+    track = make_follower(collision, path, limits=limits, drive=drive).track
     assert (track.margin, track.reach) == (MARGIN_M, REACH_M)
     assert track.position_goal <= track.position_tolerance < 1e-10
     assert (track.ranges[0] > robot().lower).all()
     assert (track.ranges[1] < robot().upper).all()
-    loose = make_follower(robot(), path, limits=MotionLimits.of(robot(), ranges=False), **told).track
+    loose = make_follower(collision, path, limits=MotionLimits.of(robot(), ranges=False), drive=drive).track
     assert np.abs(loose.ranges).min() > 1e4
-    blind = make_follower(robot(), path, limits=limits, drive="differential", detector=None)
+    blind = make_follower(CollisionModel.of(robot(), "none"), path, limits=limits, drive="differential")
     assert (blind.track.reach, blind.size) == (-np.inf, 8)
 
 
@@ -78,5 +79,5 @@ def test_a_twofold_singularity_is_passed():
     T = compute_frames(robot(), q)["tool"]
     path = ToolPath.through(T[:, :3, 3], dt_s=0.02, R_world_tool=T[:, :3, :3])
     limits = MotionLimits.of(robot(), speed=speed)
-    follower = make_follower(robot(), path, drive="differential", limits=limits, detector=None)
+    follower = make_follower(CollisionModel.of(robot(), "none"), path, drive="differential", limits=limits)
     assert follower.follow(follower.begin(q[0], np.zeros(3))).last == 1

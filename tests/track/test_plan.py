@@ -34,7 +34,7 @@ def test_what_is_left_out_has_defaults(qiao):
     )
     np.testing.assert_array_equal(made.limits.speed, MotionLimits.of(qiao).speed)
     assert (made.limits.acceleration, made.limits.wheel_speed_rad_s) == (None, None)
-    assert (made.detector, made.start, made.path.name) == (qiao.detectors["improved"], None, "track")
+    assert (made.collision.detector, made.start, made.path.name) == (qiao.detectors["improved"], None, "track")
 
 
 def test_it_introduces_itself_in_a_line(qiao):
@@ -64,7 +64,7 @@ def test_the_other_limits_are_in_metres_and_radians(qiao):
 
 def test_ranges_detector_and_start_are_those_of_the_file(qiao):
     made = plan(qiao, ranges={"d_x": [-1000, 1000]}, detector="none", start={"d_x": -500, "q2": 45}, method="typical")
-    assert (made.robot.joints[0].lower, made.detector, made.method) == (-1.0, None, "typical")
+    assert (made.robot.joints[0].lower, made.collision.detector, made.method) == (-1.0, None, "typical")
     assert dict(zip(qiao.joint_names, made.start, strict=True)) == pytest.approx(
         {**dict(zip(qiao.joint_names, qiao.home, strict=True)), "d_x": -0.5, "q2": np.pi / 4}
     )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.model.reach import reach_excess_m
 from ikde.track import refusal
 from ikde.track.follow_path import follow_path
@@ -24,9 +25,11 @@ def follow(steps, *, drive="differential", q=Q, detector=None, frozen=(), use=(0
     """A follower, and its course from `q` by `steps` [K, 3] of the tool."""
     p = ikde.forward(robot(), q)["tool"][:3, 3] + np.cumsum([np.zeros(3), *steps], axis=0)
     path = ToolPath.through(p, dt_s=0.02)
-    chosen = robot().detector(detector)
+    chosen = CollisionModel.of(robot(), detector).detector
     limits = MotionLimits.of(robot(), **told)
-    follower = make_follower(robot(), path, drive=drive, limits=limits, detector=chosen, frozen=frozen)
+    follower = make_follower(
+        CollisionModel(robot=robot(), detector=chosen), path, drive=drive, limits=limits, frozen=frozen
+    )
     return follower, follower.follow(follower.begin(q, np.array(use)))
 
 
@@ -34,7 +37,9 @@ def explain(steps, **told):
     """The stop of such a course."""
     follower, course = follow(steps, **told)
     assert course.last < follower.path.samples
-    static = ikde.solve(robot(), follower.path.targets()[course.last + 1], detector=follower.detector or "none")
+    static = ikde.solve(
+        robot(), follower.path.targets()[course.last + 1], collision=follower.collision.detector or "none"
+    )
     return explain_stop(follower, course, static)
 
 
@@ -82,7 +87,7 @@ def test_the_pair_that_would_touch():
     frozen = tuple(name for name in robot().joint_names if name != "q2")
     T = ikde.forward(robot(), q + np.outer(np.arange(200) * 0.02, np.eye(9)[4]))["tool"][:, :3, 3]
     stop = explain(np.diff(T, axis=0), q=q, frozen=frozen)
-    pairs = robot().pairs(robot().detector(None))
+    pairs = CollisionModel.of(robot()).pairs
     assert (stop.reason, stop.pair in pairs) == (TrackStopReason.SELF_COLLISION, True)
     assert "overlap" in stop.text
     gap = ikde.check(robot(), q + (stop.sample - 1) * 0.02 * np.eye(9)[4]).clearance_m
@@ -91,16 +96,16 @@ def test_the_pair_that_would_touch():
 
 def test_out_of_reach_is_proved_or_told_by_the_solver():
     path = make_line([0.9, 0, 1.0], [0.9, 0, 3.0], 20)
-    told = {"limits": MotionLimits.of(robot()), "detector": None}
-    follower = make_follower(robot(), path, drive="differential", **told)
+    collision = CollisionModel.of(robot(), "none")
+    follower = make_follower(collision, path, drive="differential", limits=MotionLimits.of(robot()))
     sample, excess = first_out_of_reach(follower, robot().lower, robot().upper)
     assert path.p_world_tool[sample - 1, 2] < 1.75 < path.p_world_tool[sample, 2]
     assert 0.0 < excess < 0.1
-    result = ikde.solve(robot(), ikde.Target([0.9, 0, 1.69]), detector="none")
+    result = ikde.solve(robot(), ikde.Target([0.9, 0, 1.69]), collision="none")
     stop = tell_static(follower, 7, result)
     assert (stop.sample, stop.reason) == (7, TrackStopReason.BUDGET)
     assert f"no configuration was found in {result.attempts} attempts; the best is off by" in stop.text
-    result = ikde.solve(robot(), ikde.Target([0.9, 0, 1.79]), detector="none")
+    result = ikde.solve(robot(), ikde.Target([0.9, 0, 1.79]), collision="none")
     stop = tell_static(follower, 7, result)
     assert (stop.sample, stop.reason) == (7, TrackStopReason.OUT_OF_REACH)
 
@@ -111,7 +116,7 @@ def test_what_an_error_along_each_axis_may_make_up_for_is_no_proof():
     first = int(np.flatnonzero(excess)[0])
     for share, sample in ((0.6, first + 1), (0.55, first)):
         limits = MotionLimits.of(robot(), position_error_m=share * excess[first])
-        follower = make_follower(robot(), path, drive="differential", limits=limits, detector=None)
+        follower = make_follower(CollisionModel.of(robot(), "none"), path, drive="differential", limits=limits)
         assert first_out_of_reach(follower, robot().lower, robot().upper)[0] == sample
 
 

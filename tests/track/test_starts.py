@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.forward import forward
 from ikde.solver.verify import verify
@@ -14,8 +15,7 @@ from tests.track.tracks import TASKS, load_task, make_line, robot
 
 
 def make(path):
-    told = {"limits": MotionLimits.of(robot()), "detector": robot().detector(None)}
-    return make_follower(robot(), path, drive="differential", **told)
+    return make_follower(CollisionModel.of(robot()), path, drive="differential", limits=MotionLimits.of(robot()))
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -49,8 +49,7 @@ def test_no_start_comes_with_the_reason():
 def test_starts_keep_the_tool_near_the_platform():
     path = load_task("task1").path
     limits = MotionLimits.of(robot(), farthest_m=0.9, center="Oc")
-    told = {"drive": "differential", "detector": robot().detector(None)}
-    near = make_follower(robot(), path, limits=limits, **told)
+    near = make_follower(CollisionModel.of(robot()), path, limits=limits, drive="differential")
     starts, _ = draw_starts(near, {}, 0)
     every, _ = draw_starts(make(path), {}, 0)
     frames = forward(robot(), every)

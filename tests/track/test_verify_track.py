@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.drive import step_base
@@ -29,7 +30,7 @@ def judge(robot, q, limits=None, drive="differential", along=None, detector="imp
     tool = forward(robot, q if along is None else along)["tool"]
     path = ToolPath.through(tool[:, :3, 3], dt_s=DT_S, R_world_tool=tool[:, :3, :3])
     limits = limits or MotionLimits.of(robot, **told)
-    return verify_track(robot, path, q, drive=drive, limits=limits, detector=robot.detector(detector))
+    return verify_track(CollisionModel.of(robot, detector), path, q, drive=drive, limits=limits)
 
 
 def test_figures_of_a_made_motion(qiao):
@@ -42,7 +43,7 @@ def test_figures_of_a_made_motion(qiao):
     np.testing.assert_allclose(found.speeds[:, 4:], 0.5)
     assert np.abs(found.sideways_m_s).max() < 1e-14
     assert (found.largest_axis_error_m, found.largest_orientation_error_rad) == pytest.approx((0, 0), abs=1e-7)
-    gaps = compute_gaps(qiao, "improved", qiao.pairs(qiao.detector(None)), q)
+    gaps = compute_gaps(CollisionModel.of(qiao), q)
     assert found.clearance_m == gaps.min()
 
 
@@ -175,7 +176,7 @@ def test_at_the_safe_distance_it_is_a_collision(qiao):
     q = make_q(qiao)
     gaps = judge(qiao, q).gaps_m.min(axis=1)
     for safe_m, collisions in ((gaps.min(), 1), (np.nextafter(gaps.min(), 0.0), 0), (gaps.max(), len(q))):
-        found = judge(qiao, q, detector=replace(qiao.detector(None), safe_distance_m=float(safe_m)))
+        found = judge(qiao, q, detector=replace(CollisionModel.of(qiao).detector, safe_distance_m=float(safe_m)))
         assert found.breaches.collision == collisions
         assert found.accepted is (collisions == 0)
 
@@ -201,8 +202,8 @@ def test_nothing_is_no_motion(qiao, samples):
     q = make_q(qiao)
     tool = forward(qiao, q)["tool"]
     path = ToolPath.through(tool[:, :3, 3], dt_s=DT_S)
-    told = {"limits": MotionLimits.of(qiao, acceleration=np.ones(9)), "detector": qiao.detector(None)}
-    found = verify_track(qiao, path, q[:samples], drive="differential", **told)
+    told = {"limits": MotionLimits.of(qiao, acceleration=np.ones(9))}
+    found = verify_track(CollisionModel.of(qiao), path, q[:samples], drive="differential", **told)
     assert found.accepted
     assert (found.speeds.shape, found.wheel_speeds.shape, len(found.error_m)) == ((0, 9), (0, 2), samples)
     assert (found.clearance_m is None) is (samples == 0)

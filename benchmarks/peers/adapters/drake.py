@@ -13,6 +13,8 @@ from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
 from pydrake.solvers import SnoptSolver, SolverOptions
 from pydrake.systems.framework import DiagramBuilder
 
+from ikde.model.collision_model import CollisionModel
+
 INFLUENCE_M, INSIDE = 0.02, 0.9  # share of each tolerance that the program is told, since its solver rounds
 
 
@@ -29,13 +31,13 @@ class Program(Peer):
         robot = setup.robot
         shapes = {
             name: GeometrySet(plant.GetCollisionGeometriesForBody(plant.GetBodyByName(f"component_{name}")))
-            for name in robot.components(robot.detector(None).spheres)
+            for name in robot.components(CollisionModel.of(robot).detector.spheres)
         }
         every = GeometrySet()
         for name in shapes:
             every.Add(plant.GetCollisionGeometriesForBody(plant.GetBodyByName(f"component_{name}")))
         filters = CollisionFilterDeclaration().ExcludeWithin(every)
-        for a, b in robot.pairs(robot.detector(None)):
+        for a, b in CollisionModel.of(robot).pairs:
             filters.AllowBetween(shapes[a], shapes[b])
         scene.collision_filter_manager().Apply(filters)
         self.diagram = builder.Build()

@@ -10,6 +10,7 @@ from protocol import Setup
 
 import ikde
 from adapters.differential import CLEARANCE_M, Differential, Manner, Program, Span, orientation_cost
+from ikde.model.collision_model import CollisionModel
 
 SEEN_M = 0.1
 
@@ -71,9 +72,9 @@ def pair_geoms(robot: ikde.Robot, model: mujoco.MjModel) -> list[tuple[list[str]
     names = [model.geom(k).name for k in range(model.ngeom)]
     groups = {
         component: [name for name in names if name.rpartition("_")[0] == component]
-        for component in robot.components(robot.detector(None).spheres)
+        for component in robot.components(CollisionModel.of(robot).detector.spheres)
     }
-    return [(groups[a], groups[b]) for a, b in robot.pairs(robot.detector(None))]
+    return [(groups[a], groups[b]) for a, b in CollisionModel.of(robot).pairs]
 
 
 class Limited(Differential):

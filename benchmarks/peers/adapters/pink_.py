@@ -13,6 +13,7 @@ from protocol import Setup
 
 import ikde
 from adapters.differential import CLEARANCE_M, Differential, Manner, Program, Span, orientation_cost
+from ikde.model.collision_model import CollisionModel
 
 CLOSEST_PAIRS = 10
 
@@ -53,7 +54,7 @@ class PinkProgram(Program):
         groups: dict[str, list[int]] = {}
         for index, shape in enumerate(geometry.geometryObjects):
             groups.setdefault(self.model.frames[shape.parentFrame].name.removeprefix("component_"), []).append(index)
-        for a, b in robot.pairs(robot.detector(None)):
+        for a, b in CollisionModel.of(robot).pairs:
             for i in groups[a]:
                 for j in groups[b]:
                     geometry.addCollisionPair(pin.CollisionPair(i, j))

@@ -17,6 +17,8 @@ import numpy as np
 import pinocchio as pin
 from protocol import Peer, Setup
 
+from ikde.model.collision_model import CollisionModel
+
 STEPS, LARGEST_STEP, LEAST_DAMPING, DAMPING = 60, 0.8, 1e-6, 0.1
 SOURCE = Path(__file__).parent / "pinocchio_lm.cpp"
 
@@ -99,7 +101,7 @@ def pack(model: Any, tool: int, setup: Setup) -> tuple[np.ndarray, np.ndarray]:
     from ikde.model.tree import build_tree
 
     robot = setup.robot
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     parts, counts = [], [model.njoints - 1, int(setup.is_pose)]
     axes = {frame.joint: frame.axis for frame in robot.frames if frame.joint}
     for k, joint in enumerate(robot.joints, start=1):
@@ -122,7 +124,7 @@ def pack(model: Any, tool: int, setup: Setup) -> tuple[np.ndarray, np.ndarray]:
         counts += [0 if body_joint is None else body_joint + 1, len(spheres)]
         centre, radius = bounding_sphere(spheres)
         parts += [centre, [radius], *([*s.p_body_sphere, s.radius_m] for s in spheres)]
-    pairs = robot.pairs(detector)
+    pairs = CollisionModel(robot=robot, detector=detector).pairs
     counts += [len(pairs), *(names.index(name) for pair in pairs for name in pair)]
     return np.concatenate([np.ravel(part) for part in parts]).astype(float), np.array(counts, dtype=np.int32)
 

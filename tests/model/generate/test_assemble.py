@@ -16,6 +16,7 @@ import pytest
 import ikde
 from ikde.kernels import analytic, lm
 from ikde.model.closed_form import find_ur_arm
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble, module
 from ikde.model.target import KINDS
 from tests.collision_robots import SHIPPED, name_case
@@ -30,7 +31,7 @@ OWN = ["make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes
 def text_of(name, kind):
     """The module of a robot that ships."""
     robot = ikde.load_robot(name)
-    return assemble.format_module(robot, robot.detector(None), kind)
+    return assemble.format_module(CollisionModel.of(robot), kind)
 
 
 def functions_of(text):
@@ -62,7 +63,7 @@ def test_every_name_is_known_where_it_is_used(name, kind):
 @pytest.mark.parametrize("case", SHIPPED, ids=name_case)
 def test_the_head_tells_what_the_module_is_for(case):
     robot, detector = case
-    head = ast.get_docstring(ast.parse(assemble.format_module(robot, detector, "axis")))
+    head = ast.get_docstring(ast.parse(assemble.format_module(CollisionModel(robot=robot, detector=detector), "axis")))
     (first, second, *_), last = head.split("\n"), len(robot.joints) - 1
     assert first == f"Kernels of one robot for axis targets, written by ikde: straight-line code, q0 to q{last}."
     assert not second
@@ -75,7 +76,7 @@ def test_no_name_is_in_it(name, kind):
     """Whatever things are called, also what would end the docstring, the text is the same."""
     robot = ikde.load_robot(name)
     hostile = rename(robot, lambda old: f'{old}"""\n{old}\\')
-    assert assemble.format_module(hostile, hostile.detector(None), kind) == text_of(name, kind)
+    assert assemble.format_module(CollisionModel.of(hostile), kind) == text_of(name, kind)
 
 
 def test_the_engine_is_in_it_as_it_stands():
@@ -107,14 +108,15 @@ def test_the_same_robot_has_the_same_module():
         b = replace(a)
         assert a is not b
         assert a != b
-        assert module.digest_inputs(a, a.detector(None), "pose") == module.digest_inputs(b, b.detector(None), "pose")
-        assert assemble.format_module(b, b.detector(None), "pose") == text_of(name, "pose")
+        assert module.digest_inputs(CollisionModel.of(a), "pose") == module.digest_inputs(CollisionModel.of(b), "pose")
+        assert assemble.format_module(CollisionModel.of(b), "pose") == text_of(name, "pose")
 
 
 def test_another_process_writes_the_same_text():
     script = (
         "import hashlib, ikde; from ikde.model.generate import assemble; r = ikde.load_robot('qiao2021');"
-        "t = assemble.format_module(r, r.detector(None), 'pose'); print(hashlib.sha256(t.encode()).hexdigest())"
+        "from ikde.model.collision_model import CollisionModel; "
+        "t = assemble.format_module(CollisionModel.of(r), 'pose'); print(hashlib.sha256(t.encode()).hexdigest())"
     )
     environment = {**os.environ, "PYTHONHASHSEED": "7", "NUMBA_DISABLE_JIT": "1"}
     command = [sys.executable, "-c", script]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import BODY
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import (
     count_sphere_pairs,
     find_root,
@@ -14,7 +15,7 @@ from ikde.model.generate.collision import (
 )
 from ikde.model.generate.kinematics import write_bodies
 from ikde.model.generate.writer import Writer
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from tests import reference
 from tests.collision_robots import CASES, SHIPPED, find_gaps, make_row, name_case, two_arms
 from tests.conftest import random_q
@@ -36,7 +37,11 @@ def find_distance(T_world_body, test):
 
 def write(robot, detector):
     """(writer, poses, tests, root) of a robot."""
-    arrays, tests, writer = pack_robot(robot), list_tests(pack_detector(robot, detector)), Writer()
+    arrays, tests, writer = (
+        pack_robot(robot),
+        list_tests(CollisionModel(robot=robot, detector=detector).arrays),
+        Writer(),
+    )
     root = find_root(arrays, tests)
     return writer, write_bodies(writer, arrays, root), tests, root
 
@@ -49,7 +54,7 @@ def squared_reaches(tests, safe_distance):
 def test_the_tests_of_a_pair_find_its_clearance(case, rng):
     """The smallest distance less reach over a pair's tests is the pair's clearance: nothing is left out."""
     robot, detector = case
-    tests, arrays = list_tests(pack_detector(robot, detector)), pack_robot(robot)
+    tests, arrays = list_tests(CollisionModel(robot=robot, detector=detector).arrays), pack_robot(robot)
     Q = random_q(robot, rng, 4)
     for q, gaps in zip(Q, find_gaps(robot, detector, Q), strict=True):
         T_world_body = reference.compute_bodies(arrays, q)
@@ -61,17 +66,23 @@ def test_the_tests_of_a_pair_find_its_clearance(case, rng):
 
 @every_case
 def test_lattices_save_tests(case):
-    tests, packed = list_tests(pack_detector(*case)), pack_detector(*case)
+    tests, packed = (
+        list_tests(CollisionModel(robot=case[0], detector=case[1]).arrays),
+        CollisionModel(robot=case[0], detector=case[1]).arrays,
+    )
     assert len(tests) <= count_sphere_pairs(packed)
     assert [test.number for test in tests] == list(range(len(tests)))
     assert all(len(test.sphere.centres) == 1 for test in tests)
 
 
 def test_sphere_pairs_are_counted(qiao):
-    counts = {name: count_sphere_pairs(pack_detector(qiao, detector)) for name, detector in qiao.detectors.items()}
+    counts = {
+        name: count_sphere_pairs(CollisionModel(robot=qiao, detector=detector).arrays)
+        for name, detector in qiao.detectors.items()
+    }
     for name, detector in qiao.detectors.items():
         rows, total = qiao.approximations[detector.spheres], 0
-        for a, b in qiao.pairs(detector):
+        for a, b in CollisionModel(robot=qiao, detector=detector).pairs:
             total += int(np.prod([sum(row.count for row in rows if row.component == c) for c in (a, b)]))
         assert counts[name] == total
 
@@ -92,7 +103,7 @@ def test_a_margin_is_squared_distance_less_squared_reach(case, rng):
 @every_case
 def test_the_root_is_the_last_body_that_carries_all(case):
     robot, detector = case
-    arrays, packed = pack_robot(robot), pack_detector(robot, detector)
+    arrays, packed = pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays
     root = find_root(arrays, list_tests(packed))
     carried = {int(packed.components[int(c), BODY]) for pair in packed.pairs for c in pair}
 
@@ -110,7 +121,7 @@ def test_the_root_is_the_last_body_that_carries_all(case):
 
 
 def test_the_base_of_a_mobile_robot_does_not_enter(qiao):
-    writer, poses, tests, root = write(qiao, qiao.detector(None))
+    writer, poses, tests, root = write(qiao, CollisionModel.of(qiao).detector)
     margins = [write_margin(writer, poses, test, root) for test in tests]
     assert root == 3
     names = " ".join(writer.lines(margins, set())).split()
@@ -146,7 +157,7 @@ def test_a_guard_lets_every_failing_test_through(case, rng):
 
 
 def test_only_what_stands_still_is_boxed(qiao):
-    writer, poses, tests, root = write(qiao, qiao.detector(None))
+    writer, poses, tests, root = write(qiao, CollisionModel.of(qiao).detector)
     for guard, group in group_by_guard(writer, poses, tests, root):
         stands = {test.lattice.body == root and test.sphere.body != root for test in group}
         assert (guard is not None) in stands
@@ -178,4 +189,4 @@ def test_spheres_almost_in_one_place_have_names_of_their_own(shift, rng):
         make_row("u", "tool", "f1", 0.05, 4),
     ]
     robot = two_arms(rows, [("x", "t"), ("y", "t"), ("x", "u"), ("u", "y")], points)
-    test_a_margin_is_squared_distance_less_squared_reach((robot, robot.detector(None)), rng)
+    test_a_margin_is_squared_distance_less_squared_reach((robot, CollisionModel.of(robot).detector), rng)

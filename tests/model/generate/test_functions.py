@@ -7,10 +7,11 @@ import pytest
 
 from ikde.kernels.arrays import DescentArrays
 from ikde.kernels.tables import LANES
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps, order_pairs
 from ikde.model.generate.proofs import drop_implied, drop_proved
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from tests import reference
 from tests.collision_robots import (
@@ -36,7 +37,7 @@ MARGIN = 0.1  # what proofs allow for here
 @cache
 def make_checks(robot, detector, margin=MARGIN):
     """`find_collision` and `judge_lanes`, with the tests that a module has."""
-    arrays, packed = pack_robot(robot), pack_detector(robot, detector)
+    arrays, packed = pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays
     tests = drop_implied(list_tests(packed))
     if np.isfinite(margin):
         tests = drop_proved(arrays, tests, margin, robot.lower, robot.upper)
@@ -122,7 +123,7 @@ def test_rows_and_grids_of_any_count_are_found(seed, counts):
     ]
     robot = two_arms(rows, [("world", "f0"), ("f1", "f0"), ("f1", "world")], points, lower=-3.0, upper=3.0)
     for safe_distance in (0.0, 0.02):
-        assert_verdicts(robot, robot.detector(None), random_q(robot, rng, 60), safe_distance)
+        assert_verdicts(robot, CollisionModel.of(robot).detector, random_q(robot, rng, 60), safe_distance)
 
 
 def test_reaches_that_almost_agree_are_kept_apart():
@@ -134,7 +135,7 @@ def test_reaches_that_almost_agree_are_kept_apart():
         make_row("t", "tool", "tool", 0.05),
     ]
     robot = two_arms(rows, [("x", "t"), ("y", "t")], points, lower=-3.0, upper=3.0)
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     Q = np.column_stack([np.linspace(-0.3, 0.3, 41), np.linspace(-0.1, 0.1, 41)])
     gaps = find_gaps(robot, detector, Q)
     k = int(np.abs(gaps[:, 0]).argmin())
@@ -154,15 +155,15 @@ def test_without_tests_nothing_collides(qiao):
 
 def test_every_pair_with_a_test_is_looked_at_once(qiao):
     for detector in qiao.detectors.values():
-        tests = list_tests(pack_detector(qiao, detector))
+        tests = list_tests(CollisionModel(robot=qiao, detector=detector).arrays)
         order = order_pairs(pack_robot(qiao), tests, qiao.lower, qiao.upper)
         assert sorted(order) == sorted({test.pair for test in tests})
 
 
 def test_likely_pairs_come_first(qiao, rng):
     """Fewer tests are looked at than in the order of the detector, on the average over colliding configurations."""
-    detector = qiao.detector(None)
-    tests = drop_implied(list_tests(pack_detector(qiao, detector)))
+    detector = CollisionModel.of(qiao).detector
+    tests = drop_implied(list_tests(CollisionModel(robot=qiao, detector=detector).arrays))
     order = order_pairs(pack_robot(qiao), tests, qiao.lower, qiao.upper)
     hits = find_gaps(qiao, detector, random_q(qiao, rng, 400)) <= 0.0
     hits = hits[hits.any(axis=1)]

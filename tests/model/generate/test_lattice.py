@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import FIRST, LAST
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.lattice import Lattice, component_lattices
-from ikde.model.pack import pack_detector
 from tests.collision_robots import CASES, make_row, name_case, two_arms
 
 
@@ -33,7 +33,7 @@ def assert_same_spheres(packed, component, lattices):
 
 @pytest.mark.parametrize("case", CASES, ids=name_case)
 def test_lattices_are_the_spheres_that_are_not_inside_others(case):
-    packed = pack_detector(*case)
+    packed = CollisionModel(robot=case[0], detector=case[1]).arrays
     for component in range(len(packed.components)):
         lattices = component_lattices(packed, component)
         assert_same_spheres(packed, component, lattices)
@@ -48,7 +48,7 @@ def lattices_of(rows, **points):
         [("x", "y")],
         {name: ("f0", xyz) for name, xyz in points.items()} | far,
     )
-    packed = pack_detector(robot, robot.detector(None))
+    packed = CollisionModel.of(robot).arrays
     component = int(np.argmin(packed.components[:, 0]))
     lattices = component_lattices(packed, component)
     assert_same_spheres(packed, component, lattices)

@@ -17,6 +17,7 @@ import pytest
 import ikde
 from ikde.errors import CacheWarning
 from ikde.kernels import cache_files, cache_folder
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble, module
 from ikde.model.robot import Detector
 from ikde.model.target import KINDS
@@ -66,7 +67,7 @@ def forget():
 def load(robot):
     """The module for position targets, as a new process loads it."""
     forget()
-    return module.load_module(robot, robot.detector(None), "position")
+    return module.load_module(CollisionModel.of(robot), "position")
 
 
 def only(folder, suffix):
@@ -79,7 +80,7 @@ def only(folder, suffix):
 
 def variants(robot):
     """Robots that differ in one thing, and detectors that see other things."""
-    detector = robot.detector(None)
+    detector = CollisionModel.of(robot).detector
     first, joint, frame = robot.approximations[detector.spheres][0], robot.joints[0], robot.frames[-1]
     larger = (replace(first, radius_m=first.radius_m + 1e-12), *robot.approximations[detector.spheres][1:])
     moved = replace(frame, p_parent_frame=frame.p_parent_frame + np.array([0, 0, 1e-12]))
@@ -97,44 +98,58 @@ def variants(robot):
 
 
 def test_wheels_are_no_part_of_it(qiao, unwheeled):
-    detector = qiao.detector(None)
+    detector = CollisionModel.of(qiao).detector
     for kind in KINDS:
-        assert module.digest_inputs(unwheeled, detector, kind) == module.digest_inputs(qiao, detector, kind)
-        assert assemble.format_module(unwheeled, detector, kind) == assemble.format_module(qiao, detector, kind)
+        assert module.digest_inputs(CollisionModel(robot=unwheeled, detector=detector), kind) == module.digest_inputs(
+            CollisionModel(robot=qiao, detector=detector), kind
+        )
+        assert assemble.format_module(
+            CollisionModel(robot=unwheeled, detector=detector), kind
+        ) == assemble.format_module(CollisionModel(robot=qiao, detector=detector), kind)
 
 
 def test_no_name_is_part_of_it(qiao):
     other = rename(qiao, "other {}".format)
     for kind in KINDS:
-        digests = {module.digest_inputs(robot, robot.detector(None), kind) for robot in (qiao, other)}
+        digests = {module.digest_inputs(CollisionModel.of(robot), kind) for robot in (qiao, other)}
         assert len(digests) == 1
 
 
 @pytest.mark.parametrize("robot", [ikde.load_robot("qiao2021"), random_robot(3)], ids=lambda robot: robot.name)
 def test_what_differs_has_a_digest_of_its_own(robot):
-    digests = [module.digest_inputs(*case, kind) for case in variants(robot) for kind in KINDS]
+    digests = [
+        module.digest_inputs(CollisionModel(robot=case[0], detector=case[1]), kind)
+        for case in variants(robot)
+        for kind in KINDS
+    ]
     assert len(set(digests)) == len(digests)
 
 
 @pytest.mark.parametrize("change", ["generator", "kernels"])
 def test_other_code_has_other_digests(qiao, monkeypatch, change):
-    before = module.digest_inputs(qiao, None, "pose")
+    before = module.digest_inputs(CollisionModel.of(qiao, "none"), "pose")
     if change == "generator":
         monkeypatch.setattr(module, "_own_digest", lambda: "another")
     else:
         monkeypatch.setattr(cache_folder, "CACHE_FOLDER", Path("another"))
-    assert module.digest_inputs(qiao, None, "pose") != before
+    assert module.digest_inputs(CollisionModel.of(qiao, "none"), "pose") != before
 
 
 def test_a_safe_distance_within_the_margin_changes_nothing(qiao):
-    detectors = [replace(qiao.detector(None), safe_distance_m=d) for d in (0.0, 0.003, 0.00999)]
-    assert len({module.digest_inputs(qiao, detector, "pose") for detector in detectors}) == 1
-    assert len({assemble.format_module(qiao, detector, "pose") for detector in detectors}) == 1
+    detectors = [replace(CollisionModel.of(qiao).detector, safe_distance_m=d) for d in (0.0, 0.003, 0.00999)]
+    assert (
+        len({module.digest_inputs(CollisionModel(robot=qiao, detector=detector), "pose") for detector in detectors})
+        == 1
+    )
+    assert (
+        len({assemble.format_module(CollisionModel(robot=qiao, detector=detector), "pose") for detector in detectors})
+        == 1
+    )
 
 
 def test_beyond_the_last_margin_nothing_is_proved(qiao):
-    far = replace(qiao.detector(None), safe_distance_m=3.0)
-    head = assemble.format_module(qiao, far, "position").split('"""')[1]
+    far = replace(CollisionModel.of(qiao).detector, safe_distance_m=3.0)
+    head = assemble.format_module(CollisionModel(robot=qiao, detector=far), "position").split('"""')[1]
     assert "\n0 proved never to fail" in head
 
 
@@ -144,7 +159,7 @@ def test_beyond_the_last_margin_nothing_is_proved(qiao):
 def test_a_module_is_named_by_the_hash_of_its_text(empty_cache):
     robot = tiny_robot()
     path = Path(load(robot).__file__)
-    text = assemble.format_module(robot, robot.detector(None), "position").encode()
+    text = assemble.format_module(CollisionModel.of(robot), "position").encode()
     assert path.parent == empty_cache / "robots"
     assert (path.read_bytes(), path.stem) == (text, hashlib.sha256(text).hexdigest())
 
@@ -163,7 +178,7 @@ def test_what_lies_in_the_cache_is_not_written_again(empty_cache, monkeypatch):
 def test_robots_that_differ_in_names_share_one_module(empty_cache):
     robot = tiny_robot()
     other = rename(robot, "other {}".format)
-    assert load(robot) is module.load_module(other, other.detector(None), "position")
+    assert load(robot) is module.load_module(CollisionModel.of(other), "position")
 
 
 @pytest.mark.parametrize("line", ["; ", "\n"])
@@ -266,6 +281,7 @@ def test_the_kind_of_kernels_that_runs_is_told(monkeypatch, told, kind):
 SCRIPT = """
 import json, pathlib, sys, time
 from ikde.kernels.jit import compile_clock
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
 from tests.model.generate.test_module import tiny_robot
 import numpy as np
@@ -273,7 +289,7 @@ robot = tiny_robot()
 while not pathlib.Path(sys.argv[1]).exists():
     time.sleep(0.01)
 with compile_clock() as clock:
-    module = load_module(robot, robot.detector(None), "position")
+    module = load_module(CollisionModel.of(robot), "position")
     q = np.linspace(-2.0, 2.0, 9)
     found = [int(module.find_collision(0, 0.0, q[k : k + 1], 0)) for k in range(9)]
 print(json.dumps({"found": found, "seconds": clock.seconds, "file": module.__file__}))
@@ -294,7 +310,7 @@ def test_two_processes_may_start_at_once_and_a_third_compiles_nothing(tmp_path):
     assert third.returncode == 0, third.stderr
     answers = [json.loads(out) for out in (*(out for out, _ in outputs), third.stdout)]
     robot = tiny_robot()
-    gaps = find_gaps(robot, robot.detector(None), np.linspace(-2.0, 2.0, 9)[:, None])
+    gaps = find_gaps(robot, CollisionModel.of(robot).detector, np.linspace(-2.0, 2.0, 9)[:, None])
     expected = np.where(gaps[:, 0] <= 0.0, 0, -1).tolist()
     assert [answer["found"] for answer in answers] == [expected] * 3
     assert {0, -1} == set(expected)

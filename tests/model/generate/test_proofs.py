@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.proofs import drop_implied, drop_proved, estimate_hits
-from ikde.model.pack import pack_detector, pack_robot
+from ikde.model.pack import pack_robot
 from ikde.model.robot import Detector
 from ikde.solver.plain import compute_components
 from tests import reference
@@ -25,7 +26,7 @@ MARGIN = 0.01
 def split(robot, detector, margin=MARGIN, share=1.0):
     """(tests that stay, tests that are proved never to fail), in a share of the ranges about their middle."""
     middle, half = 0.5 * (robot.lower + robot.upper), 0.5 * share * (robot.upper - robot.lower)
-    tests = list_tests(pack_detector(robot, detector))
+    tests = list_tests(CollisionModel(robot=robot, detector=detector).arrays)
     kept = drop_proved(pack_robot(robot), tests, margin, middle - half, middle + half)
     numbers = {test.number for test in kept}
     return kept, [test for test in tests if test.number not in numbers]
@@ -59,7 +60,7 @@ def find_nearest(robot, test, rng, starts=4):
 @every_case
 def test_implied_tests_change_no_verdict(case, rng):
     robot, detector = case
-    tests = list_tests(pack_detector(robot, detector))
+    tests = list_tests(CollisionModel(robot=robot, detector=detector).arrays)
     kept = drop_implied(tests)
     numbers = [test.number for test in kept]
     assert set(numbers) <= {test.number for test in tests}
@@ -88,14 +89,14 @@ def test_what_is_implied_is_left_out():
     ]
     pairs = [("large", "other"), ("other", "small"), ("same", "other"), ("beside", "other"), ("poking", "other")]
     robot = two_arms(rows, pairs, points)
-    kept = drop_implied(list_tests(pack_detector(robot, robot.detector(None))))
+    kept = drop_implied(list_tests(CollisionModel.of(robot).arrays))
     assert [test.pair for test in kept] == [0, 3, 4]
 
 
 def test_shipped_robots_lose_tests(qiao):
-    tests = list_tests(pack_detector(qiao, qiao.detector(None)))
+    tests = list_tests(CollisionModel.of(qiao).arrays)
     assert len(drop_implied(tests)) < len(tests)
-    kept, proved = split(qiao, qiao.detector(None))
+    kept, proved = split(qiao, CollisionModel.of(qiao).detector)
     assert len(proved) >= 5
     assert len(kept) + len(proved) == len(tests)
 
@@ -132,14 +133,18 @@ def test_what_can_touch_is_never_left_out(case, margin, rng):
 
 
 def test_a_wider_margin_proves_less(qiao):
-    proved = [{test.number for test in split(qiao, qiao.detector(None), margin)[1]} for margin in (0.01, 0.1, 1.0)]
+    proved = [
+        {test.number for test in split(qiao, CollisionModel.of(qiao).detector, margin)[1]}
+        for margin in (0.01, 0.1, 1.0)
+    ]
     assert proved[0] >= proved[1] >= proved[2]
     assert len(proved[0]) > len(proved[2])
 
 
 def test_narrower_ranges_prove_more(qiao):
     wide, narrow = (
-        {test.number for test in split(qiao, qiao.detector(None), MARGIN, share)[1]} for share in (1.0, 0.2)
+        {test.number for test in split(qiao, CollisionModel.of(qiao).detector, MARGIN, share)[1]}
+        for share in (1.0, 0.2)
     )
     assert narrow > wide
 
@@ -172,9 +177,9 @@ def test_slides_lengthen_what_turns_carry(order, rng):
     seen = set()
     for size in (0.1, 0.2, 0.35, 0.6, 1.5, 3.0):
         robot = slider(kinds, axes, lower=-size, upper=size, far=(0.3, 0.0, 0.0))
-        kept, proved = split(robot, robot.detector(None))
+        kept, proved = split(robot, CollisionModel.of(robot).detector)
         Q = random_q(robot, rng, 3000)
-        spheres = compute_components(robot, "spheres", Q)
+        spheres = compute_components(CollisionModel.of(robot), Q)
         nearest = np.linalg.norm(spheres["ground"][0] - spheres["end"][0], axis=-1).min() - 0.2
         assert not proved or nearest > MARGIN
         assert not kept or nearest < MARGIN + 0.05  # the bound is sharp enough for a proof within the budget
@@ -202,7 +207,7 @@ def test_a_turn_carries_what_slides_far_out():
     )
     first, second = robot.joints
     robot = replace(robot, joints=(first, replace(second, lower=1.9, upper=2.0, home=2.0)))
-    (test,), proved = split(robot, robot.detector(None))
+    (test,), proved = split(robot, CollisionModel.of(robot).detector)
     assert not proved
     assert clearances_of(robot, [test], np.array([0.5 * np.pi, 2.0]))[0] == pytest.approx(-0.2)
 
@@ -215,11 +220,11 @@ def test_random_chains_with_slides_are_proved_soundly(seed):
     axes = rng.normal(size=(count, 3))
     for size in (0.1, 0.3, 0.8):
         robot = slider(kinds, axes, lower=-0.5 * size, upper=size, far=rng.uniform(-0.5, 0.5, 3))
-        _, proved = split(robot, robot.detector(None))
+        _, proved = split(robot, CollisionModel.of(robot).detector)
         for test in proved:
             assert find_nearest(robot, test, rng, starts=6) > MARGIN
             Q = random_q(robot, rng, 2000)
-            spheres = compute_components(robot, "spheres", Q)
+            spheres = compute_components(CollisionModel.of(robot), Q)
             assert np.linalg.norm(spheres["ground"][0] - spheres["end"][0], axis=-1).min() - 0.2 > MARGIN
 
 
@@ -228,7 +233,7 @@ def test_what_does_not_move_is_decided_at_once():
     points = {"a": ("f0", (0.3, 0, 0)), "b": ("f0", (0.3, 0, 0.5)), "c": ("f0", (0.3, 0, 0.15))}
     rows = [make_row(name, name, name, 0.1) for name in points]
     robot = two_arms(rows, [("a", "b"), ("a", "c")], points)
-    kept, proved = split(robot, robot.detector(None))
+    kept, proved = split(robot, CollisionModel.of(robot).detector)
     assert [test.pair for test in kept] == [1]
     assert [test.pair for test in proved] == [0]
 
@@ -236,7 +241,7 @@ def test_what_does_not_move_is_decided_at_once():
 def test_bodies_of_two_branches_are_left_alone():
     points = {"a": ("f0", (0.1, 0, 5.0))}
     robot = two_arms([make_row("x", "a", "a", 0.1), make_row("y", "tool", "tool", 0.1)], [("x", "y")], points)
-    kept, proved = split(robot, robot.detector(None))
+    kept, proved = split(robot, CollisionModel.of(robot).detector)
     assert (len(kept), len(proved)) == (1, 0)
 
 
@@ -244,7 +249,7 @@ def test_bodies_of_two_branches_are_left_alone():
 def test_estimated_hits_are_hits(case, rng):
     """On the configurations that the estimate draws; tests between branches are not looked at."""
     robot, detector = case
-    tests = list_tests(pack_detector(robot, detector))
+    tests = list_tests(CollisionModel(robot=robot, detector=detector).arrays)
     hits = estimate_hits(pack_robot(robot), tests, robot.lower, robot.upper)
     Q = np.random.default_rng(0).uniform(robot.lower, robot.upper, (hits.shape[1], len(robot.joints)))
     for k in rng.integers(len(Q), size=8):

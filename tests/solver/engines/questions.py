@@ -11,7 +11,7 @@ from tests.solver.test_solve import free_q, make_target
 
 def make_question(robot, rng, kinds, *, settings=None, freeze=None, near=None, seed=1):
     """A question with a reachable target of each kind."""
-    problem = make_problem(robot, settings or ikde.SolveSettings(), detector=None, near=near, freeze=freeze)
+    problem = make_problem(robot, settings or ikde.SolveSettings(), collision=None, near=near, freeze=freeze)
     targets = ikde.Targets.of([make_target(robot, free_q(robot, rng), kind) for kind in kinds])
     found = make_found(problem, len(targets))
     return Question(problem, targets, found, seed=seed, streams=range(len(targets))), targets
@@ -20,7 +20,7 @@ def make_question(robot, rng, kinds, *, settings=None, freeze=None, near=None, s
 def assert_solved(question, targets):
     """Plain numpy accepts every row."""
     problem, found = question.problem, question.found
-    graded = ikde.solver.verify.verify_many(problem.robot, targets, found.q, problem.settings, problem.detector)
+    graded = ikde.solver.verify.verify_many(problem.collision, targets, found.q, problem.settings)
     assert found.counts[:, 0].all()
     assert graded.accepted.all()
 

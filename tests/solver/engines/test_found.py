@@ -9,7 +9,7 @@ from ikde.solver.settings import RESTARTS
 
 
 def test_nothing_is_found_at_first(qiao):
-    found = make_found(make_problem(qiao, ikde.SolveSettings(), detector=None, near=None, freeze=None), 3)
+    found = make_found(make_problem(qiao, ikde.SolveSettings(), collision=None, near=None, freeze=None), 3)
     assert found.q.shape == (3, 9)
     assert np.isinf(found.score).all()
     assert not found.counts.any()
@@ -17,7 +17,7 @@ def test_nothing_is_found_at_first(qiao):
 
 
 def test_a_row_is_one_targets_share(qiao):
-    found = make_found(make_problem(qiao, ikde.SolveSettings(), detector=None, near=None, freeze=None), 3)
+    found = make_found(make_problem(qiao, ikde.SolveSettings(), collision=None, near=None, freeze=None), 3)
     found.counts[1, 2], found.q[1] = 7, 0.5
     assert found.row(1).counts.tolist() == [[0, 0, 7, 0, 0]]
     assert (found.row(1).q == 0.5).all()

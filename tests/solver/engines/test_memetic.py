@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.engines.memetic import Memetic
 from tests.solver.engines.questions import assert_solved, make_question, run
 
@@ -14,12 +15,12 @@ def test_targets_of_all_kinds_are_solved(qiao, rng):
 
 
 def test_a_clearance_with_a_horizontal_axis_is_found_and_with_a_vertical_one_its_pair_is_named(qiao):
-    wide = replace(qiao.detector(None), safe_distance_m=0.03)
+    wide = replace(CollisionModel.of(qiao).detector, safe_distance_m=0.03)
     brief = ikde.SolveSettings(method="memetic", restarts=2)
-    flat = ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0), axis_world_tool=(1, 0, 0)), brief, detector=wide)
+    flat = ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0), axis_world_tool=(1, 0, 0)), brief, collision=wide)
     assert flat.reached
     assert flat.clearance_m > 0.03
-    upright = ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0), axis_world_tool=(0, 0, -1)), brief, detector=wide)
+    upright = ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0), axis_world_tool=(0, 0, -1)), brief, collision=wide)
     assert upright.stop_reason == "self_collision"
     assert next(iter(upright.blocking_pairs)) == ("J4", "J6")
     assert "J4-J6" in upright.reason

@@ -8,6 +8,7 @@ import pytest
 import ikde
 from ikde.kernels import cache_folder
 from ikde.kernels.seeds import find_cell
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Targets
@@ -26,7 +27,7 @@ from tests.hostile_names import rename
 
 
 def pool(robot: Robot, kind: str = "pose", **options):
-    told = {"detector": None, "near": None, "freeze": None} | options
+    told = {"collision": None, "near": None, "freeze": None} | options
     return make_seeds(make_problem(robot, ikde.SolveSettings(), **told), kind)
 
 
@@ -83,20 +84,26 @@ def test_a_radian_counts_as_a_part_of_the_arm(any_robot):
 
 
 def test_pools_of_other_detectors_are_others(qiao):
-    detector = qiao.detector(None)
+    detector = CollisionModel.of(qiao).detector
     wider = replace(detector, safe_distance_m=detector.safe_distance_m + 1e-3)
-    names = {digest_pool(qiao, each, kind) for each in (None, detector, wider) for kind in KINDS}
+    names = {
+        digest_pool(CollisionModel(robot=qiao, detector=each), kind)
+        for each in (None, detector, wider)
+        for kind in KINDS
+    }
     assert len(names) == 9
 
 
 def test_wheels_leave_the_pool_alone(qiao, unwheeled):
-    detector = qiao.detector(None)
-    assert digest_pool(unwheeled, detector, "axis") == digest_pool(qiao, detector, "axis")
+    detector = CollisionModel.of(qiao).detector
+    assert digest_pool(CollisionModel(robot=unwheeled, detector=detector), "axis") == digest_pool(
+        CollisionModel(robot=qiao, detector=detector), "axis"
+    )
 
 
 def test_no_name_is_part_of_a_pool(qiao):
     other = rename(qiao, "other {}".format)
-    assert len({digest_pool(robot, robot.detector(None), "axis") for robot in (qiao, other)}) == 1
+    assert len({digest_pool(CollisionModel.of(robot), "axis") for robot in (qiao, other)}) == 1
 
 
 def test_a_robot_has_one_pool_with_a_cache_and_without(monkeypatch, tmp_path):
@@ -107,7 +114,7 @@ def test_a_robot_has_one_pool_with_a_cache_and_without(monkeypatch, tmp_path):
     robot = ikde.load_robot("ur5")
     with monkeypatch.context() as tables:
         tables.setenv("IKDE_KERNELS", "tables")
-        ready = module.load_kernels(robot, robot.detector(None), "position")
+        ready = module.load_kernels(CollisionModel.of(robot), "position")
     monkeypatch.setattr(load_kernels, lambda *_: ready)
     bits = []
     for usable in (True, True, False):
@@ -125,13 +132,13 @@ def test_without_a_cache_kernels_are_written_all_the_same(monkeypatch):
     monkeypatch.delenv("IKDE_KERNELS")
     monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", False)
     robot = ikde.load_robot("qiao2021_dh")
-    kernels, tables, _ = load_kernels(robot, None, "position")
+    kernels, tables, _ = load_kernels(CollisionModel.of(robot, "none"), "position")
     assert tables == 0
     assert kernels.__name__.startswith("ikde_kernels_")
 
 
 def test_tables_take_the_place_of_modules_if_asked(qiao, monkeypatch):
     monkeypatch.setenv("IKDE_KERNELS", "tables")
-    _, robot, detector = load_kernels(qiao, qiao.detector(None), "pose")
+    _, robot, detector = load_kernels(CollisionModel.of(qiao), "pose")
     assert len(robot.bodies) == 10
     assert detector.safe_distance > 0.0
