@@ -10,6 +10,7 @@ import pytest
 import ikde
 from ikde.batch.columns import GROUPS, WORDS, make_solutions, make_timing
 from ikde.batch.parts import serialize
+from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_quat_wxyz
 from ikde.solver.rows import solve_rows
 from tests.batch.small import FAR, ROBOT, make_arm
@@ -111,7 +112,7 @@ def test_what_plain_numpy_did_not_grade_is_null():
 def test_a_grader_that_compares_nothing_gives_nulls(rows):
     robot = replace(ROBOT, pair_lists={**ROBOT.pair_lists, "nothing": ()})
     nothing = ikde.Detector(name="it", spheres="typical", pairs="nothing")
-    blind = replace(rows, problem=replace(rows.problem, robot=robot))
+    blind = replace(rows, problem=replace(rows.problem, collision=CollisionModel.of(robot)))
     table = tabulate(blind, graders=(nothing,)).to_pydict()
     assert table["it_collides"] == table["it_clearance_m"] == [None] * 4
 

@@ -284,7 +284,7 @@ def test_a_base_on_arcs_carries_all_that_is_looked_at(tmp_path):
     cart = ikde.load_robot(tmp_path / "cart.yaml")
     path = make_line([0.2, 0.0, 0.5], [0.21, 0.0, 0.5], 5)
     post = ikde.Detector(name="post", spheres="round", pairs="post")
-    with pytest.raises(InputError, match=r"^detector: a base on arcs must carry all that the detector looks at"):
+    with pytest.raises(InputError, match=r"^detector: a base on arcs must carry all that can collide"):
         follow_path(cart, path, collision=post)
     assert follow_path(cart, path, collision=post, drive="omnidirectional").reached
 

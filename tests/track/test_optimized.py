@@ -76,10 +76,11 @@ def test_what_is_out_of_reach_is_said_to_be(qiao):
 def test_a_collision_names_its_pair(qiao):
     start = start_of("qiao2021", 1)
     tight = replace(CollisionModel.of(qiao).detector, safe_distance_m=1.0)
-    follower = replace(follower_of(qiao, short_task(1)), detector=tight)
+    collision = CollisionModel(robot=qiao, detector=tight)
+    follower = replace(follower_of(qiao, short_task(1)), collision=collision)
     evolved = follow_optimized(follower, start, 0, OptimizedSettings(returns=1, generations=300))
     assert evolved.stop.reason == "self_collision"
-    assert evolved.stop.pair in CollisionModel(robot=qiao, detector=tight).pairs
+    assert evolved.stop.pair in collision.pairs
     assert evolved.stop.text.startswith("sample 1 (0.02 s): ")
 
 
