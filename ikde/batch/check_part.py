@@ -15,7 +15,7 @@ ALWAYS = {
     SOLUTIONS: ("arm", "target", "repeat", "reached", "self_collision", "verified", "stop_reason"),
     TIMING: ("arm", "target", "repeat", "solve_seconds", "host"),
 }
-WORDY = ("arm", "target_name", "stop_reason", "closest_pair", "reason", "hint", "target_kind", "host")
+WORDY = ("arm", "target_name", "stop_reason", "pair_a", "pair_b", "reason", "hint", "target_kind", "host")
 VERDICTS = ("self_collision", "verified")  # and `<grader>_collides`: null where nothing was checked
 LONGEST_WORD = 5000  # characters
 LARGEST = 1e12  # of a number
@@ -64,7 +64,7 @@ def _is_verdict(name: str) -> bool:
 
 def _is_of_kind(name: str, kind: pa.DataType) -> bool:
     """Words come by their numbers, as they are written: a long one that is there often takes little room."""
-    if name in WORDY or name.endswith("_closest_pair"):
+    if name in WORDY or name.endswith(("_pair_a", "_pair_b")):
         return pa.types.is_dictionary(kind) and pa.types.is_string(kind.value_type)
     if name == "reached" or _is_verdict(name):
         return pa.types.is_boolean(kind)

@@ -40,7 +40,7 @@ def make_solutions(
         repeats: solves a target.
         names: a name a row, or None.
         groups: which of `GROUPS`; the rest of the columns is always there.
-        graders: further detectors, three columns each.
+        graders: further detectors, four columns each.
     """
     columns = _identity(arm, numbers, repeats, names) | _verdict(rows)
     for group, make in GROUPS.items():
@@ -143,15 +143,17 @@ def _graded(rows: Rows, grader: Detector) -> Columns:
     seen = compute_clearances(collision, rows.q)
     columns = _closest(seen, collision)
     columns["collides"] = _verdicts(seen.collides)
-    return {f"{grader.name}_{name}": columns[name] for name in ("clearance_m", "collides", "closest_pair")}
+    return {f"{grader.name}_{name}": columns[name] for name in ("clearance_m", "collides", "pair_a", "pair_b")}
 
 
 def _closest(seen: Figures | Clearances, collision: CollisionModel) -> Columns:
     """Clearance and the pair it is between, null where there is no pair."""
-    pairs = [f"{a}-{b}" for a, b in collision.pairs]
+    names = list(dict.fromkeys(name for pair in collision.pairs for name in pair))
+    sides = np.array([*([names.index(a), names.index(b)] for a, b in collision.pairs), [-1, -1]])  # -1: no pair
     return {
         "clearance_m": pa.array(seen.clearance_m, mask=seen.closest_pair < 0),
-        "closest_pair": _coded(seen.closest_pair, pairs),
+        "pair_a": _coded(sides[seen.closest_pair, 0], names),
+        "pair_b": _coded(sides[seen.closest_pair, 1], names),
     }
 
 

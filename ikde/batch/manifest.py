@@ -22,8 +22,8 @@ from ikde.files.reading import read_json
 MANIFEST = "manifest.json"
 REPORT = "report"  # where `ikde report` puts its page
 REPORT_FILES = ("report.html", "report.md")
-FORMAT = "ikde batch 2"
-EARLIER = ("ikde batch 1",)  # `verified` was true where nothing had graded, and there was no `self_collision`
+FORMAT = "ikde batch 3"
+EARLIER = ("ikde batch 1", "ikde batch 2")  # with other columns: a pair was one word, a verdict was never null
 SHOWN = 3  # differences that are spelt out
 
 PlainName = Annotated[str, StringConstraints(pattern=f"^{PLAIN_NAME.pattern}$")]

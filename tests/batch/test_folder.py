@@ -58,7 +58,7 @@ def test_a_run_of_the_same_recipe_is_kept_as_it_is(run):
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_parts_whose_columns_mean_something_else_are_not_mixed_in(run, overwrite):
     manifest = run / MANIFEST
-    manifest.write_text(manifest.read_text().replace("ikde batch 2", "ikde batch 1"))
+    manifest.write_text(manifest.read_text().replace("ikde batch 3", "ikde batch 2"))
     before = {path: path.read_bytes() for path in run.rglob("*") if path.is_file()}
     with pytest.raises(FileError, match="holds a run of an earlier ikde"):
         claim(run, overwrite=overwrite)

@@ -21,7 +21,7 @@ MOST_MISSED = 50  # targets that are listed with a reason
 MOST_NAMED = 10_000  # targets whose names are kept
 ALWAYS = ("target", "reached")
 NUMBERS = (*ALWAYS, "attempts", "position_error_m", "orientation_error_rad", "clearance_m")
-WORDS = ("stop_reason", "closest_pair")
+WORDS = ("stop_reason", "pair_a", "pair_b")
 NOTHING = {  # the numbers of an arm of which no part is finished
     "target": np.empty(0, dtype=np.int64),
     "reached": np.empty(0, dtype=bool),
@@ -41,7 +41,7 @@ class ArmAnswers:
     verdicts: Mapping[str, MaskedBools]
     """`self_collision`, `verified` and what each grader sees, [solves] each, masked where nothing was checked."""
     stop_reasons: Mapping[str, int]
-    closest_pairs: Mapping[str, int]
+    closest_pairs: Mapping[tuple[str, str], int]
     """Of the reached solutions."""
     missed: Mapping[int, Mapping[str, Any]]
     """The first row that was not reached, by target, of the first `MOST_MISSED` of them."""
@@ -135,7 +135,8 @@ class _Pile:
 
     numbers: dict[str, list[np.ndarray]] = field(default_factory=dict)
     verdicts: dict[str, list[MaskedBools]] = field(default_factory=dict)
-    words: dict[str, Counter[str]] = field(default_factory=lambda: {name: Counter() for name in WORDS})
+    stop_reasons: Counter[str] = field(default_factory=Counter)
+    closest_pairs: Counter[tuple[str, str]] = field(default_factory=Counter)
     missed: dict[int, dict[str, Any]] = field(default_factory=dict)
 
     def add(self, folder: Path, part: Part, manifest: Manifest) -> pa.Table:
@@ -157,9 +158,10 @@ class _Pile:
         return solutions
 
     def _count_words(self, solutions: pa.Table) -> None:
-        _count(self.words["stop_reason"], solutions["stop_reason"])
-        if "closest_pair" in solutions.column_names:
-            _count(self.words["closest_pair"], solutions["closest_pair"].filter(solutions["reached"]))
+        self.stop_reasons.update(_count(solutions, "stop_reason"))
+        if "pair_a" in solutions.column_names:
+            counts = _count(solutions.filter(solutions["reached"]), "pair_a", "pair_b")
+            self.closest_pairs.update({pair: count for pair, count in counts.items() if None not in pair})
 
     def _list_missed(self, solutions: pa.Table) -> None:
         """Keep the first row of each target that was not reached."""
@@ -180,8 +182,8 @@ class _Pile:
             facts=facts,
             numbers=numbers or NOTHING,
             verdicts=verdicts,
-            stop_reasons=dict(self.words["stop_reason"].most_common()),
-            closest_pairs=dict(self.words["closest_pair"].most_common()),
+            stop_reasons=dict(self.stop_reasons.most_common()),
+            closest_pairs=dict(self.closest_pairs.most_common()),
             missed=self.missed,
         )
 
@@ -195,7 +197,10 @@ def _find_names(solutions: pa.Table) -> dict[int, str]:
     return dict(zip(targets.tolist(), solutions["target_name"].take(pa.array(first)).to_pylist(), strict=True))
 
 
-def _count(counts: Counter[str], words: pa.ChunkedArray) -> None:
-    for entry in words.value_counts().to_pylist():
-        if entry["values"] is not None:
-            counts[entry["values"]] += entry["counts"]
+def _count(table: pa.Table, *columns: str) -> dict[Any, int]:
+    """How often each word of a column is there, or each row of several."""
+    counted = table.group_by(columns).aggregate([([], "count_all")])
+    words = [counted[name].to_pylist() for name in columns]
+    return dict(
+        zip(words[0] if len(words) == 1 else zip(*words, strict=True), counted["count_all"].to_pylist(), strict=True)
+    )

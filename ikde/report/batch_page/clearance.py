@@ -96,7 +96,7 @@ def _draw(arms: Sequence[ArmAnswers], measure: Measure) -> Figure:
 def _make_pairs(run: RunAnswers) -> Table:
     """Which pairs are closest, how often."""
     arms = [_share_pairs(arm) for arm in run.arms]
-    sums: dict[str, float] = {}
+    sums: dict[tuple[str, str], float] = {}
     for shares in arms:
         for pair, share in shares.items():
             sums[pair] = sums.get(pair, 0.0) + share
@@ -106,7 +106,7 @@ def _make_pairs(run: RunAnswers) -> Table:
         columns=(Column("pair", align="left"), *(Column(arm.name, "%", group="closest in") for arm in run.arms)),
         rows=tuple(
             (
-                pair.replace("-", " – "),
+                " – ".join(pair),
                 *(fixed(100 * shares.get(pair, 0.0), 1) if shares else "–" for shares in arms),
             )
             for pair in shown
@@ -116,7 +116,7 @@ def _make_pairs(run: RunAnswers) -> Table:
     )
 
 
-def _share_pairs(arm: ArmAnswers) -> dict[str, float]:
+def _share_pairs(arm: ArmAnswers) -> dict[tuple[str, str], float]:
     """How often each pair is the closest; empty without a detector."""
     total = sum(arm.closest_pairs.values())
     return {pair: count / total for pair, count in arm.closest_pairs.items()}

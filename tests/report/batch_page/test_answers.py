@@ -54,7 +54,7 @@ def test_words_are_counted(answers, rows):
         mine = of_arm(rows, arm)
         assert arm.stop_reasons == Counter(row["stop_reason"] for row in mine)
         assert arm.closest_pairs == Counter(
-            row["closest_pair"] for row in mine if row["reached"] and row["closest_pair"]
+            (row["pair_a"], row["pair_b"]) for row in mine if row["reached"] and row["pair_a"]
         )
         assert arm.rate == Rate(sum(row["reached"] for row in mine), 32)
     assert [bool(arm.closest_pairs) for arm in answers.arms] == [False, True]
