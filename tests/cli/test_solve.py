@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ikde
-from tests.solver.test_distinct import are_apart
+from tests.problems import are_apart
 
 GOLDEN = Path(__file__).parent / "golden_solve.json"
 PROMISED = {

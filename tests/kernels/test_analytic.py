@@ -19,6 +19,7 @@ from ikde.solver.verify import verify_many
 from tests.collision_robots import find_gaps
 from tests.conftest import random_q
 from tests.kernels.seeding import no_seeds, pack_seeds
+from tests.targets import free_rows, make_targets
 from tests.uncompiled import plain, plain_module, quietly, run_text
 from tests.ur_robots import random_ur_robot
 
@@ -29,22 +30,10 @@ every_robot = pytest.mark.parametrize("robot", [QIAO, UR5], ids=lambda robot: ro
 BASE = np.array([0, 1, 2])
 
 
-def free_q(robot, rng, count):
-    """Configurations inside the limits that are free of collision."""
-    detector = CollisionModel.of(robot).detector
-    Q = random_q(robot, rng, 20 * count)
-    return Q[(find_gaps(robot, detector, Q) > detector.safe_distance_m).all(axis=1)][:count]
-
-
-def make_targets(robot, Q):
-    T = compute_frames(robot, Q)[robot.tool]
-    return Targets.of([Target(t[:3, 3], R_world_tool=t[:3, :3]) for t in T])
-
-
 def make_pool(robot, rng):
     if robot is not QIAO:
         return no_seeds(robot)
-    Q = free_q(robot, rng, 300)
+    Q = free_rows(robot, rng, 300)
     Q[:, BASE] = 0.0
     return pack_seeds(robot, Q, BASE)
 
@@ -85,7 +74,7 @@ def list_branches(robot, T, near):
 
 @every_robot
 def test_what_is_reached_is_exact_free_and_inside_the_limits(robot, rng):
-    targets = make_targets(robot, free_q(robot, rng, 25))
+    targets = make_targets(robot, free_rows(robot, rng, 25), "pose")
     found = run(robot, targets, make_pool(robot, rng))
     reached = found.counts[:, REACHED] == 1
     assert reached.mean() > 0.9
@@ -96,7 +85,7 @@ def test_what_is_reached_is_exact_free_and_inside_the_limits(robot, rng):
 
 def test_an_arm_without_a_base_is_done_with_one_attempt(rng):
     """Made by a free configuration: one of all branches is free."""
-    targets = make_targets(UR5, free_q(UR5, rng, 30))
+    targets = make_targets(UR5, free_rows(UR5, rng, 30), "pose")
     found = run(UR5, targets, no_seeds(UR5), budget=1)
     assert (found.counts[:, REACHED] == 1).all()
     assert (found.counts[:, ATTEMPTS] == 1).all()
@@ -104,7 +93,7 @@ def test_an_arm_without_a_base_is_done_with_one_attempt(rng):
 
 @every_robot
 def test_counts_add_up(robot, rng):
-    targets = make_targets(robot, random_q(robot, rng, 25))
+    targets = make_targets(robot, random_q(robot, rng, 25), "pose")
     found, budget = run(robot, targets, make_pool(robot, rng), budget=3), 3
     reached = found.counts[:, REACHED] == 1
     assert (found.counts[~reached, ATTEMPTS] == budget).all()
@@ -124,8 +113,8 @@ def test_counts_add_up(robot, rng):
 
 def test_near_a_configuration_the_nearest_free_branch_is_taken(rng):
     """Against all branches, each judged by plain numpy."""
-    detector, width, seen = CollisionModel.of(UR5).detector, UR5.upper - UR5.lower, 0
-    for q in free_q(UR5, rng, 25):
+    detector, width, seen = UR5.detector(None), UR5.upper - UR5.lower, 0
+    for q in free_rows(UR5, rng, 25):
         near = random_q(UR5, rng)
         T = compute_frames(UR5, q)[UR5.tool]
         targets = Targets.of([Target(T[:3, 3], R_world_tool=T[:3, :3])])
@@ -141,16 +130,16 @@ def test_near_a_configuration_the_nearest_free_branch_is_taken(rng):
 
 def test_the_first_base_near_a_configuration_is_its_own(rng):
     """Attempt 0 keeps the base where it is: the configuration that made the target is found again."""
-    Q = free_q(QIAO, rng, 10)
+    Q = free_rows(QIAO, rng, 10)
     for q in Q:
-        found = run(QIAO, make_targets(QIAO, q[None]), no_seeds(QIAO, 1.0 / 64.0), budget=1, near=q)
+        found = run(QIAO, make_targets(QIAO, q[None], "pose"), no_seeds(QIAO, 1.0 / 64.0), budget=1, near=q)
         np.testing.assert_allclose(found.q[0], q, rtol=0, atol=1e-7)
 
 
 @every_robot
 def test_a_module_of_the_robots_own_finds_the_same(robot, rng):
-    module = run_text(format_module(CollisionModel.of(robot), "pose"))
-    targets, seeds = make_targets(robot, random_q(robot, rng, 20)), make_pool(robot, rng)
+    module = run_text(format_module(robot, robot.detector(None), "pose"))
+    targets, seeds = make_targets(robot, random_q(robot, rng, 20), "pose"), make_pool(robot, rng)
     by_tables, own = run(robot, targets, seeds), run(robot, targets, seeds, module=module)
     for name in ("q", "score", "counts"):
         np.testing.assert_array_equal(getattr(by_tables, name), getattr(own, name))
@@ -158,7 +147,7 @@ def test_a_module_of_the_robots_own_finds_the_same(robot, rng):
 
 @every_robot
 def test_rows_do_not_hang_on_each_other(robot, rng):
-    targets, seeds = make_targets(robot, random_q(robot, rng, 12)), make_pool(robot, rng)
+    targets, seeds = make_targets(robot, random_q(robot, rng, 12), "pose"), make_pool(robot, rng)
     whole, part = run(robot, targets, seeds), run(robot, targets, seeds, rows=(4, 9))
     for name in ("q", "score", "counts", "pairs"):
         np.testing.assert_array_equal(getattr(whole, name)[4:9], getattr(part, name)[4:9])
@@ -176,7 +165,7 @@ def test_nothing_is_found_out_of_reach(rng):
 def test_random_arms_whatever_carries_them(seed, rng):
     """Up to three joints of any kind before the arm; joints in any order; nothing to collide with."""
     robot = random_ur_robot(seed)
-    targets = make_targets(robot, random_q(robot, rng, 6))
+    targets = make_targets(robot, random_q(robot, rng, 6), "pose")
     found = run(robot, targets, no_seeds(robot), budget=60)
     verdicts = verify_many(CollisionModel.of(robot, "none"), targets, found.q, EXACT)
     reached = found.counts[:, REACHED] == 1

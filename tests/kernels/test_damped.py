@@ -12,15 +12,9 @@ from ikde.model.target import Target
 from tests import reference
 from tests.conftest import random_q
 from tests.random_robots import random_robot
+from tests.targets import make_target
 
 KINDS = ("position", "axis", "pose")
-
-
-def make_target(robot, kind, q):
-    """What the tool does at `q`."""
-    T = reference.compute_frames(robot, q)[robot.tool]
-    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return Target(T[:3, 3], **extra)
 
 
 def run_steps(robot, target, q, count=1, *, lower=None, upper=None, descent=None):
@@ -48,13 +42,13 @@ def assert_like_twin(robot, target, q, *, lower=None, upper=None, descent=None):
 def test_random_robots_step_like_the_twin(seed, kind, rng):
     robot = random_robot(seed)
     for _ in range(4):
-        target = make_target(robot, kind, random_q(robot, rng))
+        target = make_target(robot, random_q(robot, rng), kind)
         assert_like_twin(robot, target, random_q(robot, rng))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_shipped_robots_step_like_the_twin(any_robot, kind, rng):
-    target = make_target(any_robot, kind, random_q(any_robot, rng))
+    target = make_target(any_robot, random_q(any_robot, rng), kind)
     for change in ({}, {"damping": 0.5}, {"least_damping": 1e-2}, {"rotation_length": 0.1}, {"largest_step": 0.05}):
         assert_like_twin(any_robot, target, random_q(any_robot, rng), descent=DescentArrays(**change))
 
@@ -63,7 +57,7 @@ def test_shipped_robots_step_like_the_twin(any_robot, kind, rng):
 @pytest.mark.parametrize("seed", range(12))
 def test_joints_at_their_bounds_step_like_the_twin(seed, kind, rng):
     robot = random_robot(seed)
-    target = make_target(robot, kind, random_q(robot, rng))
+    target = make_target(robot, random_q(robot, rng), kind)
     at = rng.integers(3, size=len(robot.joints))
     q = np.choose(at, [robot.lower, robot.upper, random_q(robot, rng)])
     after = assert_like_twin(robot, target, q)
@@ -83,7 +77,7 @@ def test_a_joint_that_is_pulled_outwards_leaves_the_step_to_the_others(qiao, rng
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_frozen_joints_never_move(qiao, kind, rng):
-    target = make_target(qiao, kind, random_q(qiao, rng))
+    target = make_target(qiao, random_q(qiao, rng), kind)
     lower, upper, q = qiao.lower.copy(), qiao.upper.copy(), random_q(qiao, rng)
     frozen = [0, 2, 5]
     lower[frozen] = upper[frozen] = q[frozen]
@@ -97,7 +91,7 @@ def test_it_converges_quadratically(any_robot, kind, rng):
     inside = 0.5 * (any_robot.lower + any_robot.upper) + 0.25 * (any_robot.upper - any_robot.lower) * (
         rng.uniform(size=len(any_robot.joints)) - 0.5
     )
-    target = make_target(any_robot, kind, inside)
+    target = make_target(any_robot, inside, kind)
     start = inside + 0.02 * (rng.uniform(size=len(inside)) - 0.5)
     descent = DescentArrays(least_damping=1e-12)
     _, errors = run_steps(any_robot, target, start, 7, descent=descent)
@@ -111,7 +105,7 @@ def test_it_converges_quadratically(any_robot, kind, rng):
 def test_many_steps_reach_most_targets_of_the_paper_robot(qiao, kind, rng):
     reached = 0
     for _ in range(20):
-        target = make_target(qiao, kind, random_q(qiao, rng))
+        target = make_target(qiao, random_q(qiao, rng), kind)
         q, errors = run_steps(qiao, target, random_q(qiao, rng), 40)
         assert np.all((qiao.lower <= q) & (q <= qiao.upper))
         reached += errors[-1].max() < 1e-6
@@ -122,7 +116,7 @@ def test_many_steps_reach_most_targets_of_the_paper_robot(qiao, kind, rng):
 def test_errors_are_those_before_the_step(qiao, kind, rng):
     q = random_q(qiao, rng)
     goal = q + 1e-3 * rng.uniform(-1.0, 1.0, len(q))
-    target = make_target(qiao, kind, goal)
+    target = make_target(qiao, goal, kind)
     _, errors = run_steps(qiao, target, q)
     T = reference.compute_frames(qiao, q)[qiao.tool]
     assert errors[0, 0] == pytest.approx(reference.compute_position_error(T, target), abs=1e-14)
@@ -131,7 +125,7 @@ def test_errors_are_those_before_the_step(qiao, kind, rng):
 
 def test_within_both_tolerances_it_stays(qiao, rng):
     q = random_q(qiao, rng)
-    target = make_target(qiao, "pose", q + 1e-4)
+    target = make_target(qiao, q + 1e-4, "pose")
     _, errors = run_steps(qiao, target, q)
     position, orientation = errors[0] * 1.01
     for tolerances, stays in (((position, orientation), True), ((0.0, orientation), False), ((position, 0.0), False)):

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from ikde.kernels.evolution import evolve, find_best, is_better, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.rng import seed_stream
-from ikde.model.pack import pack_robot, pack_targets
-from ikde.model.target import Target
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from ikde.solver.problem import make_problem, pack_search
 from ikde.solver.settings import SolveSettings
 from tests import reference
 from tests.conftest import random_q
 from tests.random_robots import random_robot
+from tests.targets import make_target
 
 KINDS = ("position", "axis", "pose")
 RULES = ("ignore", "reject", "feasibility")
@@ -28,13 +28,6 @@ def make_case(robot, *, rule="feasibility", freeze=None, **changes):
     chosen = {"population": 8, "generations": 10, "collision": "reject" if rule == "ignore" else rule, **changes}
     detector = "none" if rule == "ignore" else None
     return make_problem(robot, SolveSettings(**chosen), collision=detector, near=None, freeze=freeze)
-
-
-def make_target(robot, kind, rng):
-    """What the tool does at some configuration."""
-    T = reference.compute_frames(robot, random_q(robot, rng))[robot.tool]
-    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return Target(T[:3, 3], **extra)
 
 
 def run_evolve(problem, target, seed=1):
@@ -65,7 +58,7 @@ def assert_like_twin(problem, target, seed=1):
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_paper_robot_evolves_like_the_twin(qiao, kind, rule, update, rng):
-    target = make_target(qiao, kind, rng)
+    target = make_target(qiao, random_q(qiao, rng), kind)
     assert not assert_like_twin(make_case(qiao, rule=rule, update=update), target)
 
 
@@ -74,7 +67,9 @@ def test_paper_robot_evolves_like_the_twin(qiao, kind, rule, update, rng):
 def test_random_robots_evolve_like_the_twin(seed, rng):
     robot = random_robot(seed)
     rule, update, kind = RULES[seed % 3], UPDATES[seed % 2], KINDS[seed // 3 % 3]
-    assert_like_twin(make_case(robot, rule=rule, update=update, generations=6), make_target(robot, kind, rng))
+    assert_like_twin(
+        make_case(robot, rule=rule, update=update, generations=6), make_target(robot, random_q(robot, rng), kind)
+    )
 
 
 @pytest.mark.parametrize("update", UPDATES)
@@ -82,7 +77,7 @@ def test_random_robots_evolve_like_the_twin(seed, rng):
 def test_every_strategy_evolves_like_the_twin(strategy, update, rng):
     robot = random_robot(3)
     problem = make_case(robot, strategy=strategy, update=update, weight=0.8)
-    assert_like_twin(problem, make_target(robot, "position", rng))
+    assert_like_twin(problem, make_target(robot, random_q(robot, rng), "position"))
 
 
 @pytest.mark.parametrize("update", UPDATES)
@@ -90,14 +85,16 @@ def test_every_strategy_evolves_like_the_twin(strategy, update, rng):
 def test_every_repair_evolves_like_the_twin(bounds, update, rng):
     robot = random_robot(5)
     problem = make_case(robot, rule="ignore", bounds=bounds, update=update, weight=0.9)
-    assert_like_twin(problem, make_target(robot, "pose", rng))
+    assert_like_twin(problem, make_target(robot, random_q(robot, rng), "pose"))
 
 
 def test_a_narrow_start_evolves_like_the_twin_and_stays_in_the_middle(rng):
     robot = random_robot(5)
     problem = make_case(robot, start_share=0.125)
-    assert_like_twin(problem, make_target(robot, "pose", rng))
-    start, *_ = run_evolve(make_case(robot, start_share=0.125, generations=1), make_target(robot, "pose", rng), 3)
+    assert_like_twin(problem, make_target(robot, random_q(robot, rng), "pose"))
+    start, *_ = run_evolve(
+        make_case(robot, start_share=0.125, generations=1), make_target(robot, random_q(robot, rng), "pose"), 3
+    )
     distance = np.abs(start - 0.5 * (robot.lower + robot.upper)) / (robot.upper - robot.lower)
     assert np.mean(distance <= 0.0625) > 0.5
 
@@ -105,13 +102,13 @@ def test_a_narrow_start_evolves_like_the_twin_and_stays_in_the_middle(rng):
 @pytest.mark.parametrize("update", UPDATES)
 @pytest.mark.parametrize("rule", RULES)
 def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rule, update, rng):
-    target = make_target(qiao, "position", rng)
+    target = make_target(qiao, random_q(qiao, rng), "position")
     problem = make_case(qiao, rule=rule, update=update, generations=60, position_tolerance_m=0.3)
     assert assert_like_twin(problem, target)
 
 
 def test_a_met_target_is_free_under_feasibility(qiao, rng):
-    target = make_target(qiao, "position", rng)
+    target = make_target(qiao, random_q(qiao, rng), "position")
     problem = make_case(qiao, generations=60, position_tolerance_m=0.3, update="generation")
     for seed in range(20):
         x, score, best, meets, _, _ = run_evolve(problem, target, seed)
@@ -122,7 +119,7 @@ def test_a_met_target_is_free_under_feasibility(qiao, rng):
 
 @pytest.mark.parametrize(("rule", "update"), list(itertools.product(RULES, UPDATES)))
 def test_the_best_score_never_worsens(qiao, rule, update, rng):
-    target = make_target(qiao, "pose", rng)
+    target = make_target(qiao, random_q(qiao, rng), "pose")
     scores = []
     for generations in range(1, 40):
         problem = make_case(qiao, rule=rule, update=update, generations=generations)
@@ -133,7 +130,7 @@ def test_the_best_score_never_worsens(qiao, rule, update, rng):
 
 
 def test_the_best_member_has_the_best_score(qiao, rng):
-    target = make_target(qiao, "pose", rng)
+    target = make_target(qiao, random_q(qiao, rng), "pose")
     for update in UPDATES:
         _, score, best, _, _, _ = run_evolve(make_case(qiao, update=update), target)
         assert tuple(score[best][::-1]) == min(tuple(row[::-1]) for row in score)
@@ -141,7 +138,7 @@ def test_the_best_member_has_the_best_score(qiao, rng):
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
 def test_a_frozen_joint_never_moves(qiao, strategy, rng):
-    target = make_target(qiao, "position", rng)
+    target = make_target(qiao, random_q(qiao, rng), "position")
     problem = make_case(qiao, strategy=strategy, freeze={"q1": 0.1, "d_x": 1.0 / 3.0})
     x, *_ = run_evolve(problem, target)
     assert set(x[:, qiao.joint_names.index("q1")]) == {0.1}
@@ -152,14 +149,14 @@ def test_a_frozen_joint_never_moves(qiao, strategy, rng):
 @pytest.mark.parametrize("update", UPDATES)
 def test_repaired_populations_stay_inside_the_limits(qiao, bounds, update, rng):
     problem = make_case(qiao, bounds=bounds, update=update, weight=0.9)
-    x, *_ = run_evolve(problem, make_target(qiao, "position", rng))
+    x, *_ = run_evolve(problem, make_target(qiao, random_q(qiao, rng), "position"))
     assert np.all((problem.lower <= x) & (x <= problem.upper))
 
 
 def test_every_generation_costs_one_population_of_evaluations(qiao, rng):
     for generations in (1, 5):
         _, _, _, meets, evaluations, _ = run_evolve(
-            make_case(qiao, generations=generations), make_target(qiao, "pose", rng)
+            make_case(qiao, generations=generations), make_target(qiao, random_q(qiao, rng), "pose")
         )
         assert not meets
         assert evaluations == 8 * (generations + 1)

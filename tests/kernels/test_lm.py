@@ -18,13 +18,14 @@ from ikde.model.generate.assemble import format_module
 from ikde.model.generate.module import load_module
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.reach import arm_length_m
-from ikde.model.target import KINDS, Target, Targets
+from ikde.model.target import KINDS, Targets
 from ikde.solver.plain import compute_frames
 from ikde.solver.verify import verify_many
 from tests.collision_robots import RANDOM, find_gaps
 from tests.conftest import random_q
 from tests.kernels.arrays import freeze
 from tests.kernels.seeding import no_seeds, pack_seeds
+from tests.targets import free_rows, target_at
 from tests.three_joints import ROBOT as THREE_JOINTS
 from tests.uncompiled import plain_module, quietly, run_text
 
@@ -42,26 +43,17 @@ def generated(robot, kind):
     return run_text(format_module(CollisionModel.of(robot), kind))
 
 
-def make_target(T, kind):
-    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return Target(T[:3, 3], **extra)
-
-
-def make_targets(robot, kind, count, rng):
+def some_out_of_reach(robot, kind, count, rng):
     """Targets that a configuration free of collision meets, and one in ten that is out of reach."""
-    detector = CollisionModel.of(robot).detector
-    Q = random_q(robot, rng, 20 * count)
-    free = (find_gaps(robot, detector, Q) > detector.safe_distance_m).all(axis=1)
-    assert free.sum() >= count
-    Ts = compute_frames(robot, Q[free][:count])[robot.tool].copy()
+    Ts = compute_frames(robot, free_rows(robot, rng, count))[robot.tool].copy()
     Ts[5::10, :3, 3] += 50.0
-    return Targets.of([make_target(T, kind) for T in Ts])
+    return Targets.of([target_at(T, kind) for T in Ts])
 
 
 def make_question(robot, kind, count=2 * LANES + 5, budget=6, seed=3):
     """Targets, streams and budgets of differing size; starts from a pool of free configurations."""
-    rng, detector = np.random.default_rng(seed), CollisionModel.of(robot).detector
-    targets = make_targets(robot, kind, count, rng)
+    rng, detector = np.random.default_rng(seed), robot.detector(None)
+    targets = some_out_of_reach(robot, kind, count, rng)
     base = robot.name == "qiao2021"
     Q = random_q(robot, rng, 400)
     Q[:, BASE] *= 0.0 if base else 1.0

@@ -29,6 +29,7 @@ from ikde.solver.settings import SolveSettings
 from tests import reference, reference_memetic
 from tests.conftest import random_q
 from tests.random_robots import random_robot
+from tests.targets import make_target
 
 ROOT = Path(__file__).parents[2]
 KINDS = ("position", "axis", "pose")
@@ -43,14 +44,7 @@ def make_case(robot, *, detector=None, near=None, freeze=None, **changes):
     return make_problem(robot, settings, collision=detector, near=near, freeze=freeze)
 
 
-def make_target(robot, kind, q):
-    """What the tool does at `q`."""
-    T = reference.compute_frames(robot, q)[robot.tool]
-    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return Target(T[:3, 3], **extra)
-
-
-def free_q(robot, problem, rng):
+def free_in_ranges(robot, problem, rng):
     """A configuration inside the problem's ranges that is free."""
     while True:
         q = rng.uniform(problem.lower, problem.upper)
@@ -98,7 +92,7 @@ def assert_like_twin(problem, target, memetic, seed=1):
 @pytest.mark.parametrize("is_weighted", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_paper_robot_evolves_like_the_twin(qiao, kind, is_weighted, rng):
-    target = make_target(qiao, kind, random_q(qiao, rng))
+    target = make_target(qiao, random_q(qiao, rng), kind)
     assert not assert_like_twin(make_case(qiao), target, UNPOLISHED._replace(is_weighted=is_weighted))
 
 
@@ -107,11 +101,11 @@ def test_random_robots_evolve_like_the_twin(seed, rng):
     robot = random_robot(seed)
     problem = make_case(robot, detector="none" if seed % 3 == 0 else None)
     memetic = UNPOLISHED._replace(archive_share=(0.0, 1.0, 2.6)[seed % 3], memory=2 + seed % 4)
-    assert_like_twin(problem, make_target(robot, KINDS[seed % 3], random_q(robot, rng)), memetic)
+    assert_like_twin(problem, make_target(robot, random_q(robot, rng), KINDS[seed % 3]), memetic)
 
 
 def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rng):
-    target = make_target(qiao, "position", random_q(qiao, rng))
+    target = make_target(qiao, random_q(qiao, rng), "position")
     problem = make_case(qiao, position_tolerance_m=0.4)
     assert assert_like_twin(problem, target, UNPOLISHED._replace(evaluations=600))
 
@@ -147,7 +141,7 @@ def test_the_budget_is_kept(qiao, evaluations, polish_share, rng):
 def test_what_is_reached_is_verified(any_robot, kind, rng):
     problem = make_case(any_robot)
     for stream in range(5):
-        target = make_target(any_robot, kind, free_q(any_robot, problem, rng))
+        target = make_target(any_robot, free_in_ranges(any_robot, problem, rng), kind)
         q, score, counts, _ = run_lane(problem, target, MemeticArrays(), stream=stream)
         assert counts[REACHED] == 1
         assert score.tolist() == [0.0, 0.0]
@@ -159,7 +153,7 @@ def test_clearance_and_frozen_joints_are_kept(qiao, rng):
     freeze = {"d_x": 0.1, "d_y": 1.0 / 3.0, "q_z": -0.2}
     problem = make_case(qiao, detector=detector, freeze=freeze)
     for stream in range(3):
-        target = make_target(qiao, "pose", free_q(qiao, problem, rng))
+        target = make_target(qiao, free_in_ranges(qiao, problem, rng), "pose")
         q, _, counts, _ = run_lane(problem, target, MemeticArrays(), stream=stream, blocks=[(0, 20)])
         assert counts[REACHED] == 1
         assert q[:3].tolist() == list(freeze.values())
@@ -167,8 +161,8 @@ def test_clearance_and_frozen_joints_are_kept(qiao, rng):
 
 
 def test_near_a_configuration_the_first_box_is_kept(qiao, rng):
-    problem = make_case(qiao, near=free_q(qiao, make_case(qiao), rng))
-    target = make_target(qiao, "pose", problem.near)
+    problem = make_case(qiao, near=free_in_ranges(qiao, make_case(qiao), rng))
+    target = make_target(qiao, problem.near, "pose")
     q, _, counts, _ = run_lane(problem, target)
     assert counts[REACHED] == 1
     assert np.all(np.abs(q - problem.near) <= (problem.upper - problem.lower) / 64.0 + 1e-12)
@@ -185,7 +179,7 @@ def test_a_pose_that_only_collides_is_counted_with_its_pair(qiao):
 
 
 def test_other_rules_search_the_pose_alone(qiao, rng):
-    target = make_target(qiao, "pose", random_q(qiao, rng))
+    target = make_target(qiao, random_q(qiao, rng), "pose")
     assert run_lane(make_case(qiao, detector="none"), target)[2][REACHED] == 1
     _, _, counts, _ = run_lane(make_case(qiao, collision="reject"), target, blocks=[(0, 40)])
     assert counts[COLLIDING] + counts[REACHED] == counts[ATTEMPTS]
@@ -211,7 +205,7 @@ def solve_all():
     robot, rng, bits = ikde.load_robot("qiao2021"), np.random.default_rng(3), []
     for kind in KINDS:
         for memetic in (UNPOLISHED, UNPOLISHED._replace(polish_share=0.8, evaluations=400)):
-            target = make_target(robot, kind, random_q(robot, rng))
+            target = make_target(robot, random_q(robot, rng), kind)
             problem = make_case(robot, position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
             q, _, counts, _ = run_lane(problem, target, memetic, seed=2**63 + 1, blocks=[(0, 1)])
             bits += [q.tobytes().hex(), counts.tobytes().hex()]

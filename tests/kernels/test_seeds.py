@@ -12,17 +12,13 @@ from ikde.solver.plain import compute_frames
 from tests.conftest import random_q
 from tests.kernels.seeding import cell_of, no_seeds, pack_seeds
 from tests.random_robots import random_robot
+from tests.targets import target_at
 from tests.uncompiled import plain, plain_module, quietly
 
 PLAIN = plain_module(seeds)
 BASE = np.array([0, 1, 2])
 KINDS = ("position", "axis", "pose")
 each_kind = pytest.mark.parametrize("kind", KINDS)
-
-
-def make_target(T, kind):
-    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return Target(T[:3, 3], **extra)
 
 
 def tool(robot, q):
@@ -54,7 +50,7 @@ def spread(robot, rng, count, kind, *, inside=0.6):
     """Targets that the base can drive to."""
     Q = random_q(robot, rng, count)
     Q[:, :2] *= inside
-    return [make_target(T, kind) for T in tool(robot, Q)]
+    return [target_at(T, kind) for T in tool(robot, Q)]
 
 
 @each_kind
@@ -91,7 +87,7 @@ def test_a_start_is_inside_the_ranges(qiao, pool, kind, rng):
     for attempt in range(9):
         T = np.eye(4)
         T[:3, :3], T[:3, 3] = Rotation.random(rng=rng).as_matrix(), rng.uniform(-9.0, 9.0, 3)
-        q = draw(qiao, pool, make_target(T, kind), attempt)
+        q = draw(qiao, pool, target_at(T, kind), attempt)
         assert np.all((qiao.lower <= q) & (q <= qiao.upper))
 
 
@@ -133,7 +129,7 @@ def test_the_pose_chosen_is_the_nearest_of_those_compared(kind, rng):
     robot = random_robot(4)
     pool = pack_seeds(robot, random_q(robot, rng, 200))
     for T in tool(robot, random_q(robot, rng, 10)):
-        target = make_target(T, kind)
+        target = target_at(T, kind)
         best = PLAIN.find_pose(pool, pack_targets([target]), 0, 20, 150)
         Ts = np.moveaxis(pool.T_world_tool.reshape(3, 4, -1), 2, 0)[20:170]
         distance = np.sum((Ts[:, :, 3] - target.p_world_tool) ** 2, axis=1)
@@ -149,7 +145,7 @@ def test_without_a_base_a_start_is_near_the_target_and_of_the_pool(rng):
     pool = pack_seeds(robot, random_q(robot, rng, 300))
     chosen, any_one = [], []
     for stream, T in enumerate(tool(robot, random_q(robot, rng, 40))):
-        q = draw(robot, pool, make_target(T, "position"), stream=stream)
+        q = draw(robot, pool, target_at(T, "position"), stream=stream)
         assert (pool.q == q).all(axis=1).any()
         chosen.append(np.linalg.norm(tool(robot, q)[:3, 3] - T[:3, 3]))
         any_one.append(np.linalg.norm(tool(robot, random_q(robot, rng))[:3, 3] - T[:3, 3]))

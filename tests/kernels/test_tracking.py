@@ -25,7 +25,7 @@ def take(stand, target, last=None, first_step=False, **changes):
     return track_sample(*parts, stand.work, q, step), q, step
 
 
-def free_q(robot, rng):
+def clear_q(robot, rng):
     """A random configuration near the world's middle with some clearance."""
     while True:
         q = random_q(robot, rng)
@@ -38,7 +38,7 @@ def free_q(robot, rng):
 @pytest.mark.parametrize("kind", ["position", "axis", "pose"])
 def test_a_near_target_is_met(qiao, rng, name, kind):
     for _ in range(10):
-        stand = Stand(qiao, free_q(qiao, rng), name)
+        stand = Stand(qiao, clear_q(qiao, rng), name)
         stand.weights[:3] = 0.3
         target = stand.target(kind, rng.uniform(-2e-3, 2e-3, 3))
         (status, rounds, least), q, step = take(stand, target)

@@ -12,7 +12,7 @@ import pytest
 import ikde
 from ikde.solver.engines import pool
 from tests.conftest import random_q
-from tests.solver.test_distinct import are_apart
+from tests.problems import are_apart
 from tests.three_joints import KINDS, ROBOT, free_q, is_met, meet
 from tests.uncompiled import plain_module
 from tests.written import written_kernels

@@ -10,17 +10,8 @@ import ikde
 from ikde.errors import InputError
 from ikde.solver.distinct import are_distinct
 from ikde.solver.families import FAMILIES
-from tests.solver.test_solve import CHEAP, QUICK, TARGET, assert_true_to_its_figures, free_q, make_target
-
-
-def are_apart(robot, q, other):
-    """More than 0.1 rad in a turn, around the circle, or more than 50 mm in a slide."""
-    for joint, a, b in zip(robot.joints, q, other, strict=True):
-        if joint.kind == "prismatic" and abs(a - b) > 0.05:
-            return True
-        if joint.kind == "revolute" and abs(np.angle(np.exp(1j * (a - b)))) > 0.1:
-            return True
-    return False
+from tests.problems import CHEAP, QUICK, TARGET, are_apart, assert_true_to_its_figures
+from tests.targets import free_q, make_target
 
 
 @pytest.mark.parametrize("method", ["auto", "memetic", "de"])

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.model.collision_model import CollisionModel
+from ikde.model.target import KINDS
 from ikde.solver.grade import confirm
 from ikde.solver.problem import make_problem
 from ikde.solver.quick import Quick, find_quick
 from ikde.solver.rows import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
-from tests.solver.test_solve import KINDS, free_q, make_target
+from tests.targets import free_q, make_target
 
 AUTO = SolveSettings.for_method("auto")
 

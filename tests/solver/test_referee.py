@@ -5,21 +5,13 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
-from ikde.model.collision_model import CollisionModel
-from ikde.model.target import KINDS, Targets
+from ikde.model.target import KINDS
 from ikde.solver import referee as module
-from ikde.solver.plain import compute_frames
 from ikde.solver.problem import make_problem
 from ikde.solver.search import REFUSALS, search
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
-
-
-def make_targets(robot, kind, count, rng):
-    """What random configurations reach."""
-    Ts = compute_frames(robot, random_q(robot, rng, count))[robot.tool]
-    extra = {"position": {}, "axis": {"axis_world_tool": Ts[:, :3, 2]}, "pose": {"R_world_tool": Ts[:, :3, :3]}}
-    return Targets(Ts[:, :3, 3], **extra[kind])
+from tests.targets import make_targets
 
 
 def make(robot, **settings):
@@ -36,7 +28,7 @@ def test_for_any_tolerance_what_an_engine_calls_reached_is_accepted(kind, method
     for turn in turns:
         size = float(10.0 ** rng.uniform(-9.0, -0.5))
         problem = make(robot, method=method, position_tolerance_m=size, orientation_tolerance_rad=float(turn))
-        targets = make_targets(robot, kind, 40 if method == "lm" else 4, rng)
+        targets = make_targets(robot, random_q(robot, rng, 40 if method == "lm" else 4), kind)
         found = search(problem, targets, seed=1, streams=range(len(targets)))
         accepted = verify_many(CollisionModel.of(robot, "none"), targets, found.q, problem.settings).accepted
         reached = found.counts[:, REACHED] == 1
@@ -47,7 +39,9 @@ def test_for_any_tolerance_what_an_engine_calls_reached_is_accepted(kind, method
 def test_loose_tolerances_lose_no_target(rng):
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=0.1, orientation_tolerance_rad=1.0)
-    rows = ikde.solve_many(robot, make_targets(robot, "pose", 400, rng), settings, collision="none", method="lm")
+    rows = ikde.solve_many(
+        robot, make_targets(robot, random_q(robot, rng, 400), "pose"), settings, detector="none", method="lm"
+    )
     assert rows.reached.all()
 
 
@@ -106,7 +100,9 @@ def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, m
 def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(rng):
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=1e-16, orientation_tolerance_rad=1e-16, restarts=40, method="lm")
-    rows = ikde.solve_many(robot, make_targets(robot, "pose", 30, rng), settings, collision="none", verify="all")
+    rows = ikde.solve_many(
+        robot, make_targets(robot, random_q(robot, rng, 30), "pose"), settings, detector="none", verify="all"
+    )
     assert 0 < rows.reached.sum() < 30
     plain = verify_many(CollisionModel.of(robot, "none"), rows.targets, rows.q, settings)
     assert plain.accepted[rows.reached].all()

@@ -15,7 +15,7 @@ from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.engines.found import ENGINES
 from ikde.solver.problem import make_problem
 from ikde.solver.search import choose_engines, search, usable_cores
-from tests.solver.test_solve import free_q, make_target
+from tests.targets import free_q, make_target
 
 CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=3)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]

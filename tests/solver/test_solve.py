@@ -7,48 +7,13 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
+from ikde.model.target import KINDS
 from tests.bare_robot import BARE, platform_to_upper_arm
 from tests.conftest import ROBOTS, random_q
+from tests.problems import CHEAP, QUICK, TARGET, assert_true_to_its_figures
+from tests.targets import free_q, make_target
 
 WITH_SPHERES = [name for name in ROBOTS if ikde.load_robot(name).detectors]
-KINDS = ("position", "axis", "pose")
-QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=8)
-CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=1)
-TARGET = ikde.Target((0.8, 0.5, 1.0))
-
-
-def free_q(robot, rng):
-    """Joint values without self-collision, the base near the origin."""
-    while True:
-        q = random_q(robot, rng)
-        slides = [joint.kind == "prismatic" for joint in robot.joints]
-        q[slides] *= 0.1
-        if not ikde.check(robot, q).collision:
-            return q
-
-
-def make_target(robot, q, kind):
-    """Where the tool is at `q`, so that it can be reached."""
-    T = ikde.forward(robot, q)[robot.tool]
-    if kind == "pose":
-        return ikde.Target(T[:3, 3], R_world_tool=T[:3, :3])
-    return ikde.Target(T[:3, 3], axis_world_tool=T[:3, 2] if kind == "axis" else None)
-
-
-def assert_true_to_its_figures(robot, target, result, settings):
-    """A reached result is inside, free, within tolerance, and its figures are `verify`'s."""
-    graded = ikde.verify(robot, target, result.q, settings=settings)
-    assert result.verification == graded
-    assert graded.accepted
-    assert result.verified
-    assert result.reached
-    assert result.stop_reason == "reached"
-    assert result.hint is None
-    assert result.position_error_m <= settings.position_tolerance_m
-    assert result.orientation_error_rad <= settings.orientation_tolerance_rad
-    assert np.all(robot.lower <= result.q)
-    assert np.all(result.q <= robot.upper)
-    assert not result.self_collision
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -13,19 +13,13 @@ from ikde.model.target import Target
 from tests import reference
 from tests.conftest import random_q
 from tests.random_robots import make_frame, make_robot, random_robot
+from tests.targets import make_target
 from tests.uncompiled import evaluate, joint_names, plain, run_text
 
 KINDS = ("position", "axis", "pose")
 TWIN = plain(damped.take_step)
 SEEDS = range(12)
 each_kind = pytest.mark.parametrize("kind", KINDS)
-
-
-def make_target(robot, kind, q):
-    """What the tool does at `q`."""
-    T = reference.compute_frames(robot, q)[robot.tool]
-    extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return Target(T[:3, 3], **extra)
 
 
 def twin_step(robot, target, ranges, descent, q):
@@ -59,14 +53,14 @@ def test_random_robots_step_like_the_twin(seed, kind, rng):
     robot = random_robot(seed)
     take_step = make_take_step(robot, kind)
     for _ in range(4):
-        target = make_target(robot, kind, random_q(robot, rng))
+        target = make_target(robot, random_q(robot, rng), kind)
         assert_like_twin(robot, take_step, target, random_q(robot, rng))
 
 
 @each_kind
 def test_shipped_robots_step_like_the_twin(any_robot, kind, rng):
     take_step = make_take_step(any_robot, kind)
-    target = make_target(any_robot, kind, random_q(any_robot, rng))
+    target = make_target(any_robot, random_q(any_robot, rng), kind)
     for change in ({}, {"damping": 0.5}, {"least_damping": 1e-2}, {"rotation_length": 0.1}, {"largest_step": 0.05}):
         assert_like_twin(any_robot, take_step, target, random_q(any_robot, rng), descent=DescentArrays(**change))
 
@@ -77,7 +71,7 @@ def test_joints_at_their_bounds_step_like_the_twin(seed, kind, rng):
     robot = random_robot(seed)
     take_step = make_take_step(robot, kind)
     for _ in range(3):
-        target = make_target(robot, kind, random_q(robot, rng))
+        target = make_target(robot, random_q(robot, rng), kind)
         q = np.choose(rng.integers(3, size=len(robot.joints)), [robot.lower, robot.upper, random_q(robot, rng)])
         after = assert_like_twin(robot, take_step, target, q)
         assert np.all((robot.lower <= after) & (after <= robot.upper))
@@ -90,7 +84,7 @@ def test_frozen_joints_never_move(qiao, kind, rng):
     ranges = np.array([qiao.lower, qiao.upper])
     ranges[:, frozen] = q[frozen]
     for _ in range(5):
-        after = assert_like_twin(qiao, take_step, make_target(qiao, kind, random_q(qiao, rng)), q, ranges)
+        after = assert_like_twin(qiao, take_step, make_target(qiao, random_q(qiao, rng), kind), q, ranges)
         assert after[frozen].tobytes() == q[frozen].tobytes()
         assert not np.array_equal(after, q)
 
@@ -109,7 +103,7 @@ def test_half_a_turn_away_is_like_the_twin(qiao, kind, rng):
 def test_within_both_tolerances_it_stays(qiao, kind, rng):
     take_step = make_take_step(qiao, kind)
     q = random_q(qiao, rng)
-    target = make_target(qiao, kind, q + 1e-4)
+    target = make_target(qiao, q + 1e-4, kind)
     _, errors = twin_step(qiao, target, np.array([qiao.lower, qiao.upper]), DescentArrays(), q)
     position, orientation = np.array(errors) * 1.01
     for tolerances in ((position, orientation), (0.99 * position, orientation), (position, 0.9 * orientation)):
@@ -131,7 +125,7 @@ def test_names_do_not_run_into_each_other_on_a_long_chain(kind, rng):
     robot = make_robot(kinds, [*frames, make_frame("tool", f"f{count - 1}", (0, 0, 0.1))])
     take_step = make_take_step(robot, kind)
     for q in random_q(robot, rng, 3):
-        assert_like_twin(robot, take_step, make_target(robot, kind, random_q(robot, rng)), q)
+        assert_like_twin(robot, take_step, make_target(robot, random_q(robot, rng), kind), q)
 
 
 @each_kind
@@ -153,7 +147,7 @@ def test_a_written_step_is_what_the_function_takes(qiao, kind, rng):
     """`write_step` by itself: errors and next values from names alone."""
     writer, q = Writer(), random_q(qiao, rng)
     step = write_step(writer, pack_robot(qiao), kind)
-    target, descent = make_target(qiao, kind, random_q(qiao, rng)), DescentArrays(least_damping=1e-3)
+    target, descent = make_target(qiao, random_q(qiao, rng), kind), DescentArrays(least_damping=1e-3)
     T = pack_targets([target]).T_world_tool[0]
     known = joint_names(q) | {name: getattr(descent, name) for name in SETTINGS}
     known |= {f"m{i}{j}": T[i, j] for i in range(3) for j in range(3)} | dict(

@@ -6,7 +6,7 @@ import ikde
 from ikde.solver.engines.engine import Question
 from ikde.solver.engines.found import make_found
 from ikde.solver.problem import make_problem
-from tests.solver.test_solve import free_q, make_target
+from tests.targets import free_q, make_target
 
 
 def make_question(robot, rng, kinds, *, settings=None, freeze=None, near=None, seed=1):

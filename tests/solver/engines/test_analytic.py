@@ -6,7 +6,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.solver.engines.analytic import Analytic, check_closed_form
 from tests.solver.engines.questions import assert_solved, make_question, run
-from tests.solver.test_solve import free_q, make_target
+from tests.targets import free_q, make_target
 
 
 @pytest.mark.parametrize("name", ["qiao2021", "ur5"])
