@@ -8,6 +8,7 @@ import numpy as np
 import ikde
 from ikde.model.collision_model import CollisionModel
 from tests import reference
+from tests.targets import target_at
 
 FILE = Path(__file__).parent / "three_joints.yaml"
 ROBOT = ikde.load_robot(FILE)
@@ -27,9 +28,9 @@ def is_met(robot, target, q, settings):
 
 def meet(robot, q, kind, shift=(0.0, 0.0, 0.0)):
     """The target of a kind that the tool meets at `q`, moved by `shift` m."""
-    T = reference.compute_frames(robot, np.asarray(q, dtype=float))[robot.tool]
-    asked = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-    return ikde.Target(T[:3, 3] + np.array(shift), **asked)
+    T = np.array(reference.compute_frames(robot, np.asarray(q, dtype=float))[robot.tool])
+    T[:3, 3] += shift
+    return target_at(T, kind)
 
 
 @cache

@@ -6,7 +6,7 @@ import ikde
 from ikde.batch.columns import GROUPS
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.sources import ListSource
-from ikde.solver.problem import make_problem
+from tests.problems import problem_of
 
 ROBOT = ikde.load_robot("qiao2021")
 BLINK = {"population": 6, "generations": 1, "restarts": 1}  # a search that ends before it finds anything
@@ -20,7 +20,7 @@ def make_targets(count):
 
 def make_arm(name="auto", detector=None, method="auto", **settings):
     chosen = ikde.SolveSettings.for_method(method).with_changes(**settings)
-    problem = make_problem(ROBOT, chosen, collision=detector, near=None, freeze=None)
+    problem = problem_of(ROBOT, chosen, detector=detector)
     return Arm(name=name, method=method, problem=problem)
 
 

@@ -7,10 +7,8 @@ from hypothesis import strategies as st
 
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.errors import InputError
-from ikde.model.collision_model import CollisionModel
-from ikde.solver.problem import make_problem
 from ikde.solver.search import search
-from ikde.solver.settings import SolveSettings
+from tests.problems import problem_of
 from tests.random_robots import random_robot
 
 few = settings(max_examples=10)
@@ -74,7 +72,7 @@ def test_reachable_targets_ask_for_the_goal(qiao, goal):
 
 
 def test_reachable_targets_are_reached(qiao):
-    problem = make_problem(qiao, SolveSettings(), collision="typical", near=None, freeze=None)
+    problem = problem_of(qiao, detector="typical")
     targets = reachable(qiao, "position", detector="typical").read(0, 10)
     assert search(problem, targets, seed=0, streams=range(10)).counts[:, 0].all()
 

@@ -5,12 +5,11 @@ from dataclasses import replace
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.sources import ListSource
 from ikde.model.target import Target
-from ikde.solver.problem import make_problem
-from ikde.solver.settings import SolveSettings
+from tests.problems import problem_of
 
 
 def make_batch(robot, **changes):
-    problem = make_problem(robot, SolveSettings(), collision=None, near=None, freeze=None)
+    problem = problem_of(robot)
     batch = Batch(
         name="made",
         robot=robot,

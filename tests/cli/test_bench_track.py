@@ -6,7 +6,7 @@ import pytest
 
 from ikde.bench import tracks
 from ikde.errors import InputError
-from tests.cli.test_track import SPEC
+from tests.cli.short_track import SPEC
 
 
 @pytest.fixture

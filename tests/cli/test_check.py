@@ -3,7 +3,7 @@
 import pytest
 
 import ikde
-from tests.cli.test_fk import ROW, ROW_OPTIONS
+from tests.cli.paper_row import ROW, ROW_OPTIONS
 
 FOLDED = "q1=90 q2=150 q3=150"  # deg: the arm lies on the platform
 

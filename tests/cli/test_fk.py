@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 import ikde
+from tests.cli.paper_row import ROW, ROW_OPTIONS
 
 FRAMES = ("Ob", "O1", "Oc12", "O2", "Oc23", "O3", "O4", "O5", "O6", "tool")
-# [Qiao2021, Table 5]: a row that reaches (800, 500, 1000) mm, in mm and rad, classical.
-ROW = "-0.0008 0.8659 1.6368 1.0156 0.9326 -0.0388 0.4905 2.8275 0.6857"
-ROW_OPTIONS = ("--unit", "mm", "--angles", "rad", "--convention", "classical")
 
 
 def test_json_has_every_frame_by_name(cli, qiao):

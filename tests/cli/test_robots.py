@@ -6,7 +6,7 @@ import ikde
 from ikde.io.robots import robot_path
 from tests.bare_robot import BARE
 from tests.hostile_names import PRINTABLE, rename_in_file
-from tests.io.test_robot_file import GOOD, NAMES
+from tests.robot_files import GOOD, NAMES
 
 
 @pytest.mark.parametrize("command", [("robots",), ("robots", "list")])

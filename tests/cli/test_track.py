@@ -6,15 +6,9 @@ import math
 import pytest
 
 from ikde.io.robots import robot_path
+from tests.cli.short_track import SPEC
 from tests.report.pages import leave_out_figures
 
-SPEC = """
-name: short
-robot: qiao2021
-dt_s: 0.02
-samples: 6
-path: {expressions: {x: 0.9 + 0.002*k, y: 0.2, z: 0.9}}
-"""
 FILES = [
     *("base.json", "base.yaml", "joint_trajectory.json", "joint_trajectory.yaml"),
     *("report.html", "summary.json", "trajectory.csv", "trajectory.parquet"),

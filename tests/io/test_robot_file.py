@@ -18,31 +18,7 @@ from ikde.io.yaml_file import Document
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import AdjacentPair
 from tests.hostile_names import HIDDEN, PRINTABLE, rename_in_file
-
-GOOD = """\
-name: two
-units: {length: mm, angle: deg}
-sources:
-  ours: {kind: calibrated, text: "made up"}
-joints:
-  slide: {kind: prismatic, lower: -100, upper: 1e3, source: ours}
-  turn: {kind: revolute, lower: -90, upper: 90, home: 10}
-frames:
-  rail: {parent: world, joint: slide, axis: [1, 0, 0], source: {axis: ours}}
-  arm:  {parent: rail, xyz: [0, 0, 500], joint: turn, axis: [0, 1, 0]}
-  tip:  {parent: arm, xyz: [0, 0, 250.5], rpy: [0, 90, 0]}
-tool: tip
-spheres:
-  coarse:
-    - {component: box, from: rail, radius: 200}
-    - {component: bar, from: arm, to: tip, radius: 20, count: 4, spacing: even}
-pairs:
-  all: {pairs: {box: [bar]}}
-detectors:
-  coarse: {spheres: coarse, pairs: all, safe_distance: 5}
-default_detector: coarse
-"""
-
+from tests.robot_files import GOOD, NAMES
 
 DRIVEN = """\
 name: cart
@@ -77,9 +53,6 @@ def complaint(old, new, tmp_path):
     message = str(caught.value)
     assert "\n" not in message
     return message
-
-
-NAMES = ("two", "ours", "slide", "turn", "rail", "arm", "tip", "coarse", "box", "bar", "all")  # in GOOD
 
 
 @pytest.mark.parametrize("template", PRINTABLE.values(), ids=PRINTABLE)

@@ -8,8 +8,8 @@ from ikde.kernels.blocks import flatten_grader, flatten_question, unpack_grader,
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests.conftest import random_q
+from tests.kernels.grading import ROBOTS, terms_of
 from tests.kernels.seeding import no_seeds, pack_seeds
-from tests.kernels.test_figures import ROBOTS, terms_of
 
 
 def assert_same(ours, theirs):

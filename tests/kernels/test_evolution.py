@@ -11,10 +11,11 @@ from ikde.kernels.evolution import evolve, find_best, is_better, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.rng import seed_stream
 from ikde.model.pack import pack_detector, pack_robot, pack_targets
-from ikde.solver.problem import make_problem, pack_search
+from ikde.solver.problem import pack_search
 from ikde.solver.settings import SolveSettings
 from tests import reference
 from tests.conftest import random_q
+from tests.problems import problem_of
 from tests.random_robots import random_robot
 from tests.targets import make_target
 
@@ -27,7 +28,7 @@ def make_case(robot, *, rule="feasibility", freeze=None, **changes):
     """A small problem; the rule `ignore` is that of a robot without a detector."""
     chosen = {"population": 8, "generations": 10, "collision": "reject" if rule == "ignore" else rule, **changes}
     detector = "none" if rule == "ignore" else None
-    return make_problem(robot, SolveSettings(**chosen), collision=detector, near=None, freeze=freeze)
+    return problem_of(robot, SolveSettings(**chosen), detector=detector, freeze=freeze)
 
 
 def run_evolve(problem, target, seed=1):

@@ -6,9 +6,8 @@ import numba
 import numpy as np
 import pytest
 
-import ikde
 from ikde.kernels import figures as module
-from ikde.kernels.blocks import Terms, flatten_grader
+from ikde.kernels.blocks import flatten_grader
 from ikde.kernels.clearance import compute_clearance
 from ikde.kernels.figures import LANES, compute_figures
 from ikde.kernels.grade_one import grade_one
@@ -17,27 +16,11 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Targets
 from tests.conftest import random_q
-from tests.kernels.arrays import freeze, run_bodies, run_spheres, run_tool
-from tests.random_robots import random_robot
+from tests.kernels.arrays import run_bodies, run_spheres, run_tool
+from tests.kernels.grading import ROBOTS, grade, terms_of
+from tests.targets import targets_near
 
-SHIPPED = [ikde.load_robot(name) for name in ikde.robot_names()]
-ROBOTS = [*SHIPPED, *map(random_robot, range(12))]
 every_robot = pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
-
-
-def terms_of(robot, position=np.inf, orientation=np.inf):
-    return Terms(freeze([robot.lower, robot.upper]), position, orientation)
-
-
-def run(robot, detector, targets, Q, terms=None):
-    """Figures [T, 3], pairs [T] and verdicts [T] by the grader."""
-    figures, pairs = np.full((len(Q), 3), np.nan), np.full(len(Q), -9, dtype=np.int64)
-    accepted = np.zeros(len(Q), dtype=np.bool_)
-    block = flatten_grader(
-        pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms or terms_of(robot)
-    )
-    compute_figures(*block, *pack_targets(targets), np.ascontiguousarray(Q), figures, pairs, accepted)
-    return figures, pairs, accepted
 
 
 def run_scalar(robot, detector, targets, Q):
@@ -55,25 +38,13 @@ def run_scalar(robot, detector, targets, Q):
     return np.array(figures), np.array(pairs)
 
 
-def targets_near(robot, Q, rng):
-    """A target of every kind in turn: what the tool does, or a little beside it, or something else."""
-    T = np.array([ikde.forward(robot, q)[robot.tool] for q in rng.permutation(Q)])
-    T[::4] = [ikde.forward(robot, q)[robot.tool] for q in Q[::4]]
-    kinds = [{}, {"axis_world_tool": 2}, {"R_world_tool": 3}]
-    made = []
-    for k, pose in enumerate(T):
-        asked = {name: pose[:3, 2] if value == 2 else pose[:3, :3] for name, value in kinds[k % 3].items()}
-        made.append(ikde.Target(pose[:3, 3] + 1e-9 * (k % 2), **asked))
-    return Targets.of(made)
-
-
 @every_robot
 def test_the_bits_are_those_of_the_scalar_kernels(robot, rng):
     Q = random_q(robot, rng, 2 * LANES + 7)
     Q[3], Q[4] = 0.0, robot.upper
     targets = targets_near(robot, Q, rng)
     for detector in (None, *robot.detectors.values()):
-        figures, pairs, _ = run(robot, detector, targets, Q)
+        figures, pairs, _ = grade(robot, detector, targets, Q)
         expected, expected_pairs = run_scalar(robot, detector, targets, Q)
         assert figures.tobytes() == expected.tobytes()
         np.testing.assert_array_equal(pairs, expected_pairs)
@@ -82,8 +53,8 @@ def test_the_bits_are_those_of_the_scalar_kernels(robot, rng):
 @pytest.mark.parametrize("count", [0, 1, 2, 3, LANES - 1, LANES, LANES + 1, 3 * LANES])
 def test_a_configuration_does_not_hang_on_its_neighbours(qiao, rng, count):
     Q = random_q(qiao, rng, 3 * LANES)
-    targets, detector = targets_near(qiao, Q, rng), CollisionModel.of(qiao).detector
-    whole, piece = run(qiao, detector, targets, Q), run(qiao, detector, targets[:count], Q[:count])
+    targets, detector = targets_near(qiao, Q, rng), qiao.detector(None)
+    whole, piece = grade(qiao, detector, targets, Q), grade(qiao, detector, targets[:count], Q[:count])
     for every, some in zip(whole, piece, strict=True):
         assert some.tobytes() == every[:count].tobytes()
 
@@ -92,10 +63,10 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
     Q = random_q(qiao, rng, 400)
     Q[::3, 2] = qiao.upper[2] + 1e-15 * np.arange(134)
     Q[5] = np.nan
-    targets, detector = targets_near(qiao, Q[:5].repeat(80, axis=0), rng), CollisionModel.of(qiao).detector
-    figures, _, _ = run(qiao, detector, targets, Q)
+    targets, detector = targets_near(qiao, Q[:5].repeat(80, axis=0), rng), qiao.detector(None)
+    figures, _, _ = grade(qiao, detector, targets, Q)
     position, orientation = np.nanmedian(figures[:, 0]), np.nanmedian(figures[:, 1])
-    _, _, accepted = run(qiao, detector, targets, Q, terms_of(qiao, position, orientation))
+    _, _, accepted = grade(qiao, detector, targets, Q, terms_of(qiao, position, orientation))
     within = (figures[:, 0] <= position) & (figures[:, 1] <= orientation)
     inside = ((qiao.lower <= Q) & (qiao.upper >= Q)).all(axis=1)
     expected = within & inside & (figures[:, 2] > detector.safe_distance_m)
@@ -106,8 +77,8 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
 
 def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
     q, targets = qiao.home[None], Targets(np.zeros((1, 3)))
-    (position, _, clearance), *_ = run(qiao, CollisionModel.of(qiao).detector, targets, q)[0]
-    detector = CollisionModel.of(qiao).arrays
+    (position, _, clearance), *_ = grade(qiao, qiao.detector(None), targets, q)[0]
+    detector = pack_detector(qiao, qiao.detector(None))
     for safe_distance, tolerance, expected in (
         (clearance, position, False),
         (np.nextafter(clearance, 0.0), position, True),
@@ -131,10 +102,9 @@ def test_it_shares_no_code_with_the_search():
 
 @pytest.mark.slow
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
-def test_it_is_vectorised(qiao, monkeypatch):
+def test_it_is_vectorised(qiao):
     fresh = numba.njit(error_model="numpy", nogil=True)(compute_figures.py_func)  # of cached code there is no text
-    monkeypatch.setattr(f"{__name__}.compute_figures", fresh)
-    run(qiao, CollisionModel.of(qiao).detector, Targets(np.zeros((1, 3))), qiao.home[None])
+    grade(qiao, qiao.detector(None), Targets(np.zeros((1, 3))), qiao.home[None], grader=fresh)
     text = next(iter(fresh.inspect_asm().values()))
     if "vsubpd" not in text:
         pytest.skip("a machine without wide registers")

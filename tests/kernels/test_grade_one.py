@@ -11,7 +11,8 @@ from ikde.model.generate.assemble import format_module
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import KINDS
 from tests.conftest import random_q
-from tests.kernels.test_figures import ROBOTS, run, targets_near, terms_of
+from tests.kernels.grading import ROBOTS, grade, terms_of
+from tests.targets import targets_near
 from tests.uncompiled import reachable, run_text
 
 
@@ -21,8 +22,8 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
     targets = targets_near(robot, Q, rng)
     for detector in (None, *robot.detectors.values()):
         terms = terms_of(robot, 0.5, 1.0)
-        figures, pairs, accepted = run(robot, detector, targets, Q, terms)
-        block = flatten_grader(pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms)
+        figures, pairs, accepted = grade(robot, detector, targets, Q, terms)
+        block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms)
         for row, q in enumerate(Q):
             *errors, pair, verdict = grade_one(*block, *pack_targets(targets.take(np.array([row]))), q)
             assert np.array(errors).tobytes() == figures[row].tobytes()

@@ -8,9 +8,10 @@ from ikde.kernels.lanes import is_inside, set_box, solve_lane
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
-from ikde.solver.problem import make_problem, pack_search
+from ikde.solver.problem import pack_search
 from ikde.solver.settings import SolveSettings
 from tests import reference
+from tests.problems import problem_of
 
 RANGES = np.array([[-1.0, 0.0, 2.0], [1.0, 4.0, 2.0], [0.9, 1.0, 2.0]])
 HARD = Target([0.54, -0.131, 0.974])
@@ -48,7 +49,7 @@ def test_a_box_has_its_share_of_the_range_on_either_side(attempt):
 
 
 def test_without_near_the_first_box_is_the_whole_range(qiao):
-    problem = make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=None)
+    problem = problem_of(qiao)
     search = pack_search(problem)
     lower, upper = run_box(0, search.first_box, search.ranges)
     np.testing.assert_array_equal([lower, upper], [qiao.lower, qiao.upper])
@@ -63,8 +64,8 @@ def test_on_a_limit_is_inside():
 def run_lane(robot, target, blocks, *, seed=3, detector=None, near=None, **changes):
     """Run the attempts block by block: (q, score, counts, pair counts)."""
     settings = SolveSettings(**{"population": 8, "generations": 40, "update": "generation", **changes})
-    problem = make_problem(robot, settings, collision=detector, near=near, freeze=None)
-    packed, spheres = pack_robot(robot), CollisionModel(robot=robot, detector=problem.collision.detector).arrays
+    problem = problem_of(robot, settings, detector=detector, near=near)
+    packed, spheres = pack_robot(robot), pack_detector(robot, problem.detector)
     q, score, counts = np.zeros(len(robot.joints)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)
     pairs = np.zeros(len(spheres.pairs), dtype=np.int64)
     search, targets = pack_search(problem), pack_targets([target])

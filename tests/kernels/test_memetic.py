@@ -24,10 +24,11 @@ from ikde.kernels.rng import seed_stream
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
-from ikde.solver.problem import make_problem, pack_search
+from ikde.solver.problem import pack_search
 from ikde.solver.settings import SolveSettings
 from tests import reference, reference_memetic
 from tests.conftest import random_q
+from tests.problems import problem_of
 from tests.random_robots import random_robot
 from tests.targets import make_target
 
@@ -41,7 +42,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarn
 
 def make_case(robot, *, detector=None, near=None, freeze=None, **changes):
     settings = SolveSettings(bounds="midpoint", **changes)
-    return make_problem(robot, settings, collision=detector, near=near, freeze=freeze)
+    return problem_of(robot, settings, detector=detector, near=near, freeze=freeze)
 
 
 def free_in_ranges(robot, problem, rng):

@@ -20,12 +20,11 @@ print(json.dumps(solve_all()))
 RUN_UNCOMPILED = ("-W", "ignore:overflow encountered:RuntimeWarning")  # numpy's scalars wrap around, but complain
 
 
-def make_targets():
-    return [
-        ikde.Target([0.8, 0.5, 1.0]),
-        ikde.Target([0.54, -0.131, 0.974], axis_world_tool=[0.0, 0.3, 1.0]),
-        ikde.Target([0.9, 0.2, 1.2], R_world_tool=[[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
-    ]
+TARGETS = [
+    ikde.Target([0.8, 0.5, 1.0]),
+    ikde.Target([0.54, -0.131, 0.974], axis_world_tool=[0.0, 0.3, 1.0]),
+    ikde.Target([0.9, 0.2, 1.2], R_world_tool=[[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
+]
 
 
 def make_settings(**changes):
@@ -38,7 +37,7 @@ def solve_all():
     bits = []
     for collision, update in (("reject", "generation"), ("feasibility", "in_place")):
         settings = make_settings(collision=collision, update=update)
-        results = ikde.solve_many(robot, make_targets(), settings, seed=2**63 + 1, threads=1, explain_failures=False)
+        results = ikde.solve_many(robot, TARGETS, settings, seed=2**63 + 1, threads=1, explain_failures=False)
         bits += [result.q.tobytes().hex() for result in results]
     return bits
 
@@ -100,7 +99,7 @@ def test_a_full_solve_of_uncompiled_kernels_gives_the_same_bits(qiao):
 
 @pytest.mark.parametrize("method", ["auto", "de"])
 def test_one_and_two_threads_give_the_same_bits(qiao, method):
-    targets = make_targets()[:2] * 3
+    targets = TARGETS[:2] * 3
     one, two = (
         [r.q.tobytes() for r in ikde.solve_many(qiao, targets, method=method, seed=5, threads=threads)]
         for threads in (1, 2)
@@ -110,7 +109,7 @@ def test_one_and_two_threads_give_the_same_bits(qiao, method):
 
 
 def test_a_target_does_not_depend_on_those_after_it(qiao):
-    targets = make_targets()
+    targets = TARGETS
     together = [r.q.tobytes() for r in ikde.solve_many(qiao, targets, seed=5)]
     assert ikde.solve_many(qiao, targets[:1], seed=5)[0].q.tobytes() == together[0]
     assert ikde.solve(qiao, targets[0], seed=5).q.tobytes() == together[0]

@@ -12,6 +12,7 @@ from ikde.model.rotation import rotation_from_rpy
 from ikde.model.target import Target
 from tests import reference
 from tests.random_robots import make_frame, make_robot, random_robot
+from tests.scara import make_scara
 
 few = settings(max_examples=150)
 HERE = (0.0, 0.0, 0.0)
@@ -48,22 +49,6 @@ def test_an_orientation_that_the_tool_has_is_never_out_of_reach(seed):
     lower, upper = np.where(held, q, robot.lower), np.where(held, q, robot.upper)
     for target in (Target(HERE, R), Target(HERE, axis_world_tool=R[:, 2]), Target(HERE)):
         assert orientation_excess_rad(robot, target, lower, upper) == 0.0
-
-
-def make_scara(quill_m=1.0):
-    """Two links and a wrist about the vertical, a quill along it; the tool points down."""
-    robot = make_robot(
-        {"j1": "revolute", "j2": "revolute", "quill": "prismatic", "wrist": "revolute"},
-        [
-            make_frame("a", "world", joint="j1", axis=(0, 0, 1)),
-            make_frame("b", "a", (0.5, 0, 0), joint="j2", axis=(0, 0, 1)),
-            make_frame("c", "b", (0.3, 0, 0), joint="quill", axis=(0, 0, -1)),
-            make_frame("d", "c", joint="wrist", axis=(0, 0, 1)),
-            make_frame("tool", "d", rpy=(np.pi, 0, 0)),
-        ],
-    )
-    quill = replace(robot.joints[2], lower=-quill_m, upper=quill_m, home=0.0)
-    return replace(robot, joints=(*robot.joints[:2], quill, robot.joints[3]))
 
 
 @pytest.mark.parametrize(("axis", "off"), [((0, 0, -1), 0.0), ((1, 0, -1), np.pi / 4), ((0, 0, 1), np.pi)])

@@ -166,7 +166,7 @@ def test_oblique_slides_are_sound(slant, rng):
         assert reach_excess_m(robot, tool_position(robot, q), lower, upper) <= ROUNDING
 
 
-def make_scara():
+def make_quill_arm():
     """Two links about z, a quill along z between them and the tool."""
     return make_robot(
         {"j1": "revolute", "j2": "revolute", "quill": "prismatic"},
@@ -180,7 +180,7 @@ def make_scara():
 
 
 def test_a_slide_along_the_axes_of_its_run_adds_height_and_nothing_else():
-    robot = make_scara()
+    robot = make_quill_arm()
     lower, upper = robot.lower, robot.upper
     for far in (1.0, 1e5):
         upper[2] = far

@@ -15,7 +15,7 @@ from ikde.kernels.clearance import compute_clearance, compute_pair_clearance
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.model.collision_model import CollisionModel
 from tests.conftest import ROBOTS, random_q
-from tests.oracles.test_pinocchio import kernel_bodies
+from tests.kernels.arrays import run_bodies
 
 DETECTORS = [(name, detector) for name in ROBOTS for detector in ikde.load_robot(name).detectors]
 COUNT = 25
@@ -61,7 +61,7 @@ def coal_gaps(robot, detector, q):
 
 def kernel_spheres(robot, detector, q):
     """Packed detector, bounding spheres [C, 3] and sphere centres [3, S] by the kernels."""
-    packed, T_world_body = CollisionModel(robot=robot, detector=detector).arrays, kernel_bodies(robot, q)
+    packed, T_world_body = pack_detector(robot, detector), run_bodies(robot, q)
     bounds, centres = packed.bounds.copy(), np.empty((3, packed.radius.size))
     compute_bounds(packed, T_world_body, bounds)
     compute_centres(packed, T_world_body, centres)

@@ -9,9 +9,10 @@ import pinocchio as pin
 import pytest
 
 import ikde
-from ikde.kernels.frames import compute_bodies, compute_frames, compute_jacobian
+from ikde.kernels.frames import compute_frames, compute_jacobian
 from ikde.model.pack import frame_names, pack_robot
 from tests.conftest import random_q
+from tests.kernels.arrays import run_bodies
 
 COUNT = 200
 EXACT = 1e-12  # m and entries of rotations; measured: at most 2e-15
@@ -63,23 +64,16 @@ class Oracle:
         return J[:, self.columns]
 
 
-def kernel_bodies(robot, q):
-    arrays = pack_robot(robot)
-    T_world_body = np.empty((len(arrays.bodies), 3, 4))
-    compute_bodies(arrays, q, T_world_body)
-    return T_world_body
-
-
 def kernel_frames(robot, q):
     arrays = pack_robot(robot)
     T_world_frame = np.empty((arrays.frame_body.size, 3, 4))
-    compute_frames(arrays, kernel_bodies(robot, q), T_world_frame)
+    compute_frames(arrays, run_bodies(robot, q), T_world_frame)
     return dict(zip(frame_names(robot), T_world_frame, strict=True))
 
 
 def kernel_jacobian(robot, q):
     jacobian = np.empty((6, len(robot.joints)))
-    compute_jacobian(pack_robot(robot), kernel_bodies(robot, q), kernel_frames(robot, q)[robot.tool], jacobian)
+    compute_jacobian(pack_robot(robot), run_bodies(robot, q), kernel_frames(robot, q)[robot.tool], jacobian)
     return jacobian
 
 
@@ -119,7 +113,7 @@ def test_every_body_of_the_kernels_stands_and_slides_or_turns_as_its_joint_in_pi
     arrays, oracle = pack_robot(any_robot), Oracle(any_robot)
     for q in configurations:
         oracle.frames(q)
-        Ts_world_body = kernel_bodies(any_robot, q)
+        Ts_world_body = run_bodies(any_robot, q)
         for body in range(1, len(arrays.bodies)):
             joint = any_robot.joints[arrays.bodies[body, 1]]
             axis = next(frame.axis for frame in any_robot.frames if frame.joint == joint.name)

@@ -14,7 +14,7 @@ from ikde.solver.engines.found import make_found
 from ikde.solver.figures import compute_figures
 from ikde.solver.search import Found
 from tests.bare_robot import BARE
-from tests.model.test_orientation_reach import make_scara
+from tests.scara import make_scara
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=6, generations=500)
 TARGET = ikde.Target((0.8, 0.5, 1.0))

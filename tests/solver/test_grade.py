@@ -16,9 +16,9 @@ from ikde.solver.engines.found import make_found
 from ikde.solver.figures import AGREEMENT, compute_figures
 from ikde.solver.forward import forward
 from ikde.solver.grade import confirm, grade
-from ikde.solver.problem import make_problem
 from ikde.solver.search import Found
 from ikde.solver.verify import verify
+from tests.problems import problem_of
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=4)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(3)]
@@ -100,10 +100,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
 @pytest.mark.parametrize("verify_rows", ["all", "sample"])
 def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
     """Its figures are true and its verdicts are not: those of plain numpy count as well."""
-    problem, detector = (
-        make_problem(qiao, QUICK, collision=None, near=None, freeze=None),
-        CollisionModel.of(qiao).detector,
-    )
+    problem, detector = problem_of(qiao, QUICK), qiao.detector(None)
     outside = qiao.home + np.where(qiao.slides, 0.0, 9.0)
     for q, asked in ((qiao.home, TARGETS[0]), (outside, ikde.Target(forward(qiao, outside)[qiao.tool][:3, 3]))):
         targets = Targets.of([asked])

@@ -11,10 +11,10 @@ import ikde
 from ikde.model.orientation_reach import orientation_excess_rad
 from ikde.model.reach import reach_excess_m
 from ikde.solver.hints import Probe, hint_at_tolerance, meets, try_longer, try_widening
-from ikde.solver.problem import make_problem
 from ikde.solver.verify import verify
-from tests.model.test_orientation_reach import make_scara
+from tests.problems import problem_of
 from tests.random_robots import make_frame, make_robot, random_robot
+from tests.scara import make_scara
 
 OPEN = ": then the bound no longer excludes the target"
 LM = ikde.SolveSettings(method="lm", restarts=20)
@@ -189,7 +189,7 @@ def test_what_was_tried_is_done_again_and_reaches():
 
 def test_an_engine_that_claims_too_much_makes_no_hint(qiao):
     """A short search is believed only as far as plain numpy confirms it."""
-    problem = make_problem(qiao, LM, collision=None, near=None, freeze={"d_x": 0.0})
+    problem = problem_of(qiao, LM, freeze={"d_x": 0.0})
     probe = Probe(TARGET, 0, 0, 0.0)
     found = probe.run(problem)
     assert probe.confirms(problem, found)
@@ -202,12 +202,12 @@ def test_what_collides_answers_nothing(qiao):
     q = qiao.home.copy()
     q[4] = 2.5
     target = ikde.Target(ikde.forward(qiao, q)[qiao.tool][:3, 3])
-    problems = [make_problem(qiao, LM, collision=name, near=None, freeze=None) for name in (None, "none")]
+    problems = [problem_of(qiao, LM, detector=name) for name in (None, "none")]
     assert [meets(problem, target, q) for problem in problems] == [False, True]
 
 
 def test_a_solution_inside_the_limits_asks_for_no_wider_range(qiao, monkeypatch):
-    problem = make_problem(qiao, LM, collision=None, near=None, freeze=None)
+    problem = problem_of(qiao, LM)
     probe = Probe(TARGET, 0, 0, 0.0)
     inside = probe.run(problem)
     monkeypatch.setattr(Probe, "run", lambda self, problem, **told: inside)
@@ -230,7 +230,7 @@ def test_going_on_begins_where_the_search_ended(qiao, monkeypatch):
     monkeypatch.setattr(Probe, "run", lambda self, problem, **told: asked.append(told))
     monkeypatch.setattr(Probe, "confirms", lambda self, problem, found: False)
     for settings, first in ((LM, 20), (ikde.SolveSettings(), 20), (ikde.SolveSettings(method="lm"), 1000)):
-        problem = make_problem(qiao, settings, collision=None, near=None, freeze=None)
+        problem = problem_of(qiao, settings)
         try_longer(problem, Probe(TARGET, 0, 0, 0.0))
         assert asked.pop() == {"first_attempt": first, "attempts": 2}
 
@@ -244,7 +244,7 @@ def near_miss(robot, *, position_m=0.0, turn_rad=0.0):
     c, s = np.cos(turn_rad), np.sin(turn_rad)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     target = ikde.Target(T[:3, 3] + [position_m, 0.0, 0.0], R_world_tool=T[:3, :3] @ turn)
-    return target, make_problem(robot, ikde.SolveSettings(), collision=None, near=None, freeze=None)
+    return target, problem_of(robot)
 
 
 def ask_tolerance(robot, q, *, detector=None, **miss):
@@ -289,10 +289,10 @@ def test_no_tolerance_makes_up_for_a_collision_or_a_limit(qiao):
     T = ikde.forward(qiao, q)[qiao.tool]
     colliding = ikde.Target(T[:3, 3] + [2e-5, 0.0, 0.0])
     assert hint_at_tolerance(problem, colliding, q, verify(qiao, colliding, q)) is None
-    unchecked = make_problem(qiao, ikde.SolveSettings(), collision="none", near=None, freeze=None)
-    assert hint_at_tolerance(unchecked, colliding, q, verify(qiao, colliding, q, collision="none"))
+    unchecked = problem_of(qiao, detector="none")
+    assert hint_at_tolerance(unchecked, colliding, q, verify(qiao, colliding, q, detector="none"))
     narrow = with_ranges(qiao, {"d_x": (0.1, 0.2)})
-    problem = make_problem(narrow, ikde.SolveSettings(), collision="none", near=None, freeze=None)
+    problem = problem_of(narrow, detector="none")
     assert hint_at_tolerance(problem, target, qiao.home, verify(qiao, target, qiao.home)) is None
 
 

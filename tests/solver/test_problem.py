@@ -7,12 +7,8 @@ import ikde
 from ikde.errors import InputError
 from ikde.kernels.evolution import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
-from ikde.solver.problem import make_problem, pack_search
-
-
-def make(robot, settings=None, **options):
-    given = {"collision": None, "near": None, "freeze": None} | options
-    return make_problem(robot, settings or ikde.SolveSettings(), **given)
+from ikde.solver.problem import pack_search
+from tests.problems import problem_of
 
 
 def frozen_values(robot, problem):
@@ -27,7 +23,7 @@ def frozen_values(robot, problem):
 
 
 def test_nothing_frozen_leaves_the_limits(qiao):
-    problem = make(qiao)
+    problem = problem_of(qiao)
     assert problem.lower.tolist() == qiao.lower.tolist()
     assert problem.upper.tolist() == qiao.upper.tolist()
     assert (problem.frozen, problem.near) == ((), None)
@@ -48,13 +44,13 @@ def test_nothing_frozen_leaves_the_limits(qiao):
     ],
 )
 def test_every_form_of_freeze(qiao, freeze, near, expected):
-    assert frozen_values(qiao, make(qiao, freeze=freeze, near=near)) == expected
+    assert frozen_values(qiao, problem_of(qiao, freeze=freeze, near=near)) == expected
 
 
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_a_joint_may_be_frozen_on_its_limit(qiao, side):
     limit = float(getattr(qiao, side)[4])
-    assert frozen_values(qiao, make(qiao, freeze={"q2": limit})) == {"q2": limit}
+    assert frozen_values(qiao, problem_of(qiao, freeze={"q2": limit})) == {"q2": limit}
 
 
 @pytest.mark.parametrize(
@@ -70,38 +66,38 @@ def test_a_joint_may_be_frozen_on_its_limit(qiao, side):
 )
 def test_a_bad_freeze_is_refused(qiao, freeze, words):
     with pytest.raises(InputError, match=words):
-        make(qiao, freeze=freeze)
+        problem_of(qiao, freeze=freeze)
 
 
 def test_freezing_at_a_start_outside_the_limits_is_refused(qiao):
     with pytest.raises(InputError, match=r"freeze\.d_x: 7 is outside"):
-        make(qiao, near={"d_x": 7.0}, freeze=["d_x"])
+        problem_of(qiao, near={"d_x": 7.0}, freeze=["d_x"])
 
 
 def test_near_is_clipped_to_the_ranges_that_hold(qiao):
-    problem = make(qiao, near={"d_x": 9.0, "q2": -9.0, "q3": 0.5}, freeze={"q3": 0.1})
+    problem = problem_of(qiao, near={"d_x": 9.0, "q2": -9.0, "q3": 0.5}, freeze={"q3": 0.1})
     assert problem.near[[0, 4, 5]].tolist() == [5.0, qiao.lower[4], 0.1]
 
 
 def test_joints_that_near_leaves_out_start_at_home(qiao):
-    problem = make(qiao, near={"d_x": 1.0})
+    problem = problem_of(qiao, near={"d_x": 1.0})
     assert problem.near.tolist() == [1.0, *qiao.home[1:]]
 
 
 def test_the_robots_limits_are_not_written_over(qiao):
     before = qiao.lower.tolist()
-    make(qiao, freeze={"d_x": 0.2})
+    problem_of(qiao, freeze={"d_x": 0.2})
     assert qiao.lower.tolist() == before
 
 
 def test_other_ranges_free_the_joints(qiao):
-    problem = make(qiao, freeze=["d_x"]).with_ranges(qiao.lower, qiao.upper)
+    problem = problem_of(qiao, freeze=["d_x"]).with_ranges(qiao.lower, qiao.upper)
     assert problem.frozen == ()
     assert problem.lower[0] == -5.0
 
 
 def test_changed_settings_leave_the_rest(qiao):
-    problem = make(qiao, freeze=["d_x"])
+    problem = problem_of(qiao, freeze=["d_x"])
     changed = problem.with_settings(restarts=3)
     assert (changed.settings.restarts, changed.frozen, problem.settings.restarts) == (3, ("d_x",), None)
 
@@ -112,14 +108,14 @@ def test_changed_settings_leave_the_rest(qiao):
 )
 def test_the_collision_rule_is_packed(qiao, detector, collision, rule):
     settings = ikde.SolveSettings(collision=collision)
-    assert pack_search(make(qiao, settings, collision=detector)).collision_rule == rule
+    assert pack_search(problem_of(qiao, settings, detector=detector)).collision_rule == rule
 
 
 def test_numbers_are_packed_as_they_are(qiao):
     settings = ikde.SolveSettings(
         population=9, generations=8, weight=1, crossover=0, strategy="best/2", bounds="clip", update="in_place"
     )
-    packed = pack_search(make(qiao, settings))
+    packed = pack_search(problem_of(qiao, settings))
     assert (packed.population, packed.generations, packed.weight, packed.crossover) == (9, 8, 1.0, 0.0)
     assert packed.start_share == 1.0
     assert (STRATEGIES[packed.strategy], REPAIRS[packed.repair], packed.in_place) == ("best/2", "clip", True)
@@ -127,13 +123,13 @@ def test_numbers_are_packed_as_they_are(qiao):
 
 
 def test_an_engine_without_knobs_is_packed_with_their_defaults(qiao):
-    packed, asked = (pack_search(make(qiao, ikde.SolveSettings(method=method))) for method in ("memetic", "de"))
+    packed, asked = (pack_search(problem_of(qiao, ikde.SolveSettings(method=method))) for method in ("memetic", "de"))
     assert packed._replace(ranges=None) == asked._replace(ranges=None)
 
 
 def test_without_near_the_whole_range_is_searched_at_once(qiao):
-    assert pack_search(make(qiao)).first_box == 1.0
-    packed = pack_search(make(qiao, near=qiao.home))
+    assert pack_search(problem_of(qiao)).first_box == 1.0
+    packed = pack_search(problem_of(qiao, near=qiao.home))
     assert packed.first_box == 1 / 64
     assert packed.ranges[2].tolist() == qiao.home.tolist()
 
@@ -141,7 +137,7 @@ def test_without_near_the_whole_range_is_searched_at_once(qiao):
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-12, 1e-300])
 def test_kernels_aim_a_hair_below_the_tolerance(qiao, tolerance):
     settings = ikde.SolveSettings(position_tolerance_m=tolerance, orientation_tolerance_rad=tolerance)
-    packed = pack_search(make(qiao, settings))
+    packed = pack_search(problem_of(qiao, settings))
     for aim in (packed.position_tolerance, packed.orientation_tolerance):
         assert 0.5 * tolerance <= aim < tolerance
         assert tolerance - aim <= 1e-12

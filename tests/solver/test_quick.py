@@ -10,11 +10,11 @@ import pytest
 import ikde
 from ikde.model.target import KINDS
 from ikde.solver.grade import confirm
-from ikde.solver.problem import make_problem
 from ikde.solver.quick import Quick, find_quick
 from ikde.solver.rows import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
+from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
 AUTO = SolveSettings.for_method("auto")
@@ -28,7 +28,7 @@ def solve_quick(robot, target, seed, stream, detector=None):
 
 
 def solve_long(robot, target, settings, seed, stream):
-    problem = make_problem(robot, settings, collision=None, near=None, freeze=None)
+    problem = problem_of(robot, settings)
     return solve_rows(problem, [target], seed=seed, first_stream=stream).row(0)
 
 

@@ -7,15 +7,15 @@ import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
 from ikde.model.target import KINDS
 from ikde.solver import referee as module
-from ikde.solver.problem import make_problem
 from ikde.solver.search import REFUSALS, search
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
+from tests.problems import problem_of
 from tests.targets import make_targets
 
 
 def make(robot, **settings):
-    return make_problem(robot, ikde.SolveSettings(**settings), collision="none", near=None, freeze=None)
+    return problem_of(robot, ikde.SolveSettings(**settings), detector="none")
 
 
 @pytest.mark.parametrize("method", ["lm", "memetic"])
@@ -70,7 +70,7 @@ TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
 
 
 def test_a_refused_row_goes_on_with_its_next_attempt(qiao, monkeypatch):
-    problem = make_problem(qiao, ikde.SolveSettings(method="lm"), collision=None, near=None, freeze=None)
+    problem = problem_of(qiao, ikde.SolveSettings(method="lm"))
     plain = search(problem, TARGETS, seed=7, streams=range(5))
     refuse(monkeypatch, {1, 3}, {3})
     found = search(problem, TARGETS, seed=7, streams=range(5))

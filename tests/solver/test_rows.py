@@ -5,11 +5,11 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
-from ikde.solver.problem import make_problem
 from ikde.solver.result import STOP_REASONS
 from ikde.solver.rows import solve_rows
 from ikde.solver.search import ENGINES
 from ikde.solver.verify import verify_many
+from tests.problems import problem_of
 
 QUICK = ikde.SolveSettings(population=20, generations=200, restarts=3)
 SWIFT = ikde.SolveSettings(population=6, generations=1, restarts=1)
@@ -18,7 +18,7 @@ TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(6)]
 
 @pytest.fixture
 def problem(qiao):
-    return make_problem(qiao, QUICK, collision=None, near=None, freeze=None)
+    return problem_of(qiao, QUICK)
 
 
 def test_a_row_is_the_solve_of_its_stream(qiao, problem):
@@ -84,7 +84,7 @@ def watch_plain_numpy(monkeypatch):
     [("all", 0, 130), ("none", 0, 0), ("sample", 0, 3), ("sample", 1, 2), ("sample", 64, 3)],
 )
 def test_plain_numpy_grades_what_is_asked(qiao, monkeypatch, verify, first_stream, graded):
-    problem = make_problem(qiao, SWIFT, collision=None, near=None, freeze=None)
+    problem = problem_of(qiao, SWIFT)
     calls = watch_plain_numpy(monkeypatch)
     rows = solve_rows(
         problem, TARGETS[:1] * 130, seed=7, first_stream=first_stream, probe=False, verify=verify, threads=1
@@ -111,16 +111,16 @@ def test_the_grade_of_plain_numpy_is_made_when_it_is_looked_at(qiao, problem):
 
 
 def test_self_collision_is_judged_by_the_safe_distance(qiao):
-    rows = solve_rows(make_problem(qiao, QUICK, collision=None, near=None, freeze=None), TARGETS, seed=7)
+    rows = solve_rows(problem_of(qiao, QUICK), TARGETS, seed=7)
     assert (rows.self_collision == (rows.clearance_m <= 0.0)).all()
     far = ikde.Detector(name="far", spheres="improved", pairs="formula_22", safe_distance_m=1.0)
-    near = solve_rows(make_problem(qiao, SWIFT, collision=far, near=None, freeze=None), TARGETS, seed=7, probe=False)
+    near = solve_rows(problem_of(qiao, SWIFT, detector=far), TARGETS, seed=7, probe=False)
     assert near.self_collision.tolist() == [True] * 6
     assert not near.reached.any()
 
 
 def test_without_a_detector_self_collision_is_not_checked(qiao):
-    problem = make_problem(qiao, QUICK, collision="none", near=None, freeze=None)
+    problem = problem_of(qiao, QUICK, detector="none")
     rows = solve_rows(problem, TARGETS, seed=7)
     assert rows.self_collision.tolist() == [result.self_collision for result in rows] == [None] * 6
     assert rows.reached.all()

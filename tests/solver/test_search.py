@@ -13,8 +13,8 @@ from ikde.solver import search as module
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.engines.found import ENGINES
-from ikde.solver.problem import make_problem
 from ikde.solver.search import choose_engines, search, usable_cores
+from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
 CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=3)
@@ -23,7 +23,7 @@ TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
 
 @pytest.fixture
 def problem(qiao):
-    return make_problem(qiao, CHEAP, collision=None, near=None, freeze=None)
+    return problem_of(qiao, CHEAP)
 
 
 def bits(found):
@@ -59,7 +59,7 @@ def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao,
         return honest(robot, positions, lower, upper)
 
     monkeypatch.setattr(module, "reach_excess_m", watched)
-    problem = make_problem(qiao, ikde.SolveSettings(method="de", restarts=9), collision=None, near=None, freeze=None)
+    problem = problem_of(qiao, ikde.SolveSettings(method="de", restarts=9))
     found = search(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=1, streams=range(6))
     assert asked == [1]
     assert np.flatnonzero(found.excess_m).tolist() == [5]
@@ -70,7 +70,7 @@ def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao,
 def test_the_first_few_attempts_are_part_of_the_budget(qiao):
     for restarts in (1, 3, 4, 5, 21):
         settings = ikde.SolveSettings(population=6, generations=1, restarts=restarts)
-        problem = make_problem(qiao, settings, collision=None, near=None, freeze=None)
+        problem = problem_of(qiao, settings)
         assert run(problem).counts[:, ATTEMPTS].tolist() == [restarts] * 5
         whole, cut = run(problem, attempts=restarts), run(problem)
         assert bits(whole) == bits(cut)
@@ -81,7 +81,7 @@ def test_lanes_that_share_a_call_do_not_change_the_bits(qiao, monkeypatch, lanes
     settings = ikde.SolveSettings(population=8, generations=40, restarts=6, position_tolerance_m=0.02)
     far = ikde.Target((50.0, 0.0, 1.0))  # proved out of reach: fewer attempts than its neighbours
     targets = [*TARGETS, far, *TARGETS]
-    problem = make_problem(qiao, settings, collision=None, near=None, freeze=None)
+    problem = problem_of(qiao, settings)
     whole = search(problem, targets, seed=7, streams=range(11))
     assert len(set(whole.counts[:, ATTEMPTS])) > 2
     monkeypatch.setattr(de, "EVALUATIONS_PER_CALL", 10**9)
@@ -92,7 +92,7 @@ def test_lanes_that_share_a_call_do_not_change_the_bits(qiao, monkeypatch, lanes
 def test_short_searches_share_a_call_and_long_ones_do_not(qiao):
     def lanes(**changes):
         settings = ikde.SolveSettings.for_method("de").with_changes(**changes)
-        return de._lanes_per_call(make_problem(qiao, settings, collision=None, near=None, freeze=None))
+        return de._lanes_per_call(problem_of(qiao, settings))
 
     assert lanes() == 1
     assert lanes(generations=1, restarts=1) == 64
@@ -122,8 +122,9 @@ def test_auto_takes_the_closed_form_where_the_arm_alone_may_move(qiao, frozen, e
 @pytest.mark.parametrize(("frozen", "attempts"), [(FROZEN_BASE, 1), (BASE_AND_ELBOW, 1), ({"d_x"}, 20)])
 def test_the_branches_of_an_arm_on_a_frozen_base_are_enumerated_once(qiao, frozen, attempts):
     target, settings = make_target(qiao, qiao.home, "pose"), ikde.SolveSettings(method="analytic", restarts=20)
-    always_colliding = {"collision": "single", "near": None, "freeze": dict.fromkeys(frozen, 0.0)}
-    found = search(make_problem(qiao, settings, **always_colliding), [target], seed=1, streams=[0])
+    found = search(
+        problem_of(qiao, settings, detector="single", freeze=dict.fromkeys(frozen, 0.0)), [target], seed=1, streams=[0]
+    )
     assert found.counts[0, [REACHED, ATTEMPTS]].tolist() == [0, attempts]
 
 
@@ -148,9 +149,7 @@ def test_later_attempts_are_other_attempts(problem):
 
 def test_a_reached_target_is_not_searched_further(qiao):
     settings = ikde.SolveSettings.for_method("auto")
-    found = search(
-        make_problem(qiao, settings, collision=None, near=None, freeze=None), TARGETS, seed=1, streams=range(5)
-    )
+    found = search(problem_of(qiao, settings), TARGETS, seed=1, streams=range(5))
     assert found.counts[:, REACHED].tolist() == [1] * 5
     assert found.counts[:, ATTEMPTS].max() < settings.budget("lm")
 
@@ -206,7 +205,7 @@ def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collisi
     for stream in range(40):
         q = free_q(qiao, rng)
         frozen = dict(zip(qiao.joint_names[:3], q[:3].tolist(), strict=True))
-        problem = make_problem(qiao, ikde.SolveSettings(), collision=None, near=None, freeze=frozen)
+        problem = problem_of(qiao, freeze=frozen)
         found = search(problem, [make_target(qiao, q, kind)], seed=1, streams=[stream])
         assert found.counts[0, REACHED]
         if ENGINES[found.engine[0]] == later and found.counts[0, COLLIDING]:
@@ -224,7 +223,7 @@ def clock(monkeypatch):
 def make_endless(robot, method, **settings):
     """A question that is never answered: every configuration collides."""
     settings = ikde.SolveSettings(method=method, **{"restarts": 10**6, "timeout_s": 5.0, **settings})
-    return make_problem(robot, settings, collision="single", near=None, freeze=None)
+    return problem_of(robot, settings, detector="single")
 
 
 BRIEF = {"population": 6, "generations": 1}
@@ -264,7 +263,7 @@ def test_a_timeout_that_is_not_reached_changes_no_bits(qiao, rng, method, target
 
     def run(timeout_s):
         settings = ikde.SolveSettings(method=method, restarts=3, timeout_s=timeout_s)
-        problem = make_problem(qiao, settings, collision=None, near=None, freeze=None)
+        problem = problem_of(qiao, settings)
         return search(problem, asked, seed=1, streams=range(targets))
 
     assert bits(run(None)) == bits(run(1e6))

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.solver.problem import make_problem
 from ikde.solver.search import search
 from ikde.solver.stopping import get_brake, stoppable
+from tests.problems import problem_of
 
 ENDLESS = ikde.SolveSettings(method="de", restarts=10**6, generations=20, position_tolerance_m=1e-12)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
@@ -32,7 +32,7 @@ def test_a_brake_holds_where_it_was_taken_and_nowhere_else():
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_search_on_another_thread_stops(qiao, threads):
-    problem, stop, ended = make_problem(qiao, ENDLESS, collision=None, near=None, freeze=None), threading.Event(), []
+    problem, stop, ended = problem_of(qiao, ENDLESS), threading.Event(), []
 
     def run():
         with stoppable(stop):
@@ -51,7 +51,7 @@ def test_a_search_on_another_thread_stops(qiao, threads):
 
 def test_a_search_that_is_not_told_to_stop_is_the_same(qiao):
     settings = ikde.SolveSettings(method="de", population=8, generations=5, restarts=3)
-    problem = make_problem(qiao, settings, collision=None, near=None, freeze=None)
+    problem = problem_of(qiao, settings)
     plain = search(problem, [TARGET] * 3, seed=1, streams=range(3))
     with stoppable(threading.Event()):
         watched = search(problem, [TARGET] * 3, seed=1, streams=range(3))

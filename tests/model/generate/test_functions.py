@@ -11,9 +11,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps, order_pairs
 from ikde.model.generate.proofs import drop_implied, drop_proved
-from ikde.model.pack import pack_robot, pack_targets
-from ikde.model.target import Target
-from tests import reference
+from ikde.model.pack import pack_detector, pack_robot, pack_targets
 from tests.collision_robots import (
     CASES,
     RANDOM,
@@ -26,6 +24,7 @@ from tests.collision_robots import (
 )
 from tests.conftest import random_q
 from tests.random_robots import random_robot
+from tests.targets import make_targets
 from tests.uncompiled import quietly, run_text
 
 FEWER = [*SHIPPED, *RANDOM[:8]]
@@ -183,12 +182,8 @@ def test_lanes_step_as_one_at_a_time(seed, kind, rng):
     arrays, ranges = pack_robot(robot), np.array([robot.lower, robot.upper])
     texts = format_step(arrays, kind), format_steps(arrays, kind)
     functions = run_text("".join(texts))
-    targets = []
-    for q in random_q(robot, rng, LANES):
-        T = reference.compute_frames(robot, q)[robot.tool]
-        extra = {"position": {}, "axis": {"axis_world_tool": T[:3, 2]}, "pose": {"R_world_tool": T[:3, :3]}}[kind]
-        targets.append(Target(T[:3, 3], **extra))
-    packed, Q = pack_targets(targets), random_q(robot, rng, LANES)
+    packed = pack_targets(make_targets(robot, random_q(robot, rng, LANES), kind))
+    Q = random_q(robot, rng, LANES)
     q, T, errors = Q.T.ravel().copy(), packed.T_world_tool.reshape(LANES, 12).T.ravel().copy(), np.zeros(2 * LANES)
     row = np.arange(LANES)
     row[-1], q[LANES - 1 :: LANES] = -1, np.nan

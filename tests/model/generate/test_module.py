@@ -19,32 +19,14 @@ from ikde.errors import CacheWarning
 from ikde.kernels import cache_files, cache_folder
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble, module
-from ikde.model.robot import Detector
 from ikde.model.target import KINDS
 from tests.collision_robots import find_gaps
 from tests.hostile_names import payload, rename
-from tests.random_robots import make_frame, make_robot, random_robot
+from tests.random_robots import random_robot
+from tests.tiny_robot import tiny_robot
 
 ROOT = Path(__file__).parents[3]
 needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
-
-
-def tiny_robot():
-    """One joint, whose tool can touch a post."""
-    points = [make_frame("post", "world", (0.5, 0.0, 0.2)), make_frame("tool", "arm", (0.5, 0, 0))]
-    frames = [make_frame("arm", "world", (0, 0, 0.2), joint="turn", axis=(0, 0, 1)), *points]
-    row = ikde.model.robot.SphereRow
-    rows = tuple(row(component=name, start=name, end=name, radius_m=0.1) for name in ("post", "tool"))
-    return make_robot(
-        {"turn": "revolute"},
-        frames,
-        lower=-2.0,
-        upper=2.0,
-        approximations={"spheres": rows},
-        pair_lists={"some": (("post", "tool"),)},
-        detectors={"some": Detector(name="some", spheres="spheres", pairs="some")},
-        default_detector="some",
-    )
 
 
 @pytest.fixture
@@ -283,8 +265,9 @@ import json, pathlib, sys, time
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
-from tests.model.generate.test_module import tiny_robot
+from tests.tiny_robot import tiny_robot
 import numpy as np
+from tests.tiny_robot import tiny_robot
 robot = tiny_robot()
 while not pathlib.Path(sys.argv[1]).exists():
     time.sleep(0.01)

@@ -5,16 +5,22 @@ import numpy as np
 import ikde
 from ikde.solver.engines.engine import Question
 from ikde.solver.engines.found import make_found
-from ikde.solver.problem import make_problem
+from ikde.solver.engines.pool import make_seeds
+from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
 
 def make_question(robot, rng, kinds, *, settings=None, freeze=None, near=None, seed=1):
     """A question with a reachable target of each kind."""
-    problem = make_problem(robot, settings or ikde.SolveSettings(), collision=None, near=near, freeze=freeze)
+    problem = problem_of(robot, settings, near=near, freeze=freeze)
     targets = ikde.Targets.of([make_target(robot, free_q(robot, rng), kind) for kind in kinds])
     found = make_found(problem, len(targets))
     return Question(problem, targets, found, seed=seed, streams=range(len(targets))), targets
+
+
+def make_pool(robot, kind="pose", **options):
+    """Seeds for targets of a kind."""
+    return make_seeds(problem_of(robot, **options), kind)
 
 
 def assert_solved(question, targets):

@@ -8,7 +8,7 @@ from ikde.kernels.damped import compute_turn
 from ikde.model.pack import pack_targets
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.engines.engine import make_descent, make_ranges, measure_turn
-from ikde.solver.problem import make_problem
+from tests.problems import problem_of
 from tests.solver.engines.questions import make_question
 
 
@@ -23,16 +23,16 @@ def test_attempts_go_to_open_rows_of_the_kind_only(qiao, rng):
 
 def test_ranges_hold_limits_and_the_middle_or_near(qiao):
     settings = ikde.SolveSettings()
-    plain = make_ranges(make_problem(qiao, settings, collision=None, near=None, freeze=None))
+    plain = make_ranges(problem_of(qiao, settings))
     assert (plain == [qiao.lower, qiao.upper, 0.5 * (qiao.lower + qiao.upper)]).all()
-    near = make_ranges(make_problem(qiao, settings, collision=None, near=qiao.home, freeze={"d_x": 0.25}))
+    near = make_ranges(problem_of(qiao, settings, near=qiao.home, freeze={"d_x": 0.25}))
     assert near[:2, 0].tolist() == [0.25, 0.25]
     assert (near[2, 1:] == qiao.home[1:]).all()
 
 
 def test_tolerances_are_a_hair_smaller_than_asked(qiao):
     asked = ikde.SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-3)
-    descent = make_descent(make_problem(qiao, asked, collision=None, near=None, freeze=None), "pose")
+    descent = make_descent(problem_of(qiao, asked), "pose")
     assert 0.99e-9 < descent.position_tolerance < 1e-9
     assert descent.orientation_tolerance == pytest.approx(2.0 * np.sin(0.5e-3) - 1e-12, rel=1e-15)
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-import ikde
 from ikde.solver.engines.found import ENGINES, make_found
-from ikde.solver.problem import make_problem
 from ikde.solver.settings import RESTARTS
+from tests.problems import problem_of
 
 
 def test_nothing_is_found_at_first(qiao):
-    found = make_found(make_problem(qiao, ikde.SolveSettings(), collision=None, near=None, freeze=None), 3)
+    found = make_found(problem_of(qiao), 3)
     assert found.q.shape == (3, 9)
     assert np.isinf(found.score).all()
     assert not found.counts.any()
@@ -17,7 +16,7 @@ def test_nothing_is_found_at_first(qiao):
 
 
 def test_a_row_is_one_targets_share(qiao):
-    found = make_found(make_problem(qiao, ikde.SolveSettings(), collision=None, near=None, freeze=None), 3)
+    found = make_found(problem_of(qiao), 3)
     found.counts[1, 2], found.q[1] = 7, 0.5
     assert found.row(1).counts.tolist() == [[0, 0, 7, 0, 0]]
     assert (found.row(1).q == 0.5).all()

@@ -10,7 +10,6 @@ from ikde.kernels import cache_folder
 from ikde.kernels.seeds import find_cell
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
-from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Targets
 from ikde.solver.engines import pool as module
 from ikde.solver.engines.pool import (
@@ -19,20 +18,14 @@ from ikde.solver.engines.pool import (
     digest_pool,
     find_base,
     load_kernels,
-    make_seeds,
     rotation_length_m,
 )
-from ikde.solver.problem import make_problem
 from tests.hostile_names import rename
-
-
-def pool(robot: Robot, kind: str = "pose", **options):
-    told = {"collision": None, "near": None, "freeze": None} | options
-    return make_seeds(make_problem(robot, ikde.SolveSettings(), **told), kind)
+from tests.solver.engines.questions import make_pool
 
 
 def test_the_pool_is_free_and_spread_over_tool_poses(qiao):
-    seeds = pool(qiao)
+    seeds = make_pool(qiao)
     assert 10_000 < len(seeds.q) < DRAWN
     assert (seeds.q[:, :3] == 0.0).all()  # the base is set for each target
     assert not any(ikde.check(qiao, q).collision for q in seeds.q[::512])
@@ -46,7 +39,7 @@ def test_the_pool_is_free_and_spread_over_tool_poses(qiao):
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_configuration_lies_in_the_cell_that_it_is_sorted_into(name, kind):
     robot = ikde.load_robot(name)
-    seeds = pool(robot, kind=kind, freeze={robot.joint_names[-1]: 0.1})
+    seeds = make_pool(robot, kind=kind, freeze={robot.joint_names[-1]: 0.1})
     targets = Targets.packed(np.zeros(len(seeds.q), dtype=np.int64), seeds.T_world_tool.T.reshape(-1, 3, 4).copy())
     for row in range(0, len(seeds.q), 251):
         cell = find_cell(seeds, pack_targets(targets), row)
@@ -54,14 +47,14 @@ def test_every_configuration_lies_in_the_cell_that_it_is_sorted_into(name, kind)
 
 
 def test_frozen_joints_stay_and_the_base_then_helps_no_more(qiao):
-    seeds = pool(qiao, freeze={"d_x": 0.3, "q2": 0.1})
+    seeds = make_pool(qiao, freeze={"d_x": 0.3, "q2": 0.1})
     assert (seeds.q[:, 0] == 0.3).all()
     assert (seeds.q[:, 4] == 0.1).all()
     assert seeds.base.tolist() == [-1, -1, -1]
 
 
 def test_near_needs_no_pool(qiao):
-    seeds = pool(qiao, near=qiao.home)
+    seeds = make_pool(qiao, near=qiao.home)
     assert len(seeds.q) == 0
     assert seeds.first_box < 1.0
 
@@ -122,7 +115,7 @@ def test_a_robot_has_one_pool_with_a_cache_and_without(monkeypatch, tmp_path):
         for path in () if usable else tmp_path.rglob("*.pool"):
             path.write_text("somebody else's")
         module._find_pool.cache_clear()
-        bits.append([np.asarray(field).tobytes() for field in pool(robot, "position")])
+        bits.append([np.asarray(field).tobytes() for field in make_pool(robot, "position")])
     module._find_pool.cache_clear()
     assert bits[0] == bits[1] == bits[2]
     assert [path.suffix for path in (tmp_path / cache_folder.ROBOTS).iterdir()] == [".pool"]

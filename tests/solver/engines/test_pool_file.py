@@ -9,18 +9,23 @@ import pytest
 from ikde.errors import CacheWarning
 from ikde.kernels import cache_files
 from ikde.solver.engines.pool_file import load_pool, save_pool
-from tests.solver.engines.test_pool import pool
+from tests.solver.engines.questions import make_pool
 
 
 def test_kernels_take_all_seeds_alike(qiao, tmp_path):
     """Drawn, loaded, near something or frozen: one type, one compilation."""
-    save_pool(tmp_path / "pool.npz", pool(qiao))
-    every = [pool(qiao), load_pool(tmp_path / "pool.npz"), pool(qiao, near=qiao.home), pool(qiao, freeze={"q1": 0.1})]
+    save_pool(tmp_path / "pool.npz", make_pool(qiao))
+    every = [
+        make_pool(qiao),
+        load_pool(tmp_path / "pool.npz"),
+        make_pool(qiao, near=qiao.home),
+        make_pool(qiao, freeze={"q1": 0.1}),
+    ]
     assert len({numba.typeof(seeds) for seeds in every}) == 1
 
 
 def test_what_was_saved_comes_back(qiao, tmp_path):
-    seeds = pool(qiao)
+    seeds = make_pool(qiao)
     save_pool(tmp_path / "pool.npz", seeds)
     loaded = load_pool(tmp_path / "pool.npz")
     for ours, theirs in zip(seeds, loaded, strict=True):
@@ -33,7 +38,7 @@ def test_what_was_saved_comes_back(qiao, tmp_path):
 def test_a_file_that_was_cut_is_none(qiao, tmp_path, share, monkeypatch):
     monkeypatch.setattr(cache_files, "TOLD", set())
     path = tmp_path / "pool.npz"
-    save_pool(path, pool(qiao))
+    save_pool(path, make_pool(qiao))
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
     with pytest.warns(CacheWarning, match="is damaged"):
@@ -47,7 +52,7 @@ def test_a_full_disk_is_no_error(qiao, tmp_path, monkeypatch):
     monkeypatch.setattr(cache_files, "TOLD", set())
     monkeypatch.setattr(os, "fsync", fail)
     with pytest.warns(CacheWarning, match="No space left on device"):
-        save_pool(tmp_path / "pool.npz", pool(qiao))
+        save_pool(tmp_path / "pool.npz", make_pool(qiao))
     assert list(tmp_path.iterdir()) == []
 
 
