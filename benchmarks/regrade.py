@@ -26,8 +26,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.machine import describe
-from tests.asking import KINDS, account_for_pairs, ask_and_regrade, load_text
+from tests.asking import KINDS, account_for_pairs, ask_and_regrade
 from tests.regrade import Grader
+from tests.robot_files import load_text
 from tests.robot_texts import random_robot_text
 
 RESULTS = Path(__file__).parent / "results" / "regrade.json"

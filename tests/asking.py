@@ -5,8 +5,6 @@ Targets come from the file as well: half from random configurations, half from a
 
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -140,14 +138,6 @@ def _draw_freeze(grader, rng):
 
 
 # ---- answers
-
-
-def load_text(text):
-    """The robot in a file with this text."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "robot.yaml"
-        path.write_text(text, encoding="utf-8")
-        return ikde.load_robot(path)
 
 
 def ask(robot, question, threads=None):

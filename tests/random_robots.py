@@ -1,5 +1,6 @@
 """Random robots: trees with branches, fixed frames, turns and slides about any axis, rows of spheres, pairs."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -49,6 +50,14 @@ def make_robot(kinds, frames, *, lower=-1.0, upper=1.0, tool="tool", **changes):
     empty = {"approximations": {}, "adjacent": (), "pair_lists": {}, "detectors": {}, "default_detector": "none"}
     names = {"name": "made", "title": "made", "convention": "own", "conventions": {}, "provenance": {}}
     return check_robot(Robot(joints=joints, frames=tuple(frames), tool=tool, **{**empty, **names, **changes}))
+
+
+def with_ranges(robot, ranges):
+    """The robot with other limits of some joints, {name: (lower, upper)}."""
+    joints = [
+        replace(j, lower=ranges[j.name][0], upper=ranges[j.name][1]) if j.name in ranges else j for j in robot.joints
+    ]
+    return replace(robot, joints=tuple(joints))
 
 
 def make_frame(name, parent, xyz=(0, 0, 0), *, rpy=(0, 0, 0), joint=None, axis=None):

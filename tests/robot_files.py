@@ -1,4 +1,9 @@
-"""A robot file as a user writes it."""
+"""A robot file as a user writes it, and the robot in such a text."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import ikde
 
 GOOD = """\
 name: two
@@ -24,3 +29,11 @@ detectors:
 default_detector: coarse
 """
 NAMES = ("two", "ours", "slide", "turn", "rail", "arm", "tip", "coarse", "box", "bar", "all")  # in GOOD
+
+
+def load_text(text):
+    """The robot in a file with this text."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "robot.yaml"
+        path.write_text(text, encoding="utf-8")
+        return ikde.load_robot(path)

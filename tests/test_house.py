@@ -162,3 +162,15 @@ def test_provenance_has_three_words():
 def test_the_tests_mirror_the_package():
     folders = {path.parent.relative_to(PACKAGE) for path in SOURCES if has_code(path)}
     assert [str(folder) for folder in folders if not (ROOT / "tests" / folder).is_dir()] == []
+
+
+def test_no_test_file_imports_from_another():
+    def borrows(path):
+        names = []
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                names += [f"{getattr(node, 'module', '')}.{alias.name}" for alias in node.names]
+        return [name for name in names if ".test_" in name]
+
+    borrowed = {path.name: borrows(path) for path in (ROOT / "tests").rglob("*.py")}
+    assert {name: found for name, found in borrowed.items() if found} == {}

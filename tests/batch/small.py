@@ -18,6 +18,10 @@ def make_targets(count):
     return [ikde.Target(point) for point in points]
 
 
+def target_bits(targets):
+    return [(t.kind, t.p_world_tool.tobytes(), t.R_world_tool.tobytes()) for t in targets]
+
+
 def make_arm(name="auto", detector=None, method="auto", **settings):
     chosen = ikde.SolveSettings.for_method(method).with_changes(**settings)
     problem = problem_of(ROBOT, chosen, detector=detector)

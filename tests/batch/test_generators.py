@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.errors import InputError
 from ikde.solver.search import search
+from tests.batch.small import target_bits
 from tests.problems import problem_of
 from tests.random_robots import random_robot
 
@@ -28,10 +29,6 @@ def reachable(robot, goal="pose", count=30, seed=3, detector=None):
 
 def positions(source, first=0, last=10**9):
     return np.array([target.p_world_tool for target in source.read(first, last)])
-
-
-def bits(targets):
-    return [(t.kind, t.p_world_tool.tobytes(), t.R_world_tool.tobytes()) for t in targets]
 
 
 def test_a_grid_has_its_corners_and_runs_z_first():
@@ -81,11 +78,11 @@ def test_reachable_targets_are_reached(qiao):
 @given(cut=st.integers(0, 30), seed=st.integers(0, 2**64 - 1))
 def test_any_cut_gives_the_same_targets(qiao, cut, seed):
     for source in (reachable(qiao, seed=seed), make_box(START, TO, 30, seed, {}), make_grid(START, TO, (2, 3, 5), {})):
-        assert bits(source.read(0, cut)) + bits(source.read(cut, 99)) == bits(source.read(0, 30))
+        assert target_bits(source.read(0, cut)) + target_bits(source.read(cut, 99)) == target_bits(source.read(0, 30))
 
 
 def test_seeds_give_different_targets(qiao):
-    assert bits(reachable(qiao, seed=1).read(0, 5)) != bits(reachable(qiao, seed=2).read(0, 5))
+    assert target_bits(reachable(qiao, seed=1).read(0, 5)) != target_bits(reachable(qiao, seed=2).read(0, 5))
 
 
 def test_a_robot_that_is_never_free_is_named():

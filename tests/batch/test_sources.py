@@ -8,14 +8,11 @@ from hypothesis import strategies as st
 from ikde.batch.sources import ListSource, PointSource
 from ikde.files.table_targets import TableSource
 from ikde.model.target import Target
+from tests.batch.small import target_bits
 
 few = settings(max_examples=25)
 POSITIONS = np.arange(30.0).reshape(10, 3)
 AXES = np.array([[1.0 + k, 2.0, 3.0 - k] for k in range(10)])
-
-
-def bits(targets):
-    return [(t.kind, t.p_world_tool.tobytes(), t.R_world_tool.tobytes()) for t in targets]
 
 
 SOURCES = {
@@ -32,9 +29,9 @@ SOURCES = {
 @few
 @given(cut=st.integers(0, 10))
 def test_any_cut_gives_the_same_targets(source, cut):
-    whole = bits(source.read(0, source.count))
+    whole = target_bits(source.read(0, source.count))
     assert len(whole) == source.count == 10
-    assert bits(source.read(0, cut)) + bits(source.read(cut, 10)) == whole
+    assert target_bits(source.read(0, cut)) + target_bits(source.read(cut, 10)) == whole
 
 
 @pytest.mark.parametrize("source", SOURCES.values(), ids=SOURCES)

@@ -34,6 +34,11 @@ def run_spheres(robot, detector, q):
     return packed, centres, bounds
 
 
+def make_state(word=0):
+    """The state of a random stream."""
+    return np.array([word], dtype=np.uint64)
+
+
 def freeze(values, dtype=np.float64):
     """A read-only, C-ordered array, as `pack` gives them."""
     array = np.array(values, dtype=dtype, order="C")

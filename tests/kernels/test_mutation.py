@@ -7,14 +7,11 @@ from hypothesis import strategies as st
 
 from ikde.kernels.mutation import LARGEST_DRAW, REPAIRS, STRATEGIES, draw_members, mutate, repair_bound
 from tests import reference
+from tests.kernels.arrays import make_state
 
 PARENT, LOWER, UPPER = 0.25, -1.0, 2.0
 OUTSIDE = st.floats(-50.0, -1.0, exclude_max=True) | st.floats(2.0, 50.0, exclude_min=True)
 few = settings(max_examples=60)
-
-
-def make_state(word):
-    return np.array([word], dtype=np.uint64)
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from ikde.kernels.rng import next_index, next_uniform, next_word, seed_stream
 from tests import reference
+from tests.kernels.arrays import make_state
 
 few = settings(max_examples=100)
 words = st.integers(0, 2**64 - 1)
@@ -17,10 +18,6 @@ pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarn
 
 # The first words from state 0, as published with the reference implementation [Steele2014; Vigna].
 PUBLISHED = [0xE220A8397B1DCDAF, 0x6E789E6AA1B965F4, 0x06C45D188009454F, 0xF88BB8A8724C81EC, 0x1B39896A51A8749B]
-
-
-def make_state(word=0):
-    return np.array([word], dtype=np.uint64)
 
 
 def seeded(seed, target_index, attempt):

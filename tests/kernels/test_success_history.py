@@ -24,12 +24,9 @@ from ikde.kernels.success_history import (
     update_memory,
 )
 from tests import reference, reference_memetic
+from tests.kernels.arrays import make_state
 
 pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # numpy's scalars, uncompiled
-
-
-def make_state(seed):
-    return np.array([seed], dtype=np.uint64)
 
 
 def draw(kernel, count, *arguments, seed=5):

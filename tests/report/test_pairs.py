@@ -14,15 +14,10 @@ from ikde.model.pack import pack_robot
 from ikde.report.pairs import format_pairs, pairs_json
 from ikde.report.units import Units
 from tests.bare_robot import BARE
+from tests.robot_files import load_text
 
 MM = Units("mm", "deg")
 ALWAYS = BARE.replace("radius: 0.35", "radius: 0.9")
-
-
-def load(text, tmp_path):
-    path = tmp_path / "robot.yaml"
-    path.write_text(text, encoding="utf-8")
-    return ikde.load_robot(path)
 
 
 def show(robot, detector, units=MM, width=100):
@@ -81,13 +76,10 @@ def test_text_has_a_line_a_pair(any_robot):
         ]
 
 
-def test_text_counts_pairs_first(qiao, tmp_path):
-    assert show(qiao, CollisionModel.of(qiao).detector).startswith(
-        "collision: detector improved compares 35 pairs, 20 left out\n"
-    )
-    robot = load(
-        BARE.replace("{spheres: s,", "{spheres: s, pairs: one,") + "pairs: {one: {pairs: {platform: [forearm]}}}",
-        tmp_path,
+def test_text_counts_pairs_first(qiao):
+    assert show(qiao, qiao.detector(None)).startswith("collision: detector improved compares 35 pairs, 20 left out\n")
+    robot = load_text(
+        BARE.replace("{spheres: s,", "{spheres: s, pairs: one,") + "pairs: {one: {pairs: {platform: [forearm]}}}"
     )
     assert show(robot, CollisionModel.of(robot).detector).startswith(
         "collision: detector d compares 1 pair, 2 left out\n"
@@ -108,8 +100,8 @@ def test_no_detector_is_said(name, words):
 
 
 @pytest.mark.parametrize("width", [40, 100])
-def test_pairs_that_always_touch_are_named_with_the_line_to_add_in_one_piece(width, tmp_path):
-    robot = load(ALWAYS, tmp_path)
+def test_pairs_that_always_touch_are_named_with_the_line_to_add_in_one_piece(width):
+    robot = load_text(ALWAYS)
     line = 'adjacent: {pairs: {platform: {upper_arm: "why they may touch"}}}'
     assert line in show(robot, CollisionModel.of(robot).detector, width=width).splitlines()
     assert "platform - upper_arm touches in each of" in show(robot, CollisionModel.of(robot).detector)
@@ -118,7 +110,7 @@ def test_pairs_that_always_touch_are_named_with_the_line_to_add_in_one_piece(wid
     assert ["platform", "upper_arm"] in [[pair["a"], pair["b"]] for pair in data["compared"]]
 
 
-def test_names_and_reasons_in_brackets_are_shown_as_they_are(tmp_path):
-    robot = load(BARE.replace("upper_arm, from", "'[red]arm', from"), tmp_path)
-    assert "platform - [red]arm" in show(robot, CollisionModel.of(robot).detector)
-    assert "[red]arm - forearm" in show(robot, replace(CollisionModel.of(robot).detector))
+def test_names_and_reasons_in_brackets_are_shown_as_they_are():
+    robot = load_text(BARE.replace("upper_arm, from", "'[red]arm', from"))
+    assert "platform - [red]arm" in show(robot, robot.detector(None))
+    assert "[red]arm - forearm" in show(robot, replace(robot.detector(None)))

@@ -13,20 +13,12 @@ from ikde.model.reach import reach_excess_m
 from ikde.solver.hints import Probe, hint_at_tolerance, meets, try_longer, try_widening
 from ikde.solver.verify import verify
 from tests.problems import problem_of
-from tests.random_robots import make_frame, make_robot, random_robot
+from tests.random_robots import make_frame, make_robot, random_robot, with_ranges
 from tests.scara import make_scara
 
 OPEN = ": then the bound no longer excludes the target"
 LM = ikde.SolveSettings(method="lm", restarts=20)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
-
-
-def with_ranges(robot, ranges):
-    """The robot with other limits of some joints, {name: (lower, upper)}."""
-    joints = [
-        replace(j, lower=ranges[j.name][0], upper=ranges[j.name][1]) if j.name in ranges else j for j in robot.joints
-    ]
-    return replace(robot, joints=tuple(joints))
 
 
 def hint(robot, target, freeze=None, settings=LM):

@@ -10,16 +10,11 @@ from ikde.model.collision_model import CollisionModel
 from ikde.solver import touching as module
 from ikde.solver.touching import TO_FILL_IN, find_always_touching
 from tests.bare_robot import BARE
+from tests.robot_files import load_text
 
 FAT = BARE.replace("radius: 0.35", "radius: 0.9")  # the platform reaches the shoulder, and the upper arm with it
 FATTER = BARE.replace("radius: 0.35", "radius: 2.0")
 DECLARED = 'adjacent:\n  pairs:\n    platform: {upper_arm: "made of one casting"}\n'
-
-
-def load(text, tmp_path):
-    path = tmp_path / "robot.yaml"
-    path.write_text(text, encoding="utf-8")
-    return ikde.load_robot(path)
 
 
 def find(robot):
@@ -39,38 +34,35 @@ def test_one_sphere_a_component_is_known_to_touch_always(qiao):
     assert touching.remedy == "take it out of the pair list formula_22"
 
 
-def test_a_pair_that_is_ever_apart_is_not_called_so(tmp_path):
-    assert find(load(BARE, tmp_path)) is None
+def test_a_pair_that_is_ever_apart_is_not_called_so():
+    assert find(load_text(BARE)) is None
 
 
-def test_the_safe_distance_counts(tmp_path):
-    robot = load(BARE, tmp_path)
-    far = replace(CollisionModel.of(robot).detector, safe_distance_m=10.0)
-    assert (
-        find_always_touching(CollisionModel(robot=robot, detector=far)).pairs
-        == CollisionModel(robot=robot, detector=far).pairs
-    )
+def test_the_safe_distance_counts():
+    robot = load_text(BARE)
+    far = replace(robot.detector(None), safe_distance_m=10.0)
+    assert find_always_touching(robot, far).pairs == robot.pairs(far)
 
 
-def test_a_pair_that_touches_always_stays_compared(tmp_path):
-    robot = load(FAT, tmp_path)
-    assert ("platform", "upper_arm") in CollisionModel.of(robot).pairs
+def test_a_pair_that_touches_always_stays_compared():
+    robot = load_text(FAT)
+    assert ("platform", "upper_arm") in robot.pairs(robot.detector(None))
     assert str(find(robot)) == "platform - upper_arm touches in each of 1,000 random configurations"
 
 
-def test_the_line_to_add_loads_and_leaves_the_pairs_out(tmp_path):
-    touching = find(load(FATTER, tmp_path))
+def test_the_line_to_add_loads_and_leaves_the_pairs_out():
+    touching = find(load_text(FATTER))
     assert touching.remedy == "add to the robot file"
     (line,) = touching.lines
     assert line == f'adjacent: {{pairs: {{platform: {{upper_arm: "{TO_FILL_IN}", forearm: "{TO_FILL_IN}"}}}}}}'
     with pytest.raises(ikde.InputError, match="all 3 pairs are left out"):
-        load(FATTER + line, tmp_path)
-    (line,) = find(load(FAT, tmp_path)).lines
-    assert find(load(FAT + line, tmp_path)) is None
+        load_text(FATTER + line)
+    (line,) = find(load_text(FAT)).lines
+    assert find(load_text(FAT + line)) is None
 
 
-def test_what_is_declared_already_keeps_its_reason(tmp_path):
-    touching = find(load(FATTER + DECLARED, tmp_path))
+def test_what_is_declared_already_keeps_its_reason():
+    touching = find(load_text(FATTER + DECLARED))
     assert (touching.pairs, touching.remedy) == (
         (("platform", "forearm"),),
         "write under adjacent: pairs: of the robot file",
@@ -80,16 +72,16 @@ def test_what_is_declared_already_keeps_its_reason(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["left arm", "a: b", "#1", "é", "[x]", "no", "12", 'say "hi"', "back\\slash", "手腕"])
-def test_names_that_yaml_would_read_otherwise_are_quoted(name, tmp_path):
+def test_names_that_yaml_would_read_otherwise_are_quoted(name):
     quoted = "'" + name + "'"
-    robot = load(FAT.replace("component: upper_arm", f"component: {quoted}"), tmp_path)
+    robot = load_text(FAT.replace("component: upper_arm", f"component: {quoted}"))
     (line,) = find(robot).lines
-    again = load(FAT.replace("component: upper_arm", f"component: {quoted}") + line, tmp_path)
+    again = load_text(FAT.replace("component: upper_arm", f"component: {quoted}") + line)
     assert [(pair.a, pair.b) for pair in again.adjacent] == [("platform", name)]
 
 
-def test_configurations_lie_inside_the_limits(tmp_path, monkeypatch):
-    robot, seen = load(BARE, tmp_path), []
+def test_configurations_lie_inside_the_limits(monkeypatch):
+    robot, seen = load_text(BARE), []
 
     def record(collision, q, pairs):
         seen.append(q)
@@ -103,8 +95,8 @@ def test_configurations_lie_inside_the_limits(tmp_path, monkeypatch):
     assert (drawn <= robot.upper).all()
 
 
-def test_many_spheres_are_compared_a_few_configurations_at_a_time(tmp_path, monkeypatch):
-    robot, honest, sizes = load(FATTER, tmp_path), module.compute_gaps, []
+def test_many_spheres_are_compared_a_few_configurations_at_a_time(monkeypatch):
+    robot, honest, sizes = load_text(FATTER), module.compute_gaps, []
     expected = find(robot).pairs
     find_always_touching.cache_clear()
 

@@ -10,22 +10,11 @@ from ikde.kernels.arrays import DRIFT
 from ikde.model.collision_model import CollisionModel
 from ikde.track import courses
 from ikde.track.courses import USES, ContinuationSettings, choose_course, farthest
-from ikde.track.follower import make_follower
-from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.starts import draw_starts
-from tests.track.tracks import load_task, robot
+from tests.track.tracks import load_task, make_follower_along, robot
 
 USUAL = ContinuationSettings()
-
-
-def make(path, drive="differential"):
-    return make_follower(
-        CollisionModel.of(robot()),
-        path,
-        drive=drive,
-        limits=MotionLimits.of(robot()),
-    )
 
 
 def shorten(path, samples):
@@ -41,7 +30,7 @@ def anything(sample):
 
 
 def test_the_best_is_no_worse_than_any_other():
-    follower = make(shorten(load_task("task2").path, 120))
+    follower = make_follower_along(shorten(load_task("task2").path, 120))
     starts, _ = draw_starts(follower, {}, 3)
     best = choose_course(follower, starts, 120, 0, anything, USUAL)
     each = [follower.follow(follower.begin(start, np.array(USES[0])), 120) for start in starts]
@@ -52,7 +41,7 @@ def test_the_best_is_no_worse_than_any_other():
 
 
 def test_clearance_counts_in_steps_and_motion_decides_between_equals():
-    follower = make(shorten(load_task("task1").path, 60))
+    follower = make_follower_along(shorten(load_task("task1").path, 60))
     starts, _ = draw_starts(follower, {}, 1)
     course = follower.follow(follower.begin(starts[0], np.array(USES[0])))
     near, far, little = course.copy(), course.copy(), course.copy()
@@ -62,7 +51,7 @@ def test_clearance_counts_in_steps_and_motion_decides_between_equals():
 
 
 def test_a_dead_end_is_left_by_going_back():
-    follower = make(load_task("task4_minus_x").path)
+    follower = make_follower_along(load_task("task4_minus_x").path)
     starts, _ = draw_starts(follower, {}, 1)
     use = np.array((1.0, 0.3, 0.3))
     ends = [follower.follow(follower.begin(start, use)) for start in starts]
@@ -74,7 +63,7 @@ def test_a_dead_end_is_left_by_going_back():
 
 
 def test_going_back_changes_what_comes_after_only():
-    follower = make(shorten(load_task("task1").path, 60))
+    follower = make_follower_along(shorten(load_task("task1").path, 60))
     starts, _ = draw_starts(follower, {}, 1)
     course = follower.follow(follower.begin(starts[0], np.array(USES[0])))
     other = courses._rewind(course, 40, 8, np.random.default_rng(0), USES)
@@ -86,7 +75,7 @@ def test_going_back_changes_what_comes_after_only():
 
 
 def test_all_returns_are_made_however_short_the_course(monkeypatch):
-    follower, rng = make(shorten(load_task("task1").path, 60)), np.random.default_rng(0)
+    follower, rng = make_follower_along(shorten(load_task("task1").path, 60)), np.random.default_rng(0)
     stuck = replace(follower.begin(robot().home, np.array(USES[0])), last=5)
     begun = []
     monkeypatch.setattr(type(follower), "follow", lambda self, course, end: begun.append(course.last) or course)
@@ -96,7 +85,7 @@ def test_all_returns_are_made_however_short_the_course(monkeypatch):
 
 @pytest.mark.parametrize(("returns", "each"), [(1000, [125] * 8), (11, [2, 2, 2, 1, 1, 1, 1, 1]), (0, [0] * 8)])
 def test_courses_share_the_returns_evenly(monkeypatch, returns, each):
-    follower, spent = make(shorten(load_task("task1").path, 60)), []
+    follower, spent = make_follower_along(shorten(load_task("task1").path, 60)), []
     starts = robot().home + np.arange(10.0)[:, None]
     monkeypatch.setattr(type(follower), "follow", lambda self, course, end: course)
     monkeypatch.setattr(courses, "_return", lambda follower, course, end, most, *_: spent.append(most) or course)
@@ -107,7 +96,7 @@ def test_courses_share_the_returns_evenly(monkeypatch, returns, each):
 def test_where_no_configuration_is_nothing_else_is_tried(monkeypatch):
     p = np.tile([0.9, 0.0, 1.0], (21, 1))
     p[10:, 2] = 3.0
-    follower = make(ToolPath.through(p, dt_s=0.02))
+    follower = make_follower_along(ToolPath.through(p, dt_s=0.02))
     starts, _ = draw_starts(follower, {}, 1)
     asked = []
     monkeypatch.setattr(courses, "_return", None)
@@ -116,7 +105,7 @@ def test_where_no_configuration_is_nothing_else_is_tried(monkeypatch):
 
 
 def test_the_null_space_is_used_as_asked():
-    follower = make(shorten(load_task("task2").path, 120))
+    follower = make_follower_along(shorten(load_task("task2").path, 120))
     starts, _ = draw_starts(follower, {}, 3)
     still = ContinuationSettings(uses=((0.0, 0.0, 0.0),))
     least, usual = (choose_course(follower, starts[:1], 120, 0, anything, way) for way in (still, USUAL))
@@ -143,6 +132,6 @@ def test_settings_that_mean_nothing_are_refused(given, words):
 
 
 def test_the_farthest_is_the_first_of_equals():
-    follower = make(shorten(load_task("task1").path, 10))
+    follower = make_follower_along(shorten(load_task("task1").path, 10))
     begun = [follower.begin(robot().home, np.array(use)) for use in USES[:2]]
     assert farthest(begun) is begun[0]

@@ -8,7 +8,7 @@ from ikde.solver.plain import compute_frames
 from ikde.track.follower import MARGIN_M, REACH_M, make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
-from tests.track.tracks import follow_task, make_line, robot
+from tests.track.tracks import follow_task, make_follower_along, make_line, robot
 
 USE = np.array([0.3, 0.3, 0.3])
 
@@ -17,8 +17,7 @@ USE = np.array([0.3, 0.3, 0.3])
 def start():
     """A configuration at the first pose of task 1, and its follower."""
     motion = follow_task("task1", "differential")
-    limits = MotionLimits.of(robot())
-    return motion.q[0], make_follower(CollisionModel.of(robot()), motion.path, drive="differential", limits=limits)
+    return motion.q[0], make_follower_along(motion.path)
 
 
 def test_it_goes_on_where_it_stopped(start):

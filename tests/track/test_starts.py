@@ -11,16 +11,12 @@ from ikde.solver.verify import verify
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.starts import draw_starts, settle_start
-from tests.track.tracks import TASKS, load_task, make_line, robot
-
-
-def make(path):
-    return make_follower(CollisionModel.of(robot()), path, drive="differential", limits=MotionLimits.of(robot()))
+from tests.track.tracks import TASKS, load_task, make_follower_along, make_line, robot
 
 
 @pytest.mark.parametrize("task", TASKS)
 def test_drawn_starts_are_good_and_different(task):
-    follower = make(load_task(task).path)
+    follower = make_follower_along(load_task(task).path)
     starts, first = draw_starts(follower, {}, 7)
     target = follower.path.targets()[0]
     assert first.reached
@@ -35,14 +31,14 @@ def test_drawn_starts_are_good_and_different(task):
 
 
 def test_frozen_joints_stand_where_they_must():
-    follower = make(make_line([0.9, 0.2, 1.0], [0.9, 0.3, 1.0], 5))
+    follower = make_follower_along(make_line([0.9, 0.2, 1.0], [0.9, 0.3, 1.0], 5))
     starts, _ = draw_starts(follower, {"d_x": 0.1, "q_z": -0.2}, 0)
     assert len(starts)
     np.testing.assert_array_equal(starts[:, [0, 2]], np.tile([0.1, -0.2], (len(starts), 1)))
 
 
 def test_no_start_comes_with_the_reason():
-    starts, first = draw_starts(make(make_line([0.9, 0, 4.0], [0.9, 0, 1.0], 5)), {}, 0)
+    starts, first = draw_starts(make_follower_along(make_line([0.9, 0, 4.0], [0.9, 0, 1.0], 5)), {}, 0)
     assert (starts.shape, str(first.stop_reason)) == ((0, 9), "out_of_reach")
 
 
@@ -51,7 +47,7 @@ def test_starts_keep_the_tool_near_the_platform():
     limits = MotionLimits.of(robot(), farthest_m=0.9, center="Oc")
     near = make_follower(CollisionModel.of(robot()), path, limits=limits, drive="differential")
     starts, _ = draw_starts(near, {}, 0)
-    every, _ = draw_starts(make(path), {}, 0)
+    every, _ = draw_starts(make_follower_along(path), {}, 0)
     frames = forward(robot(), every)
     is_near = np.linalg.norm(frames["tool"][:, :3, 3] - frames["Oc"][:, :3, 3], axis=1) <= 0.9
     np.testing.assert_array_equal(starts, every[is_near])
@@ -60,7 +56,7 @@ def test_starts_keep_the_tool_near_the_platform():
 
 
 def test_a_start_within_the_tolerance_stays_one_near_it_moves_a_little():
-    follower = make(load_task("task1").path)
+    follower = make_follower_along(load_task("task1").path)
     q = draw_starts(follower, {}, 0)[0][0]
     np.testing.assert_array_equal(settle_start(follower, q, {}), q)
     near = q + 2e-4
@@ -70,7 +66,7 @@ def test_a_start_within_the_tolerance_stays_one_near_it_moves_a_little():
 
 
 def test_starts_that_are_refused():
-    follower = make(load_task("task1").path)
+    follower = make_follower_along(load_task("task1").path)
     q = draw_starts(follower, {}, 0)[0][0]
     outside, far = q.copy(), q.copy()
     outside[4], far[1] = 3.0, far[1] + 0.5

@@ -2,12 +2,9 @@
 
 import json
 
-from ikde.report.page import Cell, Figure, Table, Text
+from ikde.report.page import Cell, Figure, Text
 from ikde.report.paper.rejection import make_rejection, make_waiting
-
-
-def tables(section):
-    return [block for block in section.blocks if isinstance(block, Table)]
+from tests.report.batch_page.blocks import tables
 
 
 def test_two_readings_with_every_printed_cell(results):

@@ -2,17 +2,14 @@
 
 import pytest
 
-from ikde.report.page import Cell, Gallery, Table
+from ikde.report.page import Cell, Gallery
 from ikde.report.paper.solutions import make_solutions
+from tests.report.batch_page.blocks import tables
 
 
 @pytest.fixture(scope="module")
 def section(results, robots):
     return make_solutions(results["sections"]["solutions"], robots["key_point"])
-
-
-def tables(section):
-    return [block for block in section.blocks if isinstance(block, Table)]
 
 
 def test_every_printed_row_is_graded(section):
