@@ -65,3 +65,8 @@ def test_a_quotation_is_short():
 def test_names_are_compared_with_few_and_short_ones():
     assert nearest("tol", ["tool"]) == " (did you mean 'tool'?)"
     assert nearest("t" * 10**6, ["x" * 10**5] * 10**5) == ""
+
+
+@pytest.mark.parametrize(("name", "expected"), [("improvd", " (did you mean 'improved'?)"), ("xyz", "")])
+def test_nearest_names_only_what_is_near(name, expected):
+    assert nearest(name, ["improved", "typical"]) == expected

@@ -5,57 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ikde.errors import InputError, nearest
-from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import AdjacentPair, Detector, Joint, Robot, SphereRow, Wheels
+from ikde.errors import InputError
+from ikde.model.robot import AdjacentPair, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
+from tests.model.drafts import make_draft, make_joint, make_row, reject
 from tests.random_robots import make_frame
-
-
-def make_joint(name="turn", **changes):
-    return Joint(**{"name": name, "kind": "revolute", "lower": -1.0, "upper": 1.0, "home": 0.0, **changes})
-
-
-def make_row(component="A", start="a", end="tool", **changes):
-    return SphereRow(**{"component": component, "start": start, "end": end, "radius_m": 0.1, **changes})
-
-
-def make_draft(**changes):
-    """A robot of two joints and three components with nothing wrong; `changes` make it wrong."""
-    parts = {
-        "name": "draft",
-        "title": "A draft",
-        "joints": (make_joint("slide", kind="prismatic"), make_joint("turn")),
-        "frames": (
-            make_frame("b", "a", (0.2, 0, 0), joint="turn", axis=(0, 0, 1)),
-            make_frame("a", "world", joint="slide", axis=(1, 0, 0)),
-            make_frame("tool", "b", (0.3, 0, 0)),
-        ),
-        "tool": "tool",
-        "approximations": {
-            "fine": (
-                make_row("G", "world", "world"),
-                make_row("A", "a", "a"),
-                make_row("B", "b", "tool", count=3),
-            )
-        },
-        "adjacent": (),
-        "pair_lists": {"some": (("G", "B"),)},
-        "detectors": {"d": Detector(name="d", spheres="fine", pairs="some")},
-        "default_detector": "d",
-        "convention": "own",
-        "conventions": {"other": {"turn": np.pi}},
-        "provenance": {},
-    }
-    return Robot(**{**parts, **changes})
-
-
-def reject(message, *where, **changes):
-    """`check_robot` must raise this message at this path."""
-    with pytest.raises(InputError) as caught:
-        check_robot(make_draft(**changes))
-    assert message in caught.value.message
-    assert caught.value.where == where
 
 
 @pytest.mark.parametrize("hidden", ["\n", "\x1b", "\u202e", "x" * 100])
@@ -75,12 +29,6 @@ def test_whatever_bears_a_name_may_be_called_what_can_be_printed(hidden):
     reject(told, "frames", f"b{hidden}", frames=(make_frame(f"b{hidden}", "world"),))
     rows = (make_row(), make_row(f"B{hidden}"))
     reject(told, "spheres", "fine", 1, "component", approximations={"fine": rows})
-
-
-def test_a_detector_of_pythons_own_is_called_what_can_be_printed():
-    robot = check_robot(make_draft())
-    with pytest.raises(InputError, match=r"^detector\.name: expected a name of printable characters"):
-        CollisionModel.of(robot, Detector(name="a\nb", spheres="fine", pairs="some"))
 
 
 def replace_frame(name, **changes):
@@ -127,6 +75,12 @@ def test_branches_are_sorted_depth_first():
     plain = {"approximations": {}, "pair_lists": {}, "detectors": {}, "default_detector": "none"}
     robot = check_robot(make_draft(frames=frames, **plain))
     assert [f.name for f in robot.frames] == ["a", "left", "left_tip", "right", "tool", "b"]
+
+
+def test_names_are_unique():
+    draft = make_draft()
+    reject("given twice", "joints", draft.joints[0].name, joints=(*draft.joints, draft.joints[0]))
+    reject("given twice", "frames", draft.frames[0].name, frames=(*draft.frames, draft.frames[0]))
 
 
 # ---- joints
@@ -239,6 +193,13 @@ def test_a_frame_called_tool_is_the_tool():
     reject(message, "frames", "tool", tool="b")
 
 
+def test_a_frame_that_is_no_rotation_is_refused():
+    draft = make_draft()
+    bent = replace(draft.frames[0], R_parent_frame=np.full((3, 3), np.nan))
+    with pytest.raises(InputError, match="rotation matrix"):
+        check_robot(replace(draft, frames=(bent, *draft.frames[1:])))
+
+
 # ---- spheres
 
 
@@ -266,6 +227,16 @@ def test_a_row_across_a_joint():
 def test_a_component_on_two_bodies():
     message = "the rows of 'A' lie on different bodies; a component is rigid"
     reject(message, "spheres", "fine", 2, "component", approximations=replace_rows(component="A"))
+
+
+def test_every_approximation_describes_the_same_components():
+    approximations = {**make_draft().approximations, "coarse": (make_row("G", "world", "world"),)}
+    reject("the other approximations also describe A, B", "spheres", "coarse", approximations=approximations)
+
+
+def test_several_spheres_need_a_line():
+    row = replace(make_row("G", "world", "world"), count=2)
+    reject("several spheres need two key points", "spheres", "fine", 0, "to", approximations={"fine": (row,)})
 
 
 # ---- pairs
@@ -307,136 +278,6 @@ def test_a_pair_that_is_given_twice(again):
 
 def test_a_component_paired_with_itself():
     reject("'G' is paired with itself", "pairs", "some", "pairs", "G", pair_lists={"some": (("G", "G"),)})
-
-
-# ---- detectors
-
-
-def test_a_detector_whose_pairs_are_all_left_out():
-    message = (
-        "this detector compares nothing: all 3 pairs are left out: "
-        "G - A (joined by joint slide), G - B (adjacent: glued), A - B (joined by joint turn)"
-    )
-    glued = (AdjacentPair(a="B", b="G", reason="glued"),)
-    reject(message, "detectors", "d", "pairs", adjacent=glued, detectors=make_detector(pairs=NON_ADJACENT))
-
-
-def test_a_detector_with_an_empty_list():
-    message = "all 3 pairs are left out: G - A (joined by joint slide), G - B (not in the pair list some), A - B"
-    reject(message, "detectors", "d", "pairs", pair_lists={"some": ()})
-
-
-def test_a_detector_with_one_component():
-    one = {"approximations": {"fine": (make_row("G", "world", "world"),)}, "pair_lists": {}}
-    reject("'G' is the only component", "detectors", "d", "pairs", detectors=make_detector(pairs=NON_ADJACENT), **one)
-
-
-def test_a_detector_without_spheres():
-    none = {"approximations": {"fine": ()}, "pair_lists": {"some": ()}}
-    reject("this detector compares nothing: 'fine' has no spheres", "detectors", "d", "spheres", **none)
-
-
-def test_pairs_left_out_are_named_as_long_as_they_are_few():
-    rows = tuple(make_row(name, "world", "world") for name in "ABCDE")
-    changes = {"approximations": {"fine": rows}, "pair_lists": {}, "detectors": make_detector(pairs=NON_ADJACENT)}
-    message = "all 10 pairs are left out: A - B (one body), A - C (one body), A - D (one body) and 7 more"
-    reject(message, "detectors", "d", "pairs", **changes)
-
-
-def test_a_detector_compares_so_many_spheres_at_most():
-    rows = tuple(make_row(name, "b", "tool", count=1500) for name in "GA")
-    message = "expected at most 2,000,000 pairs of spheres to compare, got 2,250,000"
-    changes = {"approximations": {"fine": rows}, "pair_lists": {"some": (("G", "A"),)}, "detectors": make_detector()}
-    reject(message, "detectors", "d", "spheres", **changes)
-
-
-def test_a_detector_compares_so_many_pairs_at_most(monkeypatch):
-    monkeypatch.setattr("ikde.model.collision_model.MAX_PAIRS", 1)
-    message = "expected at most 1 pairs of components, got 2"
-    pairs = {"some": (("G", "A"), ("G", "B"))}
-    reject(message, "detectors", "d", "pairs", pair_lists=pairs, detectors=make_detector())
-
-
-@pytest.mark.parametrize("distance", ["1", None, True, np.nan, -1.0, 1.01e5])
-def test_a_safe_distance_is_a_number(distance):
-    detectors = make_detector(safe_distance_m=distance)
-    reject("expected a distance of at least 0, up to 100000 m", "detectors", "d", "safe_distance", detectors=detectors)
-
-
-def test_no_detector_of_pythons_own_is_called_as_none_at_all(qiao):
-    own = replace(CollisionModel.of(qiao).detector, name="none")
-    with pytest.raises(InputError, match="'none' is taken: it stands for no detector at all"):
-        CollisionModel.of(qiao, own)
-
-
-def make_detector(**changes):
-    return {"d": Detector(**{"name": "d", "spheres": "fine", "pairs": "some", **changes})}
-
-
-def test_a_detector_called_none():
-    detectors = {**make_detector(), "none": Detector(name="none", spheres="fine", pairs="some")}
-    reject("is taken: it stands for no detector at all", "detectors", "none", detectors=detectors)
-
-
-def test_a_detector_with_unknown_spheres():
-    detectors = make_detector(spheres="fin")
-    reject("no approximation is called 'fin' (did you mean 'fine'?)", "detectors", "d", "spheres", detectors=detectors)
-
-
-def test_a_detector_with_unknown_pairs():
-    reject("no pair list is called 'all'", "detectors", "d", "pairs", detectors=make_detector(pairs="all"))
-
-
-@pytest.mark.parametrize("distance", [-0.1, np.nan, np.inf, 1.01e5])
-def test_a_safe_distance_is_at_least_zero_and_within_100_km(distance):
-    detectors = make_detector(safe_distance_m=distance)
-    reject("expected a distance of at least 0, up to 100000 m", "detectors", "d", "safe_distance", detectors=detectors)
-
-
-def test_every_approximation_describes_the_same_components():
-    approximations = {**make_draft().approximations, "coarse": (make_row("G", "world", "world"),)}
-    reject("the other approximations also describe A, B", "spheres", "coarse", approximations=approximations)
-
-
-def test_a_detector_made_by_hand_is_checked_when_it_is_used():
-    robot = check_robot(make_draft(pair_lists={**make_draft().pair_lists, "none": ()}))
-    good = Detector(name="mine", spheres="fine", pairs=NON_ADJACENT)
-    assert CollisionModel.of(robot, good).detector is good
-    wrong = ({"spheres": "fin"}, {"pairs": "all"}, {"pairs": "none"}, {"safe_distance_m": -1.0})
-    for bad in (*wrong, {"safe_distance_m": np.nan}):
-        with pytest.raises(InputError, match="detector"):
-            CollisionModel.of(robot, replace(good, **bad))
-
-
-def test_names_are_unique():
-    draft = make_draft()
-    reject("given twice", "joints", draft.joints[0].name, joints=(*draft.joints, draft.joints[0]))
-    reject("given twice", "frames", draft.frames[0].name, frames=(*draft.frames, draft.frames[0]))
-
-
-def test_several_spheres_need_a_line():
-    row = replace(make_row("G", "world", "world"), count=2)
-    reject("several spheres need two key points", "spheres", "fine", 0, "to", approximations={"fine": (row,)})
-
-
-def test_a_frame_that_is_no_rotation_is_refused():
-    draft = make_draft()
-    bent = replace(draft.frames[0], R_parent_frame=np.full((3, 3), np.nan))
-    with pytest.raises(InputError, match="rotation matrix"):
-        check_robot(replace(draft, frames=(bent, *draft.frames[1:])))
-
-
-def test_a_detector_may_use_the_pairs_that_ikde_makes():
-    robot = check_robot(make_draft(detectors=make_detector(pairs=NON_ADJACENT)))
-    assert robot.detectors["d"].pairs == NON_ADJACENT
-
-
-def test_an_unknown_default_detector():
-    reject("no detector is called 'e'", "default_detector", default_detector="e")
-
-
-def test_no_detector_may_be_the_default():
-    assert CollisionModel.of(check_robot(make_draft(default_detector="none"))).detector is None
 
 
 # ---- conventions
@@ -489,8 +330,3 @@ def unchecked(robot):
 def test_a_base_may_have_wheels_or_not(qiao, unwheeled):
     assert check_robot(unchecked(qiao)).wheels == Wheels(radius_m=0.1, half_track_m=0.259)
     assert check_robot(unchecked(unwheeled)).wheels is None
-
-
-@pytest.mark.parametrize(("name", "expected"), [("improvd", " (did you mean 'improved'?)"), ("xyz", "")])
-def test_nearest_names_only_what_is_near(name, expected):
-    assert nearest(name, ["improved", "typical"]) == expected
