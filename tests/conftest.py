@@ -2,6 +2,7 @@
 
 import gc
 import os
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from hypothesis import HealthCheck, settings
 
 import ikde
 from tests import ahead
+from tests.substitutes import substituted
 
 ROBOTS = ikde.robot_names()
 TESTS = Path(__file__).parent
@@ -53,6 +55,13 @@ def any_robot(request):
 def rng():
     """Random numbers, the same in every run."""
     return np.random.default_rng(20211)
+
+
+@pytest.fixture
+def substitute():
+    """Put a function in the place of one of ikde's, wherever it was imported to, until the test ends."""
+    with ExitStack() as stack:
+        yield lambda function, other: stack.enter_context(substituted(function, other))
 
 
 def random_q(robot, rng, count=None):

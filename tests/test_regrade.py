@@ -9,8 +9,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import ikde
-from ikde.io import robot_file
-from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_gaps
 from tests import regrade, robot_texts
@@ -282,8 +280,8 @@ def test_answers_for_a_robot_that_lacks_something_are_found_out(spoil):
     assert any(fault["fault"] == "in collision" for fault in tally.faults)
 
 
-def test_answers_for_a_robot_whose_rpy_is_read_the_other_way_round_are_found_out(monkeypatch):
-    monkeypatch.setattr(robot_file, "rotation_from_rpy", turn_the_other_way_round)
+def test_answers_for_a_robot_whose_rpy_is_read_the_other_way_round_are_found_out(substitute):
+    substitute(rotation_from_rpy, turn_the_other_way_round)
     grader, robot = grader_and_robot(SPOILT)
     tally = ask_and_regrade(robot, grader, np.random.default_rng(0), 50, most=50)
     assert any("tolerance" in fault["fault"] for fault in tally.faults)

@@ -4,23 +4,25 @@ from contextlib import contextmanager
 from types import SimpleNamespace
 
 from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED
+from ikde.model.generate.module import load_module
 from ikde.solver.engines import pool
 from ikde.solver.quick import find_quick
+from tests.substitutes import substituted
 
 
 @contextmanager
 def written_kernels(monkeypatch, change=lambda module: module):
     """Solve as users do, by the modules written for a robot, each of them changed; gives the kinds asked for."""
-    asked, load = [], pool.load_module
+    asked = []
 
     def load_changed(collision, kind):
         asked.append(kind)
-        return change(load(collision, kind))
+        return change(load_module(robot, detector, kind))
 
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
-    monkeypatch.setattr(pool, "load_module", load_changed)
     _forget()
-    yield asked
+    with substituted(load_module, load_changed):
+        yield asked
     _forget()
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from ikde.batch import folder as module
 from ikde.batch.folder import LOCK, claim_folder, keep_names
-from ikde.batch.manifest import MANIFEST, read_manifest
+from ikde.batch.manifest import MANIFEST, read_manifest, write_manifest
 from ikde.errors import FileError
-from ikde.files.atomic import temporary_path
+from ikde.files.atomic import sync_folder, temporary_path
 from tests.batch.small import make_batch
 
 HOLD = """
@@ -90,10 +90,10 @@ def test_overwriting_deletes_the_page_of_the_run_and_nothing_else(run, notes):
     assert [path.name for path in (run / "report").glob("*")] == ["notes.txt"] * notes
 
 
-def test_old_parts_are_gone_from_the_disk_before_the_new_manifest_is_there(run, monkeypatch):
+def test_old_parts_are_gone_from_the_disk_before_the_new_manifest_is_there(run, substitute):
     done = []
-    monkeypatch.setattr("ikde.batch.folder.sync_folder", lambda folder: done.append(folder.name))
-    monkeypatch.setattr("ikde.batch.folder.write_manifest", lambda folder, manifest: done.append(MANIFEST))
+    substitute(sync_folder, lambda folder: done.append(folder.name))
+    substitute(write_manifest, lambda folder, manifest: done.append(MANIFEST))
     claim(run, overwrite=True, seed=8)
     assert done == ["solutions", "timing", MANIFEST, run.name]
 
@@ -175,24 +175,24 @@ def test_a_lock_dies_with_its_holder(tmp_path):
     claim(tmp_path)
 
 
-def count_syncs(monkeypatch):
+def count_syncs(substitute):
     calls = []
-    monkeypatch.setattr(module, "sync_folder", calls.append)
+    substitute(sync_folder, calls.append)
     return calls
 
 
 @pytest.mark.parametrize(("seconds", "syncs"), [(0.0, 4), (1e9, 1)])
-def test_names_are_synced_now_and_then_and_at_the_end(tmp_path, monkeypatch, seconds, syncs):
+def test_names_are_synced_now_and_then_and_at_the_end(tmp_path, monkeypatch, substitute, seconds, syncs):
     monkeypatch.setattr(module, "SYNC_SECONDS", seconds)
-    calls = count_syncs(monkeypatch)
+    calls = count_syncs(substitute)
     with keep_names(tmp_path) as keep:
         for _ in range(3):
             keep()
     assert calls == [tmp_path / "timing", tmp_path / "solutions"] * syncs
 
 
-def test_names_are_synced_even_if_a_run_is_stopped(tmp_path, monkeypatch):
-    calls = count_syncs(monkeypatch)
+def test_names_are_synced_even_if_a_run_is_stopped(tmp_path, substitute):
+    calls = count_syncs(substitute)
     with pytest.raises(KeyboardInterrupt), keep_names(tmp_path):
         raise KeyboardInterrupt
     assert len(calls) == 2

@@ -2,14 +2,17 @@
 
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 from ikde.batch import local as module
 from ikde.batch.local import AHEAD, solve_parts
 from ikde.batch.parts import list_parts
+from ikde.batch.task import solve_task
 from ikde.errors import InputError
 from tests.batch.small import BLINK, make_arm, make_batch
+from tests.substitutes import never
 
 ENDLESS = {"method": "de", "restarts": 10**6, "generations": 20, "population": 20, "position_tolerance_m": 1e-12}
 ARMS = (make_arm("free", detector="none", **BLINK), make_arm("careful", **BLINK))
@@ -31,12 +34,12 @@ def solve(batch, parts, threads):
 class Watch:
     """Stands in for `solve_task`: counts parts that are under way or waiting to be taken."""
 
-    def __init__(self, monkeypatch, delay=0.0, broken=()):
-        self.honest, self.delay, self.broken = module.solve_task, delay, broken
+    def __init__(self, substitute, delay=0.0, broken=()):
+        self.honest, self.delay, self.broken = solve_task, delay, broken
         self.begun, self.inside, self.told, self.warmed, self.lock = [], {}, [], [], threading.Lock()
         self.is_warming, self.warm_up = False, module._warm_up
-        monkeypatch.setattr(module, "solve_task", self)
-        monkeypatch.setattr(module, "_warm_up", self.watch_warm_up)
+        substitute(solve_task, self)
+        substitute(module._warm_up, self.watch_warm_up)
 
     def watch_warm_up(self, *arguments):
         self.is_warming = True
@@ -66,46 +69,46 @@ def test_threads_change_neither_bytes_nor_order(batch, threads):
     assert solve(batch, parts, threads) == expected
 
 
-def test_parts_come_in_order_even_if_they_end_in_another(batch, monkeypatch):
-    Watch(monkeypatch, delay=0.02)
+def test_parts_come_in_order_even_if_they_end_in_another(batch, substitute):
+    Watch(substitute, delay=0.02)
     parts = parts_of(batch)
     assert [sealed.part for sealed in solve_parts(batch, parts, 3)] == parts
 
 
 @pytest.mark.parametrize("threads", [2, 3])
-def test_few_parts_are_under_way_at_a_time(batch, monkeypatch, threads):
-    watch, parts = Watch(monkeypatch), parts_of(batch)
+def test_few_parts_are_under_way_at_a_time(batch, substitute, threads):
+    watch, parts = Watch(substitute), parts_of(batch)
     for taken, _ in enumerate(solve_parts(batch, parts, threads), 1):
         time.sleep(0.02)  # a slow disk
         assert len(watch.begun) - taken <= threads + AHEAD
 
 
-def test_the_last_few_parts_share_all_threads(batch, monkeypatch):
-    watch, parts = Watch(monkeypatch), parts_of(batch)
+def test_the_last_few_parts_share_all_threads(batch, substitute):
+    watch, parts = Watch(substitute), parts_of(batch)
     list(solve_parts(batch, parts, 4))
     assert [watch.inside[part] for part in parts] == [1, 1, 1, 1, 1, 1, 1, 1, 2, 4]
 
 
 @pytest.mark.parametrize(("threads", "count"), [(1, 4), (2, 1), (2, 0)])
-def test_one_thread_or_one_part_needs_no_pool(batch, monkeypatch, threads, count):
-    monkeypatch.setattr(module, "ThreadPoolExecutor", None)
+def test_one_thread_or_one_part_needs_no_pool(batch, substitute, threads, count):
+    substitute(ThreadPoolExecutor, never)
     parts = parts_of(batch)[:count]
     assert [sealed.part for sealed in solve_parts(batch, parts, threads)] == parts
 
 
-def test_what_goes_wrong_is_raised_where_its_part_would_come(batch, monkeypatch):
+def test_what_goes_wrong_is_raised_where_its_part_would_come(batch, substitute):
     parts = parts_of(batch)
-    Watch(monkeypatch, broken=parts[4:])
+    Watch(substitute, broken=parts[4:])
     answers = solve_parts(batch, parts, 2)
     assert [next(answers).part for _ in range(4)] == parts[:4]
     with pytest.raises(InputError, match="part 4 of free is broken"):
         next(answers)
 
 
-def test_when_nobody_takes_parts_any_more_searches_stop(monkeypatch):
+def test_when_nobody_takes_parts_any_more_searches_stop(monkeypatch, substitute):
     batch = make_batch(arms=(make_arm("endless", **ENDLESS),))
-    watch, parts = Watch(monkeypatch), parts_of(batch)
-    monkeypatch.setattr(module, "_warm_up", lambda *arguments: None)
+    watch, parts = Watch(substitute), parts_of(batch)
+    substitute(module._warm_up, lambda *arguments: None)
 
     def interrupted(future):
         while len(watch.begun) < 2:
@@ -118,8 +121,8 @@ def test_when_nobody_takes_parts_any_more_searches_stop(monkeypatch):
     assert len(watch.begun) == 2
 
 
-def test_each_arm_is_compiled_first_and_who_waits_is_told(batch, monkeypatch):
-    watch, parts = Watch(monkeypatch), parts_of(batch)
+def test_each_arm_is_compiled_first_and_who_waits_is_told(batch, substitute):
+    watch, parts = Watch(substitute), parts_of(batch)
     list(solve_parts(batch, parts[3:], 2, print))
     assert sorted(watch.warmed) == [("careful", 0, False, print), ("free", 15, False, print)]
     assert watch.told == [None] * 7

@@ -8,8 +8,10 @@ import pytest
 import ikde
 from ikde.batch.run import Progress
 from ikde.batch.sources import ListSource
+from ikde.batch.task import solve_task
 from ikde.errors import FileError, InputError
 from tests.batch.small import BLINK, FAR, ROBOT, make_arm, make_batch, make_targets, read_files
+from tests.substitutes import never
 
 ARMS = (make_arm("free", detector="none", **BLINK), make_arm("careful", **BLINK))
 
@@ -82,9 +84,9 @@ def test_a_part_with_a_flipped_bit_is_done_again(batch, whole, tmp_path, share):
     assert read_files(tmp_path) == whole
 
 
-def test_a_finished_run_has_nothing_to_do(batch, tmp_path, monkeypatch):
+def test_a_finished_run_has_nothing_to_do(batch, tmp_path, substitute):
     first = ikde.run_batch(batch, tmp_path)
-    monkeypatch.setattr("ikde.batch.local.solve_task", None)  # would be a bug if it were called
+    substitute(solve_task, never)
     assert ikde.run_batch(batch, tmp_path) == first
 
 

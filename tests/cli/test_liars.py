@@ -11,8 +11,7 @@ import pytest
 import yaml
 
 import ikde
-from ikde.model.collision_model import CollisionModel
-from ikde.track import follower
+from ikde.kernels.tracking import track_span
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from tests import reference
@@ -188,13 +187,13 @@ def test_starts_that_lie_are_no_starts(lie, liar, cli, tmp_path, method):
     assert (outcome.code, outcome.data["reached"]) == (0 if motion.reached else 1, motion.reached)
 
 
-def test_steps_that_lie_are_no_motion(lie, monkeypatch, cli, tmp_path):
+def test_steps_that_lie_are_no_motion(lie, substitute, cli, tmp_path):
     def boast(*arguments):
         first, last, q, least = arguments[5], arguments[6], arguments[8], arguments[12]
         q[first + 1 : last + 1], least[first + 1 : last + 1] = lie[0], np.inf
         return last, 0
 
-    monkeypatch.setattr(follower, "track_span", boast)
+    substitute(track_span, boast)
     fast = MotionLimits.of(ROBOT, speed=None)  # so that nothing but the lie is in the way
     assert not ikde.follow_path(ROBOT, stand_at(lie), limits=fast).reached
     outcome = cli("track", track_of(lie, tmp_path), "--json")

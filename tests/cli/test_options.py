@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+from shutil import get_terminal_size
 
 import pytest
 
@@ -126,8 +127,8 @@ def test_no_detector_is_called_none(qiao):
 
 
 @pytest.mark.parametrize(("columns", "width"), [(20, 60), (80, 80), (300, 120)])
-def test_a_page_is_as_wide_as_the_terminal_within_reason(monkeypatch, columns, width):
-    monkeypatch.setattr("ikde.cli.output.get_terminal_size", lambda: os.terminal_size((columns, 24)))
+def test_a_page_is_as_wide_as_the_terminal_within_reason(monkeypatch, substitute, columns, width):
+    substitute(get_terminal_size, lambda: os.terminal_size((columns, 24)))
     assert page_width() == 100
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     assert page_width() == width

@@ -67,10 +67,10 @@ def test_numbas_own_cache_is_left_alone(folder, monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize("change", ["source", "VERSIONS"])
-def test_another_source_or_another_numba_compiles_again(folder, monkeypatch, change):
+def test_another_source_or_another_numba_compiles_again(folder, monkeypatch, substitute, change):
     run(2.0)
     if change == "source":
-        monkeypatch.setattr(jit, "hash_source", lambda file: "another")
+        substitute(machine_code.hash_source, lambda file: "another")
     else:
         monkeypatch.setattr(machine_code, "VERSIONS", ("another",))
     assert run(2.0) == (4.0, True)

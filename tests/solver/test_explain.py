@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.reach import reach_excess_m
 from ikde.solver.engines.found import make_found
 from ikde.solver.figures import compute_figures
-from ikde.solver.search import Found
+from ikde.solver.search import Found, search
+from ikde.solver.touching import find_always_touching
 from tests.bare_robot import BARE
 from tests.scara import make_scara
+from tests.substitutes import never
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=6, generations=500)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
@@ -135,8 +138,8 @@ def test_leaving_out_what_always_touches_is_told_if_nothing_else_is_in_the_way(q
     assert ikde.verify(spared, target, result.q, collision=detector).accepted is helps
 
 
-def test_what_is_reached_is_not_searched_for_pairs_that_touch(qiao, monkeypatch):
-    monkeypatch.setattr("ikde.solver.explain.find_always_touching", None)
+def test_what_is_reached_is_not_searched_for_pairs_that_touch(qiao, substitute):
+    substitute(find_always_touching, never)
     assert ikde.solve(qiao, TARGET).reached
     assert ikde.solve(qiao, ikde.Target((20.0, 0.0, 1.0)), QUICK).stop_reason == "out_of_reach"
 
@@ -168,7 +171,17 @@ def test_a_spent_budget_is_called_so(qiao):
     assert result.hint is None  # nothing was found that would help
 
 
-def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monkeypatch):
+def after_the_first(function, other):
+    """The first call goes to one function, that of the search itself, and those that follow, its probes, to another."""
+    calls = count()
+
+    def call(*arguments, **options):
+        return (other if next(calls) else function)(*arguments, **options)
+
+    return call
+
+
+def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, substitute):
     solution = ikde.solve(qiao, TARGET)
 
     def probe(problem, targets, **options):
@@ -184,13 +197,13 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, monk
         }
         return Found(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)
 
-    monkeypatch.setattr("ikde.solver.hints.search", probe)
+    substitute(search, after_the_first(search, probe))
     result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, generations=3))
     assert result.stop_reason == "budget"
     assert result.hint.startswith("collision reject: a solution was found")
 
 
-def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, monkeypatch):
+def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, substitute):
     """Colliding solutions are counted on other streams; a free one among them is the answer."""
 
     def unlucky(problem, targets, **options):
@@ -200,12 +213,11 @@ def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, mon
         found.figures.put(np.arange(len(targets)), figures)
         return found
 
-    monkeypatch.setattr("ikde.solver.rows.search", unlucky)
+    substitute(search, after_the_first(unlucky, search))
     settings = ikde.SolveSettings(method="lm")
     result = ikde.solve_many(qiao, [TARGET], settings, freeze=PARKED)[0]
     assert result.stop_reason == "budget"
     stream = int(re.fullmatch(r"other random numbers: with this seed and stream (\d+) .*", result.hint)[1])
-    monkeypatch.undo()
     assert ikde.solve(qiao, TARGET, settings, freeze=PARKED, stream=stream).reached
 
 
@@ -247,7 +259,7 @@ def test_with_time_to_spare_the_reason_is_looked_for(qiao):
     assert result.hint.startswith("free d_x, d_y, q_z")
 
 
-def test_short_searches_share_what_is_left_of_the_time(qiao, monkeypatch):
+def test_short_searches_share_what_is_left_of_the_time(qiao, substitute):
     spent = []
 
     def probe(problem, targets, spent_s, **options):
@@ -256,7 +268,7 @@ def test_short_searches_share_what_is_left_of_the_time(qiao, monkeypatch):
         found.seconds[:] = 2.0
         return found
 
-    monkeypatch.setattr("ikde.solver.hints.search", probe)
+    substitute(search, after_the_first(search, probe))
     timed = ikde.SolveSettings(population=6, generations=1, restarts=1, timeout_s=1e6)
     searched_s = ikde.solve(qiao, TARGET, timed, freeze=PARKED | {"q1": 0.0}).solve_seconds
     assert spent == [searched_s, searched_s + 2.0, searched_s + 4.0, searched_s + 6.0]

@@ -7,8 +7,6 @@ import pytest
 
 import ikde
 from ikde.errors import VerificationError
-from ikde.model.collision_model import CollisionModel
-from ikde.solver import figures as module
 from ikde.solver.figures import (
     AGREEMENT,
     compute_clearances,
@@ -17,6 +15,7 @@ from ikde.solver.figures import (
     judge_clearances,
     measure_scale,
 )
+from ikde.solver.plain import compute_gaps
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
 from tests.random_robots import random_robot
@@ -99,8 +98,8 @@ def test_clearances_are_what_check_says(qiao, rng):
         assert seen.collides.tolist() == [c.collision for c in checked]
 
 
-def test_a_clearance_that_only_the_kernels_see_raises(qiao, monkeypatch):
-    monkeypatch.setattr(module, "compute_gaps", lambda collision, Q: np.full((len(Q), 1), 0.5))
+def test_a_clearance_that_only_the_kernels_see_raises(qiao, substitute):
+    substitute(compute_gaps, lambda robot, spheres, pairs, Q: np.full((len(Q), 1), 0.5))
     with pytest.raises(VerificationError, match="disagree"):
         compute_clearances(CollisionModel.of(qiao), qiao.home[None])
 

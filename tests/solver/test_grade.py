@@ -11,12 +11,11 @@ from ikde.errors import VerificationError
 from ikde.kernels.arrays import COUNTS, REACHED
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Targets
-from ikde.solver import referee as module
 from ikde.solver.engines.found import make_found
 from ikde.solver.figures import AGREEMENT, compute_figures
 from ikde.solver.forward import forward
 from ikde.solver.grade import confirm, grade
-from ikde.solver.search import Found
+from ikde.solver.search import Found, search
 from ikde.solver.verify import verify
 from tests.problems import problem_of
 
@@ -24,42 +23,41 @@ QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=4)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(3)]
 
 
-def lie_about(monkeypatch, figure, by, only=None):
+def lie_about(substitute, figure, by, only=None):
     """Let the kernels' figures be off; `only`: for this target alone."""
-    honest = module.compute_figures
 
-    def lying(collision, targets, Q, settings, limits):
-        figures = honest(collision, targets, Q, settings, limits)
+    def lying(robot, detector, targets, Q, settings, limits):
+        figures = compute_figures(robot, detector, targets, Q, settings, limits)
         points = [tuple(target.p_world_tool) for target in targets]
         guilty = np.array([only is None or point == tuple(only.p_world_tool) for point in points])
         return replace(figures, **{figure: getattr(figures, figure) + np.where(guilty, by, 0.0)})
 
-    monkeypatch.setattr(module, "compute_figures", lying)
+    substitute(compute_figures, lying)
 
 
 @pytest.mark.parametrize("by", [2e-11, -1e-3, np.nan, np.inf])
 @pytest.mark.parametrize("figure", ["position_error_m", "orientation_error_rad", "clearance_m"])
-def test_a_lie_about_any_figure_raises(qiao, monkeypatch, figure, by):
-    lie_about(monkeypatch, figure, by)
+def test_a_lie_about_any_figure_raises(qiao, substitute, figure, by):
+    lie_about(substitute, figure, by)
     with pytest.raises(VerificationError, match="kernels and verify disagree"):
         ikde.solve_distinct(qiao, TARGETS[0], 1, QUICK)
 
 
-def test_a_difference_below_the_agreement_is_no_lie(qiao, monkeypatch):
-    lie_about(monkeypatch, "position_error_m", 0.5 * AGREEMENT)
+def test_a_difference_below_the_agreement_is_no_lie(qiao, substitute):
+    lie_about(substitute, "position_error_m", 0.5 * AGREEMENT)
     assert ikde.solve_distinct(qiao, TARGETS[0], 1, QUICK)[0].verified
 
 
-def test_in_bulk_a_lie_is_recorded_and_the_run_goes_on(qiao, monkeypatch):
-    lie_about(monkeypatch, "position_error_m", 1e-6, only=TARGETS[1])
+def test_in_bulk_a_lie_is_recorded_and_the_run_goes_on(qiao, substitute):
+    lie_about(substitute, "position_error_m", 1e-6, only=TARGETS[1])
     results = ikde.solve_many(qiao, TARGETS, QUICK, verify="all")
     assert [result.verified for result in results] == [True, False, True]
     assert [result.reached for result in results] == results.reached.tolist() == [True, False, True]
     assert results[1].stop_reason != "reached"
 
 
-def test_what_plain_numpy_did_not_grade_is_not_called_verified(qiao, monkeypatch):
-    lie_about(monkeypatch, "position_error_m", 1e-6, only=TARGETS[1])
+def test_what_plain_numpy_did_not_grade_is_not_called_verified(qiao, substitute):
+    lie_about(substitute, "position_error_m", 1e-6, only=TARGETS[1])
     rows = ikde.solve_many(qiao, TARGETS, QUICK, verify="none")
     assert rows.reached.all()  # nobody was asked who could see the lie
     assert [result.verified for result in rows] == rows.verified.tolist() == [None, None, None]
@@ -71,13 +69,13 @@ def test_of_a_sample_the_rest_is_not_checked(qiao):
     assert rows.verified.tolist() == [True if k % 64 == 0 else None for k in range(130)]
 
 
-def test_a_lie_in_bulk_never_claims_that_the_target_is_to_blame(qiao, monkeypatch):
-    lie_about(monkeypatch, "position_error_m", 1e-6)
+def test_a_lie_in_bulk_never_claims_that_the_target_is_to_blame(qiao, substitute):
+    lie_about(substitute, "position_error_m", 1e-6)
     result = ikde.solve_many(qiao, TARGETS[:1], QUICK)[0]
     assert "disagree" in result.reason
 
 
-def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
+def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
     def boast(problem, targets, **options):
         counts = np.zeros((len(targets), COUNTS), dtype=np.int64)
         counts[:, REACHED] = 1
@@ -90,7 +88,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, monkeypatch):
         some["figures"] = compute_figures(CollisionModel.of(qiao), targets, q, QUICK)
         return Found(q=q, counts=counts, pair_counts=pair_counts, **some)
 
-    monkeypatch.setattr("ikde.solver.rows.search", boast)
+    substitute(search, boast)
     result = ikde.solve(qiao, TARGETS[0], QUICK.with_changes(restarts=1, generations=3))
     assert not result.reached
     assert result.verified

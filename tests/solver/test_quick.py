@@ -57,9 +57,9 @@ def test_a_quick_result_is_verified_once_plain_numpy_has_confirmed_it_and_not_be
     assert confirmed.q.tobytes() == result.q.tobytes()
 
 
-def test_each_distinct_solution_is_verified_however_the_first_was_found(qiao, monkeypatch):
-    monkeypatch.setattr("ikde.solver.quick.runs_on_tables", lambda: False)
-    target, settings = ikde.Target((0.8, 0.5, 1.0)), SolveSettings(restarts=9)  # not those of another test: it is kept
+def test_each_distinct_solution_is_verified_however_the_first_was_found(qiao, substitute):
+    substitute(find_quick, lambda robot, settings, *_: Quick(robot, settings, robot.detector(None), "position"))
+    target, settings = ikde.Target((0.8, 0.5, 1.0)), SolveSettings(restarts=9)
     assert ikde.solve(qiao, target, settings).verified is None
     for count in (1, 2):
         assert [found.verified for found in ikde.solve_distinct(qiao, target, count, settings)] == [True] * count

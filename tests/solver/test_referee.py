@@ -7,6 +7,7 @@ import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
 from ikde.model.target import KINDS
 from ikde.solver import referee as module
+from ikde.solver.figures import compute_figures
 from ikde.solver.search import REFUSALS, search
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
@@ -51,28 +52,28 @@ def test_no_orientation_is_farther_away_than_half_a_turn(turn):
         ikde.SolveSettings(orientation_tolerance_rad=turn)
 
 
-def refuse(monkeypatch, *rounds):
+def refuse(substitute, *rounds):
     """Let the grader refuse these rows, round after round."""
-    honest, left = module.compute_figures, [set(rows) for rows in rounds]
+    left = [set(rows) for rows in rounds]
 
-    def strict(collision, targets, Q, settings, limits):
-        figures = honest(collision, targets, Q, settings, limits)
+    def strict(robot, detector, targets, Q, settings, limits):
+        figures = compute_figures(robot, detector, targets, Q, settings, limits)
         rows = left.pop(0) if left else set()
         for place, target in enumerate(targets):
             if round(10.0 * target.p_world_tool[1]) in rows:
                 figures.accepted[place] = False
         return figures
 
-    monkeypatch.setattr(module, "compute_figures", strict)
+    substitute(compute_figures, strict)
 
 
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
 
 
-def test_a_refused_row_goes_on_with_its_next_attempt(qiao, monkeypatch):
+def test_a_refused_row_goes_on_with_its_next_attempt(qiao, substitute):
     problem = problem_of(qiao, ikde.SolveSettings(method="lm"))
     plain = search(problem, TARGETS, seed=7, streams=range(5))
-    refuse(monkeypatch, {1, 3}, {3})
+    refuse(substitute, {1, 3}, {3})
     found = search(problem, TARGETS, seed=7, streams=range(5))
     assert found.counts[:, REACHED].all()
     assert (found.counts[:, ATTEMPTS] - plain.counts[:, ATTEMPTS] > 0).tolist() == [False, True, False, True, False]
@@ -81,16 +82,16 @@ def test_a_refused_row_goes_on_with_its_next_attempt(qiao, monkeypatch):
     assert found.q[1].tobytes() == after.q[0].tobytes()
 
 
-def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, monkeypatch):
-    honest, tried = module.compute_figures, []
+def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, substitute):
+    tried = []
 
-    def strict(collision, targets, Q, settings, limits):
-        figures = honest(collision, targets, Q, settings, limits)
+    def strict(robot, detector, targets, Q, settings, limits):
+        figures = compute_figures(robot, detector, targets, Q, settings, limits)
         figures.accepted[:] = False
         tried.append(len(Q))
         return figures
 
-    monkeypatch.setattr(module, "compute_figures", strict)
+    substitute(compute_figures, strict)
     found = search(make(qiao, restarts=2), TARGETS[:1], seed=7, streams=[0])
     assert found.counts[0, REACHED] == 0
     assert found.counts[0, ATTEMPTS] > REFUSALS

@@ -67,7 +67,7 @@ def test_targets_as_arrays_are_the_same_targets(problem):
     assert solve_rows(problem, arrays, seed=7).q.tobytes() == solve_rows(problem, TARGETS, seed=7).q.tobytes()
 
 
-def watch_plain_numpy(monkeypatch):
+def watch_plain_numpy(substitute):
     """Sizes of the calls of `verify_many`."""
     calls = []
 
@@ -75,7 +75,7 @@ def watch_plain_numpy(monkeypatch):
         calls.append(len(Q))
         return verify_many(collision, targets, Q, settings)
 
-    monkeypatch.setattr("ikde.solver.grade.verify_many", watched)
+    substitute(verify_many, watched)
     return calls
 
 
@@ -83,9 +83,9 @@ def watch_plain_numpy(monkeypatch):
     ("verify", "first_stream", "graded"),
     [("all", 0, 130), ("none", 0, 0), ("sample", 0, 3), ("sample", 1, 2), ("sample", 64, 3)],
 )
-def test_plain_numpy_grades_what_is_asked(qiao, monkeypatch, verify, first_stream, graded):
+def test_plain_numpy_grades_what_is_asked(qiao, substitute, verify, first_stream, graded):
     problem = problem_of(qiao, SWIFT)
-    calls = watch_plain_numpy(monkeypatch)
+    calls = watch_plain_numpy(substitute)
     rows = solve_rows(
         problem, TARGETS[:1] * 130, seed=7, first_stream=first_stream, probe=False, verify=verify, threads=1
     )
@@ -94,8 +94,8 @@ def test_plain_numpy_grades_what_is_asked(qiao, monkeypatch, verify, first_strea
     assert rows.verified.compressed().all()
 
 
-def test_a_row_that_is_looked_into_is_graded_whatever_is_asked(problem, monkeypatch):
-    calls = watch_plain_numpy(monkeypatch)
+def test_a_row_that_is_looked_into_is_graded_whatever_is_asked(problem, substitute):
+    calls = watch_plain_numpy(substitute)
     rows = solve_rows(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=7, verify="none")
     unreached = np.flatnonzero(~rows.reached).tolist()
     assert calls == [len(unreached)]

@@ -9,11 +9,13 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
+from ikde.kernels.lanes import solve_lanes
+from ikde.model.reach import reach_excess_m
 from ikde.solver import search as module
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.engines.found import ENGINES
-from ikde.solver.search import choose_engines, search, usable_cores
+from ikde.solver.search import choose_engines, make_engine, search, usable_cores
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
@@ -51,14 +53,14 @@ def test_cutting_attempts_into_calls_does_not_change_the_bits(problem, monkeypat
     assert bits(run(problem)) == bits(whole)
 
 
-def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao, monkeypatch):
-    asked, honest = [], module.reach_excess_m
+def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao, substitute):
+    asked = []
 
     def watched(robot, positions, lower, upper):
         asked.append(len(positions))
-        return honest(robot, positions, lower, upper)
+        return reach_excess_m(robot, positions, lower, upper)
 
-    monkeypatch.setattr(module, "reach_excess_m", watched)
+    substitute(reach_excess_m, watched)
     problem = problem_of(qiao, ikde.SolveSettings(method="de", restarts=9))
     found = search(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=1, streams=range(6))
     assert asked == [1]
@@ -155,16 +157,16 @@ def test_a_reached_target_is_not_searched_further(qiao):
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_ctrl_c_inside_a_lane_gets_through(problem, monkeypatch, threads):
+def test_ctrl_c_inside_a_lane_gets_through(problem, substitute, threads):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(de, "solve_lanes", interrupted)
+    substitute(solve_lanes, interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(problem, threads=threads)
 
 
-def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch):
+def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch, substitute):
     begun = []
     wait = threading.Event()
 
@@ -176,7 +178,7 @@ def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch):
             raise KeyboardInterrupt
         wait.wait(0.05)  # long enough that the first is heard of
 
-    monkeypatch.setattr(de, "solve_lanes", lane)
+    substitute(solve_lanes, lane)
     monkeypatch.setattr(DifferentialEvolution, "attempts_per_call", 1)
     monkeypatch.setattr(de, "LANES_PER_CALL", 1)
     targets = TARGETS * 20
@@ -185,11 +187,11 @@ def test_after_ctrl_c_no_further_lane_begins(problem, monkeypatch):
     assert len(begun) < 100
 
 
-def test_an_error_inside_a_lane_gets_through(problem, monkeypatch):
+def test_an_error_inside_a_lane_gets_through(problem, substitute):
     def broken(*arguments):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(de, "solve_lanes", broken)
+    substitute(solve_lanes, broken)
     with pytest.raises(ZeroDivisionError):
         run(problem, threads=2)
 
@@ -249,9 +251,9 @@ def test_every_target_has_its_own_time(qiao, clock):
     assert found.seconds == pytest.approx(np.full(5, 5.0))
 
 
-def test_an_engine_that_has_no_time_left_is_not_even_made(qiao, clock, monkeypatch):
-    made, honest = [], module.make_engine
-    monkeypatch.setattr(module, "make_engine", lambda name, question: made.append(name) or honest(name, question))
+def test_an_engine_that_has_no_time_left_is_not_even_made(qiao, clock, substitute):
+    made = []
+    substitute(make_engine, lambda name, question: made.append(name) or make_engine(name, question))
     search(make_endless(qiao, "auto", timeout_s=1.0), TARGETS[:1], seed=1, streams=[0])
     assert made == ["lm"]
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ikde.model.collision_model import CollisionModel
-from ikde.track import continuation
+from ikde.solver.solve import solve
+from ikde.track.certify import bound_pairs
 from ikde.track.continuation import Continuation, Found, cut_at_doubt
 from ikde.track.follower import MARGIN_M, make_follower
 from ikde.track.limits import MotionLimits
@@ -21,9 +21,9 @@ def search(path, drive="differential", safe_m=0.0):
     return Continuation(follower=follower, frozen={}, seed=0)
 
 
-def test_a_sample_is_asked_about_once(monkeypatch):
-    asked, solve = [], continuation.solve
-    monkeypatch.setattr(continuation, "solve", lambda *a, **k: asked.append(1) or solve(*a, **k))
+def test_a_sample_is_asked_about_once(substitute):
+    asked = []
+    substitute(solve, lambda *a, **k: asked.append(1) or solve(*a, **k))
     looking = search(make_line([0.9, 0, 1], [0.9, 0, 1.1], 5))
     assert looking._is_possible(3)
     assert looking._is_possible(3)
@@ -44,7 +44,7 @@ def test_a_first_pose_too_far_from_the_platform_is_a_stop():
     assert (found.sample, found.reason, found.limit) == (0, TrackStopReason.DISTANCE_LIMIT, "Oc")
 
 
-def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
+def test_what_may_touch_between_samples_is_cut_off(substitute):
     motion = follow_task("task1", "differential")
     looking = search(motion.path)
     course = looking.follower.follow(looking.follower.begin(motion.q[0], np.array([0.3, 0.3, 0.3])), 100)
@@ -53,14 +53,14 @@ def test_what_may_touch_between_samples_is_cut_off(monkeypatch):
     pairs = found.follower.collision.pairs
     bounds = np.ones((100, len(pairs)))
     bounds[63, 5:7], bounds[70, 2] = (0.0, -0.1), -1.0
-    monkeypatch.setattr(continuation, "bound_pairs", lambda *_: bounds)
+    substitute(bound_pairs, lambda *_: bounds)
     cut = cut_at_doubt(found)
     assert (cut.course.last, len(cut.q), cut.stop.sample) == (63, 64, 64)
     assert (cut.stop.reason, cut.stop.pair) == (TrackStopReason.SELF_COLLISION, pairs[6])
 
 
 @pytest.mark.parametrize("safe_m", [0.0, 0.01])
-def test_more_is_kept_above_the_safe_distance_then(monkeypatch, safe_m):
+def test_more_is_kept_above_the_safe_distance_then(substitute, safe_m):
     margins = []
 
     def cut(found):
@@ -68,7 +68,7 @@ def test_more_is_kept_above_the_safe_distance_then(monkeypatch, safe_m):
         stop = TrackStop(sample=4, reason=TrackStopReason.SELF_COLLISION, text="")
         return found if len(margins) == 2 else Found(course=found.course, follower=found.follower, stop=stop)
 
-    monkeypatch.setattr(continuation, "cut_at_doubt", cut)
+    substitute(cut_at_doubt, cut)
     looking = search(make_line([0.9, 0, 1], [0.9, 0, 1.02], 5), safe_m=safe_m)
     found = looking.find(None)
     assert [round(margin) for margin in margins] == [1, 8]

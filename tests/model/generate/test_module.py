@@ -246,8 +246,8 @@ def test_without_a_cache_a_module_has_no_file_and_the_same_text(empty_cache, mon
     assert len(list((empty_cache / "robots").iterdir())) == 3
 
 
-def test_on_a_disk_that_is_full_a_module_has_no_file(empty_cache, monkeypatch):
-    monkeypatch.setattr(module, "write_file", lambda path, content: False)
+def test_on_a_disk_that_is_full_a_module_has_no_file(empty_cache, substitute):
+    substitute(cache_files.write_file, lambda path, content: False)
     assert not hasattr(load(tiny_robot()), "__file__")
 
 

@@ -3,7 +3,8 @@
 import pytest
 from matplotlib.figure import Figure
 
-from ikde.report.paper import pictures
+from ikde.plot.pose import plot_pose
+from tests.substitutes import substituted
 from tests.tiny_paper import compute_tiny, load_sources
 
 
@@ -23,7 +24,5 @@ def robots():
 @pytest.fixture(autouse=True, scope="package")
 def _blank_pictures():
     """Drawing a robot takes half a second; tests/report/paper/test_pictures.py does it."""
-    patch = pytest.MonkeyPatch()
-    patch.setattr(pictures, "plot_pose", lambda *_, **__: Figure(figsize=(1, 1)))
-    yield
-    patch.undo()
+    with substituted(plot_pose, lambda *_, **__: Figure(figsize=(1, 1))):
+        yield

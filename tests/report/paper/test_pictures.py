@@ -7,8 +7,8 @@ from ikde.report.paper import pictures
 from ikde.report.paper.pictures import draw_robot
 
 
-def test_a_picture_is_a_small_png_with_its_caption(robots, monkeypatch):
-    monkeypatch.setattr(pictures, "plot_pose", plot_pose)
+def test_a_picture_is_a_small_png_with_its_caption(robots, substitute):
+    substitute(pictures.plot_pose, plot_pose)
     robot = robots["key_point"]
     looks = replace(robot.detectors["typical"], pairs="load_arm")
     for detector in ("improved", looks):
