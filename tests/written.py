@@ -4,7 +4,6 @@ from contextlib import contextmanager
 from types import SimpleNamespace
 
 from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED
-from ikde.model.generate.module import load_module
 from ikde.solver.engines import pool
 from ikde.solver.quick import find_quick
 from tests.substitutes import substituted
@@ -13,15 +12,15 @@ from tests.substitutes import substituted
 @contextmanager
 def written_kernels(monkeypatch, change=lambda module: module):
     """Solve as users do, by the modules written for a robot, each of them changed; gives the kinds asked for."""
-    asked = []
+    asked, load = [], pool.load_module
 
     def load_changed(collision, kind):
         asked.append(kind)
-        return change(load_module(robot, detector, kind))
+        return change(load(robot, detector, kind))
 
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
     _forget()
-    with substituted(load_module, load_changed):
+    with substituted(load, load_changed):
         yield asked
     _forget()
 
