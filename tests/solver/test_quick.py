@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.kernels.grade_one import grade_one
 from ikde.model.target import KINDS
 from ikde.solver.grade import confirm
 from ikde.solver.quick import Quick, find_quick
@@ -84,6 +85,11 @@ def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
         result.q[0] = 1.0
     with pytest.raises(AttributeError):
         result.reached = False
+
+
+def test_what_the_grader_does_not_accept_goes_the_long_way(qiao, substitute):
+    substitute(grade_one, lambda *question: (*grade_one(*question)[:4], False))
+    assert solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0) is None
 
 
 def test_what_is_not_reached_goes_the_long_way(qiao):
