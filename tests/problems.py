@@ -11,8 +11,8 @@ TARGET = ikde.Target((0.8, 0.5, 1.0))
 
 
 def problem_of(robot, settings=None, **options):
-    """A problem with the robot's own detector, nothing near and nothing frozen, but for what is said."""
-    given = {"detector": None, "near": None, "freeze": None} | options
+    """A problem with the robot's default detector, nothing near and nothing frozen, but for what is said."""
+    given = {"collision": None, "near": None, "freeze": None} | options
     return make_problem(robot, settings or ikde.SolveSettings(), **given)
 
 

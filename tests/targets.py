@@ -1,6 +1,7 @@
 """Configurations free of collision, and targets that the tool meets somewhere."""
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_gaps
 from tests.conftest import random_q
 
@@ -17,9 +18,8 @@ def free_q(robot, rng):
 
 def free_rows(robot, rng, count):
     """Configurations [count, N] anywhere inside the limits that are free of collision."""
-    detector = robot.detector(None)
-    Q = random_q(robot, rng, 20 * count)
-    free = (compute_gaps(robot, detector.spheres, robot.pairs(detector), Q) > detector.safe_distance_m).all(axis=1)
+    collision, Q = CollisionModel.of(robot), random_q(robot, rng, 20 * count)
+    free = (compute_gaps(collision, Q) > collision.limit_m).all(axis=1)
     assert free.sum() >= count
     return Q[free][:count]
 

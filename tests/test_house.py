@@ -26,6 +26,7 @@ NO_TEST_OF_ITS_OWN = {
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
     "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",
+    "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
     "model/surface.py": "tests/solver/test_surface.py",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
 }

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import ikde
+from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_gaps
 from tests import regrade, robot_texts

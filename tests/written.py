@@ -16,7 +16,7 @@ def written_kernels(monkeypatch, change=lambda module: module):
 
     def load_changed(collision, kind):
         asked.append(kind)
-        return change(load(robot, detector, kind))
+        return change(load(collision, kind))
 
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
     _forget()

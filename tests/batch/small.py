@@ -24,7 +24,7 @@ def target_bits(targets):
 
 def make_arm(name="auto", detector=None, method="auto", **settings):
     chosen = ikde.SolveSettings.for_method(method).with_changes(**settings)
-    problem = problem_of(ROBOT, chosen, detector=detector)
+    problem = problem_of(ROBOT, chosen, collision=detector)
     return Arm(name=name, method=method, problem=problem)
 
 

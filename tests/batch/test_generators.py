@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.search import search
 from tests.batch.small import target_bits
 from tests.problems import problem_of
@@ -69,7 +70,7 @@ def test_reachable_targets_ask_for_the_goal(qiao, goal):
 
 
 def test_reachable_targets_are_reached(qiao):
-    problem = problem_of(qiao, detector="typical")
+    problem = problem_of(qiao, collision="typical")
     targets = reachable(qiao, "position", detector="typical").read(0, 10)
     assert search(problem, targets, seed=0, streams=range(10)).counts[:, 0].all()
 

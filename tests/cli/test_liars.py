@@ -12,6 +12,7 @@ import yaml
 
 import ikde
 from ikde.kernels.tracking import track_span
+from ikde.model.collision_model import CollisionModel
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from tests import reference

@@ -5,7 +5,8 @@ import numpy as np
 import ikde
 from ikde.kernels.blocks import Terms, flatten_grader
 from ikde.kernels.figures import compute_figures
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot, pack_targets
 from tests.kernels.arrays import freeze
 from tests.random_robots import random_robot
 
@@ -20,6 +21,8 @@ def grade(robot, detector, targets, Q, terms=None, grader=compute_figures):
     """Figures [T, 3], pairs [T] and verdicts [T] by the grader."""
     figures, pairs = np.full((len(Q), 3), np.nan), np.full(len(Q), -9, dtype=np.int64)
     accepted = np.zeros(len(Q), dtype=np.bool_)
-    block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms or terms_of(robot))
+    block = flatten_grader(
+        pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms or terms_of(robot)
+    )
     grader(*block, *pack_targets(targets), np.ascontiguousarray(Q), figures, pairs, accepted)
     return figures, pairs, accepted

@@ -113,7 +113,7 @@ def test_counts_add_up(robot, rng):
 
 def test_near_a_configuration_the_nearest_free_branch_is_taken(rng):
     """Against all branches, each judged by plain numpy."""
-    detector, width, seen = UR5.detector(None), UR5.upper - UR5.lower, 0
+    detector, width, seen = CollisionModel.of(UR5).detector, UR5.upper - UR5.lower, 0
     for q in free_rows(UR5, rng, 25):
         near = random_q(UR5, rng)
         T = compute_frames(UR5, q)[UR5.tool]
@@ -138,7 +138,7 @@ def test_the_first_base_near_a_configuration_is_its_own(rng):
 
 @every_robot
 def test_a_module_of_the_robots_own_finds_the_same(robot, rng):
-    module = run_text(format_module(robot, robot.detector(None), "pose"))
+    module = run_text(format_module(CollisionModel.of(robot), "pose"))
     targets, seeds = make_targets(robot, random_q(robot, rng, 20), "pose"), make_pool(robot, rng)
     by_tables, own = run(robot, targets, seeds), run(robot, targets, seeds, module=module)
     for name in ("q", "score", "counts"):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ikde.kernels.evolution import evolve, find_best, is_better, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.rng import seed_stream
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from ikde.solver.problem import pack_search
 from ikde.solver.settings import SolveSettings
 from tests import reference
@@ -28,7 +28,7 @@ def make_case(robot, *, rule="feasibility", freeze=None, **changes):
     """A small problem; the rule `ignore` is that of a robot without a detector."""
     chosen = {"population": 8, "generations": 10, "collision": "reject" if rule == "ignore" else rule, **changes}
     detector = "none" if rule == "ignore" else None
-    return problem_of(robot, SolveSettings(**chosen), detector=detector, freeze=freeze)
+    return problem_of(robot, SolveSettings(**chosen), collision=detector, freeze=freeze)
 
 
 def run_evolve(problem, target, seed=1):

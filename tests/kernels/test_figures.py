@@ -53,7 +53,7 @@ def test_the_bits_are_those_of_the_scalar_kernels(robot, rng):
 @pytest.mark.parametrize("count", [0, 1, 2, 3, LANES - 1, LANES, LANES + 1, 3 * LANES])
 def test_a_configuration_does_not_hang_on_its_neighbours(qiao, rng, count):
     Q = random_q(qiao, rng, 3 * LANES)
-    targets, detector = targets_near(qiao, Q, rng), qiao.detector(None)
+    targets, detector = targets_near(qiao, Q, rng), CollisionModel.of(qiao).detector
     whole, piece = grade(qiao, detector, targets, Q), grade(qiao, detector, targets[:count], Q[:count])
     for every, some in zip(whole, piece, strict=True):
         assert some.tobytes() == every[:count].tobytes()
@@ -63,7 +63,7 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
     Q = random_q(qiao, rng, 400)
     Q[::3, 2] = qiao.upper[2] + 1e-15 * np.arange(134)
     Q[5] = np.nan
-    targets, detector = targets_near(qiao, Q[:5].repeat(80, axis=0), rng), qiao.detector(None)
+    targets, detector = targets_near(qiao, Q[:5].repeat(80, axis=0), rng), CollisionModel.of(qiao).detector
     figures, _, _ = grade(qiao, detector, targets, Q)
     position, orientation = np.nanmedian(figures[:, 0]), np.nanmedian(figures[:, 1])
     _, _, accepted = grade(qiao, detector, targets, Q, terms_of(qiao, position, orientation))
@@ -77,8 +77,8 @@ def test_accepted_means_within_tolerances_and_limits_and_free(qiao, rng):
 
 def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
     q, targets = qiao.home[None], Targets(np.zeros((1, 3)))
-    (position, _, clearance), *_ = grade(qiao, qiao.detector(None), targets, q)[0]
-    detector = pack_detector(qiao, qiao.detector(None))
+    (position, _, clearance), *_ = grade(qiao, CollisionModel.of(qiao).detector, targets, q)[0]
+    detector = CollisionModel(robot=qiao, detector=CollisionModel.of(qiao).detector).arrays
     for safe_distance, tolerance, expected in (
         (clearance, position, False),
         (np.nextafter(clearance, 0.0), position, True),
@@ -104,7 +104,7 @@ def test_it_shares_no_code_with_the_search():
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 def test_it_is_vectorised(qiao):
     fresh = numba.njit(error_model="numpy", nogil=True)(compute_figures.py_func)  # of cached code there is no text
-    grade(qiao, qiao.detector(None), Targets(np.zeros((1, 3))), qiao.home[None], grader=fresh)
+    grade(qiao, CollisionModel.of(qiao).detector, Targets(np.zeros((1, 3))), qiao.home[None], grader=fresh)
     text = next(iter(fresh.inspect_asm().values()))
     if "vsubpd" not in text:
         pytest.skip("a machine without wide registers")

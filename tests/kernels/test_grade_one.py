@@ -23,7 +23,7 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
     for detector in (None, *robot.detectors.values()):
         terms = terms_of(robot, 0.5, 1.0)
         figures, pairs, accepted = grade(robot, detector, targets, Q, terms)
-        block = flatten_grader(pack_robot(robot), pack_detector(robot, detector), terms)
+        block = flatten_grader(pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms)
         for row, q in enumerate(Q):
             *errors, pair, verdict = grade_one(*block, *pack_targets(targets.take(np.array([row]))), q)
             assert np.array(errors).tobytes() == figures[row].tobytes()

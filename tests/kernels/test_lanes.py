@@ -64,8 +64,8 @@ def test_on_a_limit_is_inside():
 def run_lane(robot, target, blocks, *, seed=3, detector=None, near=None, **changes):
     """Run the attempts block by block: (q, score, counts, pair counts)."""
     settings = SolveSettings(**{"population": 8, "generations": 40, "update": "generation", **changes})
-    problem = problem_of(robot, settings, detector=detector, near=near)
-    packed, spheres = pack_robot(robot), pack_detector(robot, problem.detector)
+    problem = problem_of(robot, settings, collision=detector, near=near)
+    packed, spheres = pack_robot(robot), problem.collision.arrays
     q, score, counts = np.zeros(len(robot.joints)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)
     pairs = np.zeros(len(spheres.pairs), dtype=np.int64)
     search, targets = pack_search(problem), pack_targets([target])

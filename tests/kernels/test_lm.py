@@ -52,7 +52,7 @@ def some_out_of_reach(robot, kind, count, rng):
 
 def make_question(robot, kind, count=2 * LANES + 5, budget=6, seed=3):
     """Targets, streams and budgets of differing size; starts from a pool of free configurations."""
-    rng, detector = np.random.default_rng(seed), robot.detector(None)
+    rng, detector = np.random.default_rng(seed), CollisionModel.of(robot).detector
     targets = some_out_of_reach(robot, kind, count, rng)
     base = robot.name == "qiao2021"
     Q = random_q(robot, rng, 400)

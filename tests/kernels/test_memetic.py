@@ -42,7 +42,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarn
 
 def make_case(robot, *, detector=None, near=None, freeze=None, **changes):
     settings = SolveSettings(bounds="midpoint", **changes)
-    return problem_of(robot, settings, detector=detector, near=near, freeze=freeze)
+    return problem_of(robot, settings, collision=detector, near=near, freeze=freeze)
 
 
 def free_in_ranges(robot, problem, rng):

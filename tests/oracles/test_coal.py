@@ -61,7 +61,7 @@ def coal_gaps(robot, detector, q):
 
 def kernel_spheres(robot, detector, q):
     """Packed detector, bounding spheres [C, 3] and sphere centres [3, S] by the kernels."""
-    packed, T_world_body = pack_detector(robot, detector), run_bodies(robot, q)
+    packed, T_world_body = CollisionModel(robot=robot, detector=detector).arrays, run_bodies(robot, q)
     bounds, centres = packed.bounds.copy(), np.empty((3, packed.radius.size))
     compute_bounds(packed, T_world_body, bounds)
     compute_centres(packed, T_world_body, centres)

@@ -77,7 +77,9 @@ def test_text_has_a_line_a_pair(any_robot):
 
 
 def test_text_counts_pairs_first(qiao):
-    assert show(qiao, qiao.detector(None)).startswith("collision: detector improved compares 35 pairs, 20 left out\n")
+    assert show(qiao, CollisionModel.of(qiao).detector).startswith(
+        "collision: detector improved compares 35 pairs, 20 left out\n"
+    )
     robot = load_text(
         BARE.replace("{spheres: s,", "{spheres: s, pairs: one,") + "pairs: {one: {pairs: {platform: [forearm]}}}"
     )
@@ -112,5 +114,5 @@ def test_pairs_that_always_touch_are_named_with_the_line_to_add_in_one_piece(wid
 
 def test_names_and_reasons_in_brackets_are_shown_as_they_are():
     robot = load_text(BARE.replace("upper_arm, from", "'[red]arm', from"))
-    assert "platform - [red]arm" in show(robot, robot.detector(None))
-    assert "[red]arm - forearm" in show(robot, replace(robot.detector(None)))
+    assert "platform - [red]arm" in show(robot, CollisionModel.of(robot).detector)
+    assert "[red]arm - forearm" in show(robot, replace(CollisionModel.of(robot).detector))

@@ -7,6 +7,7 @@ import pytest
 
 import ikde
 from ikde.errors import VerificationError
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.figures import (
     AGREEMENT,
     compute_clearances,
@@ -99,7 +100,7 @@ def test_clearances_are_what_check_says(qiao, rng):
 
 
 def test_a_clearance_that_only_the_kernels_see_raises(qiao, substitute):
-    substitute(compute_gaps, lambda robot, spheres, pairs, Q: np.full((len(Q), 1), 0.5))
+    substitute(compute_gaps, lambda collision, Q: np.full((len(Q), 1), 0.5))
     with pytest.raises(VerificationError, match="disagree"):
         compute_clearances(CollisionModel.of(qiao), qiao.home[None])
 

@@ -26,8 +26,8 @@ TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(3)]
 def lie_about(substitute, figure, by, only=None):
     """Let the kernels' figures be off; `only`: for this target alone."""
 
-    def lying(robot, detector, targets, Q, settings, limits):
-        figures = compute_figures(robot, detector, targets, Q, settings, limits)
+    def lying(collision, targets, Q, settings, limits):
+        figures = compute_figures(collision, targets, Q, settings, limits)
         points = [tuple(target.p_world_tool) for target in targets]
         guilty = np.array([only is None or point == tuple(only.p_world_tool) for point in points])
         return replace(figures, **{figure: getattr(figures, figure) + np.where(guilty, by, 0.0)})
@@ -98,7 +98,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
 @pytest.mark.parametrize("verify_rows", ["all", "sample"])
 def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
     """Its figures are true and its verdicts are not: those of plain numpy count as well."""
-    problem, detector = problem_of(qiao, QUICK), qiao.detector(None)
+    problem, detector = problem_of(qiao, QUICK), CollisionModel.of(qiao).detector
     outside = qiao.home + np.where(qiao.slides, 0.0, 9.0)
     for q, asked in ((qiao.home, TARGETS[0]), (outside, ikde.Target(forward(qiao, outside)[qiao.tool][:3, 3]))):
         targets = Targets.of([asked])

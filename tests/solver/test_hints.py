@@ -194,7 +194,7 @@ def test_what_collides_answers_nothing(qiao):
     q = qiao.home.copy()
     q[4] = 2.5
     target = ikde.Target(ikde.forward(qiao, q)[qiao.tool][:3, 3])
-    problems = [problem_of(qiao, LM, detector=name) for name in (None, "none")]
+    problems = [problem_of(qiao, LM, collision=name) for name in (None, "none")]
     assert [meets(problem, target, q) for problem in problems] == [False, True]
 
 
@@ -281,10 +281,10 @@ def test_no_tolerance_makes_up_for_a_collision_or_a_limit(qiao):
     T = ikde.forward(qiao, q)[qiao.tool]
     colliding = ikde.Target(T[:3, 3] + [2e-5, 0.0, 0.0])
     assert hint_at_tolerance(problem, colliding, q, verify(qiao, colliding, q)) is None
-    unchecked = problem_of(qiao, detector="none")
-    assert hint_at_tolerance(unchecked, colliding, q, verify(qiao, colliding, q, detector="none"))
+    unchecked = problem_of(qiao, collision="none")
+    assert hint_at_tolerance(unchecked, colliding, q, verify(qiao, colliding, q, collision="none"))
     narrow = with_ranges(qiao, {"d_x": (0.1, 0.2)})
-    problem = problem_of(narrow, detector="none")
+    problem = problem_of(narrow, collision="none")
     assert hint_at_tolerance(problem, target, qiao.home, verify(qiao, target, qiao.home)) is None
 
 

@@ -108,7 +108,7 @@ def test_changed_settings_leave_the_rest(qiao):
 )
 def test_the_collision_rule_is_packed(qiao, detector, collision, rule):
     settings = ikde.SolveSettings(collision=collision)
-    assert pack_search(problem_of(qiao, settings, detector=detector)).collision_rule == rule
+    assert pack_search(problem_of(qiao, settings, collision=detector)).collision_rule == rule
 
 
 def test_numbers_are_packed_as_they_are(qiao):

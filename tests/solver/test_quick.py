@@ -9,6 +9,7 @@ import pytest
 
 import ikde
 from ikde.kernels.grade_one import grade_one
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver.grade import confirm
 from ikde.solver.quick import Quick, find_quick
@@ -59,7 +60,7 @@ def test_a_quick_result_is_verified_once_plain_numpy_has_confirmed_it_and_not_be
 
 
 def test_each_distinct_solution_is_verified_however_the_first_was_found(qiao, substitute):
-    substitute(find_quick, lambda robot, settings, *_: Quick(robot, settings, robot.detector(None), "position"))
+    substitute(find_quick, lambda robot, settings, *_: Quick(CollisionModel.of(robot), settings, "position"))
     target, settings = ikde.Target((0.8, 0.5, 1.0)), SolveSettings(restarts=9)
     assert ikde.solve(qiao, target, settings).verified is None
     for count in (1, 2):

@@ -5,6 +5,7 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver import referee as module
 from ikde.solver.figures import compute_figures
@@ -16,7 +17,7 @@ from tests.targets import make_targets
 
 
 def make(robot, **settings):
-    return problem_of(robot, ikde.SolveSettings(**settings), detector="none")
+    return problem_of(robot, ikde.SolveSettings(**settings), collision="none")
 
 
 @pytest.mark.parametrize("method", ["lm", "memetic"])
@@ -41,7 +42,7 @@ def test_loose_tolerances_lose_no_target(rng):
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=0.1, orientation_tolerance_rad=1.0)
     rows = ikde.solve_many(
-        robot, make_targets(robot, random_q(robot, rng, 400), "pose"), settings, detector="none", method="lm"
+        robot, make_targets(robot, random_q(robot, rng, 400), "pose"), settings, collision="none", method="lm"
     )
     assert rows.reached.all()
 
@@ -56,8 +57,8 @@ def refuse(substitute, *rounds):
     """Let the grader refuse these rows, round after round."""
     left = [set(rows) for rows in rounds]
 
-    def strict(robot, detector, targets, Q, settings, limits):
-        figures = compute_figures(robot, detector, targets, Q, settings, limits)
+    def strict(collision, targets, Q, settings, limits):
+        figures = compute_figures(collision, targets, Q, settings, limits)
         rows = left.pop(0) if left else set()
         for place, target in enumerate(targets):
             if round(10.0 * target.p_world_tool[1]) in rows:
@@ -85,8 +86,8 @@ def test_a_refused_row_goes_on_with_its_next_attempt(qiao, substitute):
 def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, substitute):
     tried = []
 
-    def strict(robot, detector, targets, Q, settings, limits):
-        figures = compute_figures(robot, detector, targets, Q, settings, limits)
+    def strict(collision, targets, Q, settings, limits):
+        figures = compute_figures(collision, targets, Q, settings, limits)
         figures.accepted[:] = False
         tried.append(len(Q))
         return figures
@@ -102,7 +103,7 @@ def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=1e-16, orientation_tolerance_rad=1e-16, restarts=40, method="lm")
     rows = ikde.solve_many(
-        robot, make_targets(robot, random_q(robot, rng, 30), "pose"), settings, detector="none", verify="all"
+        robot, make_targets(robot, random_q(robot, rng, 30), "pose"), settings, collision="none", verify="all"
     )
     assert 0 < rows.reached.sum() < 30
     plain = verify_many(CollisionModel.of(robot, "none"), rows.targets, rows.q, settings)

@@ -114,13 +114,13 @@ def test_self_collision_is_judged_by_the_safe_distance(qiao):
     rows = solve_rows(problem_of(qiao, QUICK), TARGETS, seed=7)
     assert (rows.self_collision == (rows.clearance_m <= 0.0)).all()
     far = ikde.Detector(name="far", spheres="improved", pairs="formula_22", safe_distance_m=1.0)
-    near = solve_rows(problem_of(qiao, SWIFT, detector=far), TARGETS, seed=7, probe=False)
+    near = solve_rows(problem_of(qiao, SWIFT, collision=far), TARGETS, seed=7, probe=False)
     assert near.self_collision.tolist() == [True] * 6
     assert not near.reached.any()
 
 
 def test_without_a_detector_self_collision_is_not_checked(qiao):
-    problem = problem_of(qiao, QUICK, detector="none")
+    problem = problem_of(qiao, QUICK, collision="none")
     rows = solve_rows(problem, TARGETS, seed=7)
     assert rows.self_collision.tolist() == [result.self_collision for result in rows] == [None] * 6
     assert rows.reached.all()

@@ -125,7 +125,7 @@ def test_auto_takes_the_closed_form_where_the_arm_alone_may_move(qiao, frozen, e
 def test_the_branches_of_an_arm_on_a_frozen_base_are_enumerated_once(qiao, frozen, attempts):
     target, settings = make_target(qiao, qiao.home, "pose"), ikde.SolveSettings(method="analytic", restarts=20)
     found = search(
-        problem_of(qiao, settings, detector="single", freeze=dict.fromkeys(frozen, 0.0)), [target], seed=1, streams=[0]
+        problem_of(qiao, settings, collision="single", freeze=dict.fromkeys(frozen, 0.0)), [target], seed=1, streams=[0]
     )
     assert found.counts[0, [REACHED, ATTEMPTS]].tolist() == [0, attempts]
 
@@ -225,7 +225,7 @@ def clock(monkeypatch):
 def make_endless(robot, method, **settings):
     """A question that is never answered: every configuration collides."""
     settings = ikde.SolveSettings(method=method, **{"restarts": 10**6, "timeout_s": 5.0, **settings})
-    return problem_of(robot, settings, detector="single")
+    return problem_of(robot, settings, collision="single")
 
 
 BRIEF = {"population": 6, "generations": 1}

@@ -41,13 +41,13 @@ def test_a_pair_that_is_ever_apart_is_not_called_so():
 
 def test_the_safe_distance_counts():
     robot = load_text(BARE)
-    far = replace(robot.detector(None), safe_distance_m=10.0)
-    assert find_always_touching(robot, far).pairs == robot.pairs(far)
+    far = CollisionModel.of(robot, replace(CollisionModel.of(robot).detector, safe_distance_m=10.0))
+    assert find_always_touching(far).pairs == far.pairs
 
 
 def test_a_pair_that_touches_always_stays_compared():
     robot = load_text(FAT)
-    assert ("platform", "upper_arm") in robot.pairs(robot.detector(None))
+    assert ("platform", "upper_arm") in CollisionModel.of(robot).pairs
     assert str(find(robot)) == "platform - upper_arm touches in each of 1,000 random configurations"
 
 
@@ -103,7 +103,7 @@ def test_many_spheres_are_compared_a_few_configurations_at_a_time(monkeypatch, s
 
     def record(collision, q, pairs):
         sizes.append(len(q) * len(pairs))
-        return compute_gaps(robot, spheres, pairs, q)
+        return compute_gaps(collision, q, pairs)
 
     substitute(compute_gaps, record)
     monkeypatch.setattr(module, "ROOM", 300)

@@ -177,9 +177,9 @@ def test_deviation_is_from_where_the_path_is_halfway(qiao):
 
 @pytest.mark.parametrize("room", [1e-4, 1e-6])
 def test_free_samples_are_not_doubted_for_lack_of_halvings(qiao, substitute, room):
-    detector, shares = qiao.detector(None), np.linspace(0.0, 1.0, 9)[:, None]
+    detector, shares = CollisionModel.of(qiao).detector, np.linspace(0.0, 1.0, 9)[:, None]
     q = qiao.home + 0.2 * shares * np.ones(9)
     least = compute_gaps(CollisionModel(robot=qiao, detector=detector), q).min()
     # as if the nearest pair kept no more than `room` at the samples
     substitute(compute_gaps, lambda *told: compute_gaps(*told) - (least - room))
-    assert bound_segments(qiao, detector, q).min() > 0.0
+    assert bound_segments(CollisionModel(robot=qiao, detector=detector), q).min() > 0.0

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ikde.model.collision_model import CollisionModel
 from ikde.solver.solve import solve
 from ikde.track.certify import bound_pairs
 from ikde.track.continuation import Continuation, Found, cut_at_doubt

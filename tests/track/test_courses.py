@@ -7,7 +7,6 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import DRIFT
-from ikde.model.collision_model import CollisionModel
 from ikde.track import courses
 from ikde.track.courses import USES, ContinuationSettings, choose_course, farthest
 from ikde.track.path import ToolPath

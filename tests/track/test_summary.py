@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ikde.model.collision_model import CollisionModel
 from tests.random_robots import make_frame, make_robot, with_ranges
 from tests.track.measured import DT_S, make_measured, wave
 
@@ -80,9 +81,14 @@ def test_what_is_left_counts_by_its_share(qiao, motion):
     assert left == pytest.approx(0.011 - 0.05 * 0.2)
 
 
+def by_robot(motion, robot):
+    """The motion as if this robot had made it."""
+    return replace(motion, collision=CollisionModel.of(robot))
+
+
 def with_q6_in(robot, motion, half):
     """The motion with q6 kept so near home, rad."""
-    return replace(motion, robot=with_ranges(robot, {"q6": (robot.home[8] - half, robot.home[8] + half)}))
+    return by_robot(motion, with_ranges(robot, {"q6": (robot.home[8] - half, robot.home[8] + half)}))
 
 
 @pytest.mark.parametrize("ends", [(-np.inf, np.inf), (-10.0, np.inf), (None, None)])
@@ -90,13 +96,13 @@ def test_a_joint_without_a_range_does_not_count(qiao, motion, ends):
     home = dict(zip(qiao.joint_names, qiao.home, strict=True))
     still = replace(motion, trajectory=replace(motion.trajectory, q=np.tile(qiao.home, (3, 1))))
     free = {name: tuple(home[name] if end is None else end for end in ends) for name in qiao.joint_names}
-    assert replace(still, robot=with_ranges(qiao, free)).range_left is None
-    assert replace(still, robot=with_ranges(qiao, {**free, "q2": (-7.0, 7.0)})).range_left[0] == "q2"
+    assert by_robot(still, with_ranges(qiao, free)).range_left is None
+    assert by_robot(still, with_ranges(qiao, {**free, "q2": (-7.0, 7.0)})).range_left[0] == "q2"
 
 
 def test_a_joint_beyond_its_range_is_named_before_all(qiao, motion):
     robot = with_ranges(qiao, {"q1": (-np.inf, qiao.home[3] - 0.01), "q2": (qiao.home[4] - 1.0, qiao.home[4] + 0.04)})
-    name, left, _ = replace(motion, robot=robot).range_left
+    name, left, _ = by_robot(motion, robot).range_left
     assert name == "q1"
     assert left < 0.0
 

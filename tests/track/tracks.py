@@ -7,6 +7,7 @@ import numpy as np
 
 import ikde
 from ikde.io.track_file import load_track
+from ikde.model.collision_model import CollisionModel
 from ikde.track.follow_path import follow_path
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
@@ -37,7 +38,7 @@ def follow_task(name, drive):
 
 def make_follower_along(path, drive="differential"):
     """A follower of the 9-DoF robot with its own limits and detector."""
-    return make_follower(robot(), path, drive=drive, limits=MotionLimits.of(robot()), detector=robot().detector(None))
+    return make_follower(CollisionModel.of(robot()), path, drive=drive, limits=MotionLimits.of(robot()))
 
 
 def make_line(start, end, samples, **asked):

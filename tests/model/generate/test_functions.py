@@ -11,7 +11,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps, order_pairs
 from ikde.model.generate.proofs import drop_implied, drop_proved
-from ikde.model.pack import pack_detector, pack_robot, pack_targets
+from ikde.model.pack import pack_robot, pack_targets
 from tests.collision_robots import (
     CASES,
     RANDOM,

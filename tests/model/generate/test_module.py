@@ -265,9 +265,9 @@ import json, pathlib, sys, time
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
+from ikde.model.collision_model import CollisionModel
 from tests.tiny_robot import tiny_robot
 import numpy as np
-from tests.tiny_robot import tiny_robot
 robot = tiny_robot()
 while not pathlib.Path(sys.argv[1]).exists():
     time.sleep(0.01)
