@@ -70,10 +70,10 @@ def collides(detector, bounds, centres):
     return find_colliding_pair(detector, bounds, centres) >= 0
 
 
-@kernel
-def compute_pair_clearance(detector, centres, a, b):
-    """Smallest distance - R_i - R_j between two components, in m; negative is the depth of penetration."""
-    smallest = math.inf
+@inline_kernel
+def find_closest_spheres(detector, centres, a, b):
+    """Smallest distance - R_i - R_j between two components in m, negative where they overlap, and its spheres i, j."""
+    smallest, first, second = math.inf, detector.components[a, FIRST], detector.components[b, FIRST]
     for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
         for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
             dx, dy, dz = (
@@ -82,8 +82,9 @@ def compute_pair_clearance(detector, centres, a, b):
                 centres[2, i] - centres[2, j],
             )
             gap = math.sqrt(dx * dx + dy * dy + dz * dz) - detector.radius[i] - detector.radius[j]
-            smallest = min(smallest, gap)
-    return smallest
+            if gap < smallest:
+                smallest, first, second = gap, i, j
+    return smallest, first, second
 
 
 @kernel
@@ -97,7 +98,7 @@ def compute_clearance(detector, bounds, centres):
         a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
         if bounds_are_apart(detector, bounds, a, b, smallest):
             continue
-        gap = compute_pair_clearance(detector, centres, a, b)
+        gap, _, _ = find_closest_spheres(detector, centres, a, b)
         if gap < smallest:
             smallest, closest = gap, pair
     return smallest, closest

@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
-from ikde.kernels.clearance import bounds_are_apart
-from ikde.kernels.clearing import add_chain, fill_contact, find_contact
+from ikde.kernels.contacts import Contacts, add_chain, fill_gradient, find_contacts, make_contacts
 from ikde.kernels.drive import fold_row
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
@@ -28,8 +27,7 @@ class Fences(NamedTuple):
     slope: Floats  # [MOST_FENCES, D] m for the whole of the largest step
     pair: Ints  # [MOST_FENCES] the pair of components of a row; -1: none
     row: Floats  # [N]
-    bounds: Floats  # [C, 3] m
-    centres: Floats  # [3, S] m
+    contacts: Contacts
 
 
 @kernel
@@ -40,43 +38,23 @@ def make_fences(detector, joints, size):
         np.empty((MOST_FENCES, size)),
         np.empty(MOST_FENCES, dtype=np.int64),
         np.empty(joints),
-        np.empty((detector.components.shape[0], 3)),
-        np.empty((3, detector.radius.size)),
+        make_contacts(np.empty((detector.components.shape[0], 3)), np.empty((3, detector.radius.size)), MOST_PAIRS),
     )
-
-
-@inline_kernel
-def choose_place(fences, count, slack):
-    """Where a row with this slack goes: behind the others, in the place of the roomiest, or nowhere (-1)."""
-    if count < MOST_PAIRS:
-        return count
-    roomiest = 0
-    for i in range(1, count):
-        if fences.slack[i] > fences.slack[roomiest]:
-            roomiest = i
-    return roomiest if slack < fences.slack[roomiest] else -1
 
 
 @leaf_kernel
 def fence_pairs(robot, detector, drive, track, T_world_body, q, step, fences):
     """Rows of the pairs nearer than the reach at the poses of the step's end; returns how many."""
-    count = 0
     if track.reach == -math.inf:
-        return count
-    compute_bounds(detector, T_world_body, fences.bounds)
-    compute_centres(detector, T_world_body, fences.centres)
-    for pair in range(detector.pairs.shape[0]):
-        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-        if bounds_are_apart(detector, fences.bounds, a, b, track.reach):
-            continue
-        gap, i, j = find_contact(detector, fences.centres, a, b)
-        place = choose_place(fences, count, gap - track.margin) if gap < track.reach else -1
-        if place < 0:
-            continue
-        fill_contact(robot, detector, T_world_body, fences.centres, a, b, i, j, fences.row)
-        fold_row(drive, q, step, fences.row, fences.slope[place])
-        fences.slack[place], fences.pair[place] = gap - track.margin, pair
-        count = max(count, place + 1)
+        return 0
+    contacts = fences.contacts
+    compute_bounds(detector, T_world_body, contacts.bounds)
+    compute_centres(detector, T_world_body, contacts.centres)
+    count = find_contacts(detector, track.reach, MOST_PAIRS, contacts)
+    for k in range(count):
+        fill_gradient(robot, detector, T_world_body, contacts, k, fences.row)
+        fold_row(drive, q, step, fences.row, fences.slope[k])
+        fences.slack[k], fences.pair[k] = contacts.gap[k] - track.margin, contacts.spheres[k, 0]
     return count
 
 

@@ -7,9 +7,9 @@ For one, the lanes of `kernels/figures.py` are mostly overhead: 7 us, where this
 import numpy as np
 
 from ikde.kernels.arrays import TargetArrays
+from ikde.kernels.attempt import is_inside
 from ikde.kernels.blocks import unpack_grader
 from ikde.kernels.clearance import compute_clearance
-from ikde.kernels.figures import is_inside
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import kernel
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error

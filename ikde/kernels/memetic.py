@@ -13,16 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, OUTSIDE, REACHED, Floats, Ints
-from ikde.kernels.clearance import collides, count_colliding_pairs
-from ikde.kernels.clearing import MOST_CONTACTS, clear_step
+from ikde.kernels.arrays import EVALUATIONS, Floats, Ints
+from ikde.kernels.attempt import finish_attempt, set_box
+from ikde.kernels.clearance import collides
+from ikde.kernels.contacts import MAX_CONTACTS, Contacts, make_contacts, take_clear_step
 from ikde.kernels.damped import DescentWorkspace, compute_error, make_descent_workspace
 from ikde.kernels.evolution import (
     FEASIBILITY,
-    IGNORE,
     Workspace,
     compute_cost,
-    compute_depth,
     fill_start,
     is_better,
     keep,
@@ -30,7 +29,6 @@ from ikde.kernels.evolution import (
     score_point,
 )
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.lanes import is_inside, set_box
 from ikde.kernels.mutation import repair_bound
 from ikde.kernels.rng import next_index, next_uniform, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
@@ -64,6 +62,7 @@ class MemeticWorkspace(NamedTuple):
 
     members: Workspace
     descent: DescentWorkspace  # its poses are those of `members`
+    contacts: Contacts  # its spheres are those of `members`
     history: HistoryWorkspace
     order: Ints  # [NP] the members, best first
     fresh: Ints  # [NP] 1 if a member has changed since it was polished
@@ -76,7 +75,7 @@ def make_memetic_workspace(robot, detector, joints, memetic):
     """Allocate the buffers for a robot, a detector and the settings."""
     population = memetic.first_population
     members = make_workspace(robot, detector, joints, population)
-    descent = make_descent_workspace(robot, joints, 6 + MOST_CONTACTS)
+    descent = make_descent_workspace(robot, joints, 6 + MAX_CONTACTS)
     return MemeticWorkspace(
         members,
         DescentWorkspace(
@@ -88,6 +87,7 @@ def make_memetic_workspace(robot, detector, joints, memetic):
             descent.solution,
             descent.step,
         ),
+        make_contacts(members.bounds, members.centres, descent.error.size),
         make_history(memetic.memory, population, np.int64(memetic.archive_share * population), joints),
         np.empty(population, dtype=np.int64),
         np.empty(population, dtype=np.int64),
@@ -208,9 +208,7 @@ def polish(robot, detector, target, index, search, memetic, descent, box, reach,
         if meets or idle >= memetic.patience or step == steps or spent + q.size >= memetic.evaluations:
             break
         compute_error(target, index, descent.rotation_length, members.T_world_tool, work.descent.error)
-        square = clear_step(
-            robot, detector, target, index, box, descent, reach, members.bounds, members.centres, q, work.descent
-        )
+        square = take_clear_step(robot, detector, target, index, box, descent, reach, work.contacts, q, work.descent)
         spent += q.size
         idle = 0 if square < PROGRESS * smallest else idle + 1
         smallest = min(smallest, square)
@@ -337,7 +335,7 @@ def solve_memetic_lane(
 ):
     """Run attempts attempts[0] .. attempts[1]-1 on one target, up to the first that is reached.
 
-    Attempts are independent; the outputs are those of `lanes.solve_lane`. An attempt makes `memetic.evaluations`, and
+    Attempts are independent; the outputs are those of `finish_attempt`. An attempt makes `memetic.evaluations`, and
     after one in vain at most `memetic.polish_steps` damped steps more.
     """
     joints = out_q.size
@@ -350,23 +348,6 @@ def solve_memetic_lane(
         q, cost, more = members.x[best], 0.0, 0
         if not meets:
             cost, meets, more = show_closest(robot, detector, target, index, search, memetic, descent, box, q, work)
-        out_counts[ATTEMPTS] += 1
-        out_counts[EVALUATIONS] += spent + more
-        depth = 0.0
-        if search.collision_rule != IGNORE:  # the poses in `members` are those of `q`, the last point looked at
-            depth = compute_depth(detector, members.T_world_body, members.bounds, members.centres)
-        inside = is_inside(search.ranges, q)
-        met = 0.0 if meets and inside else 1.0
-        badness = depth if meets and inside else cost
-        if met < out_score[0] or (met == out_score[0] and badness < out_score[1]):
-            out_score[0], out_score[1] = met, badness
-            for k in range(joints):
-                out_q[k] = q[k]
-        if meets and not inside:
-            out_counts[OUTSIDE] += 1
-        elif meets and depth > 0.0:
-            out_counts[COLLIDING] += 1
-            count_colliding_pairs(detector, members.centres, out_pairs)
-        elif meets:
-            out_counts[REACHED] = 1
+        out_counts[EVALUATIONS] += spent + more  # the poses in `members` are those of `q`, the last point looked at
+        if finish_attempt(detector, search, q, cost, meets, members, out_q, out_score, out_counts, out_pairs):
             return

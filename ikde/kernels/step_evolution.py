@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Indices, Ints
+from ikde.kernels.attempt import is_inside
 from ikde.kernels.clearance import find_colliding_pair
 from ikde.kernels.drive import arc_is_inside, set_step_box, take_drive_step
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.lanes import is_inside
 from ikde.kernels.mutation import LARGEST_DRAW, REDRAW, draw_members, mutate, repair_bound
 from ikde.kernels.pose_error import compute_orientation_error
 from ikde.kernels.rng import next_index, next_uniform, seed_stream

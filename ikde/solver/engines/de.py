@@ -3,7 +3,7 @@
 import numpy as np
 
 from ikde.kernels.arrays import Ints
-from ikde.kernels.lanes import solve_lanes
+from ikde.kernels.de_lane import solve_lanes
 from ikde.model.pack import pack_robot
 from ikde.solver.engines.engine import Question
 from ikde.solver.problem import ROUNDING, Problem, pack_search

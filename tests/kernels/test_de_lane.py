@@ -1,10 +1,10 @@
-"""Whole solves: boxes that grow around `near`, attempts cut into calls, and what is counted."""
+"""Whole solves by the papers' search: attempts cut into calls, and what is counted."""
 
 import numpy as np
 import pytest
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, OUTSIDE, REACHED
-from ikde.kernels.lanes import is_inside, set_box, solve_lane
+from ikde.kernels.de_lane import solve_lane
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
@@ -12,52 +12,7 @@ from ikde.solver.problem import make_problem, pack_search
 from ikde.solver.settings import SolveSettings
 from tests import reference
 
-RANGES = np.array([[-1.0, 0.0, 2.0], [1.0, 4.0, 2.0], [0.9, 1.0, 2.0]])
 HARD = Target([0.54, -0.131, 0.974])
-
-
-def run_box(attempt, first_box, ranges=RANGES):
-    lower, upper = np.full(ranges.shape[1], np.nan), np.full(ranges.shape[1], np.nan)
-    set_box(ranges, first_box, attempt, lower, upper)
-    return lower, upper
-
-
-def test_boxes_grow_until_they_are_the_ranges():
-    lower, upper = run_box(0, 1 / 64)
-    for attempt in range(1, 12):
-        next_lower, next_upper = run_box(attempt, 1 / 64)
-        assert np.all(next_lower <= lower)
-        assert np.all(next_upper >= upper)
-        lower, upper = next_lower, next_upper
-    np.testing.assert_array_equal([lower, upper], RANGES[:2])
-
-
-@pytest.mark.parametrize("attempt", range(10))
-def test_boxes_stay_inside_the_ranges_and_hold_near(attempt):
-    lower, upper = run_box(attempt, 1 / 64)
-    assert np.all(RANGES[0] <= lower)
-    assert np.all(upper <= RANGES[1])
-    assert np.all((lower <= RANGES[2]) & (RANGES[2] <= upper))
-
-
-@pytest.mark.parametrize("attempt", range(6))
-def test_a_box_has_its_share_of_the_range_on_either_side(attempt):
-    lower, upper = run_box(attempt, 1 / 64, np.array([[-1.0], [1.0], [0.0]]))
-    half_width = 2.0 * 2**attempt / 64
-    assert (lower[0], upper[0]) == (max(-1.0, -half_width), min(1.0, half_width))
-
-
-def test_without_near_the_first_box_is_the_whole_range(qiao):
-    problem = make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=None)
-    search = pack_search(problem)
-    lower, upper = run_box(0, search.first_box, search.ranges)
-    np.testing.assert_array_equal([lower, upper], [qiao.lower, qiao.upper])
-
-
-def test_on_a_limit_is_inside():
-    assert is_inside(RANGES, np.array([-1.0, 4.0, 2.0]))
-    assert not is_inside(RANGES, np.array([-1.0, np.nextafter(4.0, 5.0), 2.0]))
-    assert not is_inside(RANGES, np.array([np.nan, 1.0, 2.0]))
 
 
 def run_lane(robot, target, blocks, *, seed=3, detector=None, near=None, **changes):
