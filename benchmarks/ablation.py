@@ -31,8 +31,8 @@ from ikde.batch.generators import ReachableSource
 from ikde.kernels import lm as tables_lm
 from ikde.kernels import tables
 from ikde.kernels.arrays import COUNTS, SeedArrays
-from ikde.kernels.blocks import flatten_question
 from ikde.kernels.clearance import judge_centres
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble as generator
 from ikde.model.pack import pack_robot, pack_targets
@@ -257,7 +257,7 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
         score[:], counts[:] = np.inf, 0
         began = time.perf_counter()
         single(
-            *first, *pack_targets(targets), few, *flatten_question(*settings[:3]), settings[3], q, score, counts, pairs
+            *first, *pack_targets(targets), few, *flatten_search(*settings[:3]), settings[3], q, score, counts, pairs
         )
         return (time.perf_counter() - began) / few * 1e6
 

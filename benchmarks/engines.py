@@ -26,7 +26,7 @@ from rich.table import Table
 import ikde
 from ikde.batch.generators import ReachableSource
 from ikde.kernels.arrays import COUNTS
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
@@ -126,7 +126,7 @@ def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int
     problem = make_problem(robot, ikde.SolveSettings(method="lm"), collision=None, near=None, freeze=None)
     module, *tables = load_kernels(CollisionModel(robot=robot, detector=problem.collision.detector), kind)
     run = make_loop(module.solve_target)
-    block = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
+    block = flatten_search(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
     pairs = max(len(CollisionModel(robot=robot, detector=problem.collision.detector).pairs), 1)
     times = np.empty((rounds, len(targets)))
     with np.errstate(over="ignore"):

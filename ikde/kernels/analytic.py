@@ -85,7 +85,8 @@ def solve_branches(
     """All branches of the arm from base after base, for rows[0] .. rows[1] - 1; outputs as `lm.solve_targets`.
 
     `tables` are the robot's packed arrays, whatever `robot` is; `carrier` is the body that carries the arm. An attempt
-    is one place of the base, an evaluation one branch that exists. Who is not reached keeps the last that collided.
+    is one place of the base, an evaluation one branch that exists. An unreached target keeps its last
+    colliding branch.
     """
     joints = out_q.shape[1]
     q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, detector, joints)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import BODY, COORDINATE, PARENT, SLIDES, Floats, Indices
+from ikde.kernels.arrays import BODY, COORDINATE, PARENT, PRISMATIC, Floats, Indices
 from ikde.kernels.clearance import bounds_are_apart, find_closest_spheres
 from ikde.kernels.damped import descend, fill_jacobian
 from ikde.kernels.jit import inline_kernel, kernel
@@ -28,7 +28,7 @@ class Contacts(NamedTuple):
 
 @kernel
 def make_contacts(bounds, centres, size):
-    """Room for so many contacts between spheres whose places stand in `bounds` [C, 3] and `centres` [3, S]."""
+    """Room for so many contacts between spheres placed at `bounds` [C, 3] and `centres` [3, S]."""
     return Contacts(np.empty(size), np.empty((size, 3), dtype=np.uint64), bounds, centres)
 
 
@@ -65,7 +65,7 @@ def add_chain(robot, T_world_body, body, x, y, z, nx, ny, nz, out_row):
     while body != 0:
         T, column = T_world_body[body], robot.bodies[body, COORDINATE]
         ax, ay, az = T[0, 2], T[1, 2], T[2, 2]
-        if robot.bodies[body, SLIDES] == 1:
+        if robot.bodies[body, PRISMATIC] == 1:
             out_row[column] += ax * nx + ay * ny + az * nz
         else:
             dx, dy, dz = x - T[0, 3], y - T[1, 3], z - T[2, 3]

@@ -9,7 +9,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.clearance import collides, compute_clearance
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.mutation import LARGEST_DRAW, draw_members, mutate, repair_bound
+from ikde.kernels.mutation import MAX_DRAWN, draw_members, mutate, repair_bound
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
 from ikde.kernels.rng import next_index, next_uniform
 from ikde.kernels.spheres import compute_bounds, compute_centres
@@ -42,7 +42,7 @@ def make_workspace(robot, detector, joints, population):
         np.empty((population, joints)),
         np.empty((population, 2)),
         np.empty(joints),
-        np.empty(LARGEST_DRAW, dtype=np.int64),
+        np.empty(MAX_DRAWN, dtype=np.int64),
         np.empty((robot.bodies.shape[0], 3, 4)),
         np.empty((3, 4)),
         np.empty((3, detector.radius.size)),
@@ -126,7 +126,7 @@ def fill_trial(search, lower, upper, state, work, i, best):
 
 @inline_kernel
 def score_point(robot, detector, target, index, search, q, work, rival):
-    """Cost, depth and `meets` of `q`; whether it collides is looked at only if it could still beat `rival` [2]."""
+    """Cost, depth and `meets` of `q`; whether it collides is checked only if it could still beat `rival` [2]."""
     cost, meets = compute_cost(robot, target, index, search, q, work)
     if search.collision_rule != FEASIBILITY or (rival[1] == 0.0 and cost > rival[0]):
         return cost, 0.0, meets
@@ -147,7 +147,7 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
     """Evolve one population within [lower, upper]. Returns (best member, meets the target, evaluations).
 
     The best member is `work.x[best]`; under `FEASIBILITY` meeting the target includes being free of collision. The
-    first population is drawn uniformly and challenges nobody; every later trial challenges member i.
+    first population is drawn uniformly and challenges no one; every later trial challenges member i.
     """
     population, evaluations, best = search.population, 0, np.int64(0)
     for i in range(population):

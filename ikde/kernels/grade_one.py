@@ -1,15 +1,15 @@
 """The grader for one configuration: the scalar kernels. With kernels written for a robot they share `trig`, and the
 packed tables from which those are written; docs/design.md compares all graders.
 
-For one, the lanes of `kernels/figures.py` are mostly overhead: 7 us, where this takes 2. The bits are the same.
+For one, the lanes of `kernels/grade_many.py` are mostly overhead: 7 us, where this takes 2. The bits are the same.
 """
 
 import numpy as np
 
 from ikde.kernels.arrays import TargetArrays
 from ikde.kernels.attempt import is_inside
-from ikde.kernels.blocks import unpack_grader
 from ikde.kernels.clearance import compute_clearance
+from ikde.kernels.flat_arguments import unpack_grader
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import kernel
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
@@ -20,7 +20,7 @@ from ikde.kernels.spheres import compute_bounds, compute_centres
 def grade_one(numbers, whole, kinds, T_world_tool, q):
     """Position error in m, orientation error in rad, clearance in m, closest pair, and if it is accepted, of `q` [N].
 
-    The other arguments, and what is given back, are those of `figures.compute_figures`, for one target.
+    The other arguments, and what is given back, are those of `grade_many`, for one target.
     """
     robot, detector, terms = unpack_grader(numbers, whole)
     target = TargetArrays(kinds, T_world_tool)

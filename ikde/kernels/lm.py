@@ -8,7 +8,7 @@ them side by side and gives a lane that has finished the next target. Both make 
 import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
-from ikde.kernels.blocks import unpack_question
+from ikde.kernels.flat_arguments import unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
@@ -28,7 +28,7 @@ def judge_step(descent, steps, position, orientation):
 
 @inline_kernel
 def record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
-    """Enter a finished attempt; True if it reached the target. Kept is the best so far, as in `lanes.solve_lane`."""
+    """Enter a finished attempt; True if it reached the target. Kept is the best so far, as in `finish_attempt`."""
     out_counts[ATTEMPTS] += 1
     met = 0.0 if verdict == MET else 1.0
     badness = position + descent.rotation_length * orientation
@@ -70,12 +70,12 @@ def solve_target(
 ):
     """Attempts number `first` .. `last` - 1 on one target, up to the first that is reached.
 
-    The target is row `index` of `TargetArrays`; numbers, whole, pool, pool_T are those of `blocks.unpack_question`.
-    The outputs are those of `lanes.solve_lane`: out_q [N], out_score [2], out_counts [COUNTS], out_pairs [P], the pair
-    found first in each collision.
+    The target is row `index` of `TargetArrays`; numbers, whole, pool, pool_T are those of `unpack_search`. The outputs
+    are those of `attempt.finish_attempt`: out_q [N], out_score [2], out_counts [COUNTS], out_pairs [P], the pair found
+    first in each collision.
     """
     target = TargetArrays(kinds, T_world_tool)
-    ranges, descent, seeds = unpack_question(numbers, whole, pool, pool_T)
+    ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
     q, state, buffers = np.empty(out_q.size), np.empty(1, dtype=np.uint64), make_buffers(robot, detector, out_q.size)
     for attempt in range(first, last):
         seed_stream(seed, stream, attempt, state)
@@ -178,7 +178,7 @@ def solve_targets(
 def fill_pool(robot, detector, lower, upper, out_q):
     """Draw configurations within [lower, upper] [N] that are free of collision into `out_q` [K, N].
 
-    Returns how many were found before the draws were spent; the same for everybody, whatever the seed of a solve.
+    Returns how many were found before the draws were spent; the same whatever the seed of a solve.
     """
     state, buffers = np.empty(1, dtype=np.uint64), make_buffers(robot, detector, lower.size)
     seed_stream(POOL_STREAM, 0, 0, state)

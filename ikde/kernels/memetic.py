@@ -2,10 +2,10 @@
 
 DE/current-to-pbest/1/bin with success-history adaptation, an archive and linear population reduction [Tanabe2014],
 jSO's rules as an option [Brest2017], Deb's rules on the penetration depth [Deb2000]. A share of the evaluations goes to
-damped steps from the best members, which push colliding pairs apart while the tool goes to its target. A member that
-was polished in vain gives its place to a stranger, a random one, since its basin is known: with the base of qiao2021
-frozen the 95th percentile is 1,640 evaluations, against 2,660 where the polished point stays. Bred members lie
-together, so a stranger is polished after each: that brings the 99th percentile from 10,500 to 3,300.
+damped steps from the best members, which move colliding pairs apart while the tool goes to its target. A member whose
+polishing does not converge is replaced by a random one, since its basin is known: with the base of qiao2021 frozen the
+95th percentile is 1,640 evaluations, against 2,660 where the polished point stays. Bred members lie together, so the
+random one is polished, too: that brings the 99th percentile from 10,500 to 3,300.
 """
 
 import math
@@ -48,12 +48,9 @@ from ikde.kernels.success_history import (
     update_memory,
 )
 
-NOBODY = np.int64(-1)  # in place of a member's number
-STRANGER = 1  # a number that `fill_start` draws at random
-FIRST_TURNS, LATER_TURNS = (
-    np.int64(1),
-    np.int64(2),
-)  # of polishing: bred members lie together, so that a stranger is polished after each
+NO_MEMBER = np.int64(-1)
+RANDOM_MEMBER = 1  # a number that `fill_start` draws at random
+FIRST_TURNS, LATER_TURNS = np.int64(1), np.int64(2)  # 2: the random member that replaces one is polished, too
 PROGRESS = 0.9  # a damped step must bring the squared error below this share of the smallest so far
 
 
@@ -149,8 +146,8 @@ def fill_trial(search, memetic, box, state, work, i, count, progress, weight, cr
 
 
 @kernel
-def look(robot, detector, target, index, search, q, members, rival):
-    """`score_point`, compiled once for all who look at a point."""
+def score(robot, detector, target, index, search, q, members, rival):
+    """`score_point`, compiled once for all its callers."""
     return score_point(robot, detector, target, index, search, q, members, rival)
 
 
@@ -170,7 +167,7 @@ def breed(robot, detector, target, index, search, memetic, box, state, work, cou
         if memetic.is_weighted:
             weight, crossover = soften(weight, crossover, progress)
         fill_trial(search, memetic, box, state, work, i, count, progress, weight, crossover)
-        cost, depth, meets = look(robot, detector, target, index, search, members.trial, members, rival)
+        cost, depth, meets = score(robot, detector, target, index, search, members.trial, members, rival)
         spent += 1
         if not is_better(cost, depth, rival):
             continue
@@ -186,7 +183,7 @@ def breed(robot, detector, target, index, search, memetic, box, state, work, cou
     for i in range(count):
         keep(members.x, members.score, i, members.next_x[i], members.next_score[i, 0], members.next_score[i, 1])
     update_memory(history, memetic.is_weighted)
-    return NOBODY, spent
+    return NO_MEMBER, spent
 
 
 @kernel
@@ -194,7 +191,7 @@ def polish(robot, detector, target, index, search, memetic, descent, box, reach,
     """At most so many damped steps on `q` [N], in place, until it meets the target, stands still or spends the budget.
 
     `reach` in m as for `clear_step`; with -inf collisions are ignored. Returns (cost in m, meets, evaluations): 1 a
-    look, and N a step, as if each Jacobian had been taken by differences, which it is not.
+    point, and N a step, as if each Jacobian had been taken by differences, which it is not.
     """
     members, smallest, idle = work.members, math.inf, 0
     cost, meets = math.inf, False
@@ -221,8 +218,8 @@ def polish_best(
 ):
     """Polish the best members that have changed, up to the share of the evaluations that polishing may take.
 
-    One that meets the target stays as it then is, one in vain gives its place to a stranger, who with 2 `turns` is
-    polished at once. Returns (member that meets the target, evaluations, those of polishing).
+    One that meets the target stays as it then is; one that does not converge is replaced by a random one, which with 2
+    `turns` is polished at once. Returns (member that meets the target, evaluations, those of polishing).
     """
     members, q, before = work.members, work.members.trial, spent - polished
     reach = detector.safe_distance + memetic.margin if search.collision_rule == FEASIBILITY else -math.inf
@@ -243,16 +240,16 @@ def polish_best(
             for k in range(q.size):
                 work.champion[k] = q[k]
         if not meets and spent < memetic.evaluations:
-            fill_start(search, box[0], box[1], state, members, STRANGER)
+            fill_start(search, box[0], box[1], state, members, RANDOM_MEMBER)
             members.score[i, 0], members.score[i, 1] = np.inf, np.inf
-            cost, depth, meets = look(robot, detector, target, index, search, q, members, members.score[i])
+            cost, depth, meets = score(robot, detector, target, index, search, q, members, members.score[i])
             keep(members.x, members.score, i, q, cost, depth)
             spent, work.fresh[i] = spent + 1, 1
         if meets:
             keep(members.x, members.score, i, q, cost, depth)
             return i, spent, spent - before
     sort_members(members.score, work.order, count)
-    return NOBODY, spent, spent - before
+    return NO_MEMBER, spent, spent - before
 
 
 @kernel
@@ -263,12 +260,12 @@ def fill_population(robot, detector, target, index, search, memetic, box, state,
         members.score[i, 0], members.score[i, 1] = np.inf, np.inf
         work.order[i], work.fresh[i] = i, 1
         fill_start(search, box[0], box[1], state, members, i)
-        cost, depth, meets = look(robot, detector, target, index, search, members.trial, members, members.score[i])
+        cost, depth, meets = score(robot, detector, target, index, search, members.trial, members, members.score[i])
         keep(members.x, members.score, i, members.trial, cost, depth)
         if meets:
             return i, count, i + 1
     sort_members(members.score, work.order, count)
-    return NOBODY, count, count
+    return NO_MEMBER, count, count
 
 
 @kernel
@@ -282,21 +279,21 @@ def evolve_memetic(robot, detector, target, index, search, memetic, descent, box
     reset_history(work.history, memetic.first_weight, memetic.first_crossover, memetic.is_weighted)
     work.champion_cost[0] = np.inf
     found, count, spent = fill_population(robot, detector, target, index, search, memetic, box, state, work)
-    while found == NOBODY and spent < memetic.evaluations:
+    while found == NO_MEMBER and spent < memetic.evaluations:
         found, spent, polished = polish_best(
             robot, detector, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
         )
-        if found != NOBODY or spent >= memetic.evaluations:
+        if found != NO_MEMBER or spent >= memetic.evaluations:
             break
         found, spent = breed(robot, detector, target, index, search, memetic, box, state, work, count, spent)
         sort_members(work.members.score, work.order, count)
         planned = plan_population(memetic.first_population, memetic.last_population, spent / memetic.evaluations)
-        if found == NOBODY and planned < count:
+        if found == NO_MEMBER and planned < count:
             drop_worst(work.members, work.order, work.fresh, count, planned)
             count = planned
             trim_archive(state, work.history, np.int64(memetic.archive_share * count))
         turns = LATER_TURNS
-    if found != NOBODY:
+    if found != NO_MEMBER:
         return found, True, spent
     return work.order[0], False, spent
 
@@ -348,6 +345,6 @@ def solve_memetic_lane(
         q, cost, more = members.x[best], 0.0, 0
         if not meets:
             cost, meets, more = show_closest(robot, detector, target, index, search, memetic, descent, box, q, work)
-        out_counts[EVALUATIONS] += spent + more  # the poses in `members` are those of `q`, the last point looked at
+        out_counts[EVALUATIONS] += spent + more  # the poses in `members` are those of `q`, the last point evaluated
         if finish_attempt(detector, search, q, cost, meets, members, out_q, out_score, out_counts, out_pairs):
             return

@@ -15,8 +15,8 @@ from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
 SAMPLING = np.uint64(2**64 - 1)  # in place of an attempt's number: a stream that no search draws from
-MOST_DRAWS = 100_000  # of one target, before there seems to be no free configuration
-SMALLEST_SQUARE = 1e-4  # nearer the middle, a direction would lose digits
+MAX_DRAWS = 100_000  # of one target, before there seems to be no free configuration
+MIN_SQUARE = 1e-4  # nearer the middle, a direction would lose digits
 
 
 @inline_kernel
@@ -31,7 +31,7 @@ def is_free(robot, detector, q, work):
 @kernel
 def sample_free_pose(robot, detector, lower, upper, state, work, out_T):
     """The tool's pose [3, 4] in the first free configuration drawn from [lower, upper] [N]; False if none is found."""
-    for _ in range(MOST_DRAWS):
+    for _ in range(MAX_DRAWS):
         for k in range(lower.size):
             work.trial[k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
         if is_free(robot, detector, work.trial, work):
@@ -69,7 +69,7 @@ def sample_ball(center, radius, filled, seed, first, out_p):
     A point is drawn from the cube around the unit ball until it falls inside; for the surface it is then stretched.
     """
     state = np.empty(1, dtype=np.uint64)
-    least = 0.0 if filled else SMALLEST_SQUARE
+    least = 0.0 if filled else MIN_SQUARE
     for k in range(out_p.shape[0]):
         seed_stream(seed, first + k, SAMPLING, state)
         x, y, z, square = 0.0, 0.0, 0.0, 2.0

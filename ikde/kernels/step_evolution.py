@@ -15,7 +15,7 @@ from ikde.kernels.clearance import find_colliding_pair
 from ikde.kernels.drive import arc_is_inside, set_step_box, take_drive_step
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.mutation import LARGEST_DRAW, REDRAW, draw_members, mutate, repair_bound
+from ikde.kernels.mutation import MAX_DRAWN, REDRAW, draw_members, mutate, repair_bound
 from ikde.kernels.pose_error import compute_orientation_error
 from ikde.kernels.rng import next_index, next_uniform, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
@@ -36,7 +36,7 @@ class StepWorkspace(NamedTuple):
     upper: Floats  # [D]
     drawn: Ints  # [5] members drawn for a mutation
     state: Indices  # [1] of the random numbers
-    q: Floats  # [N] the end of the step looked at last
+    q: Floats  # [N] the end of the step evaluated last
     T_world_body: Floats  # [B, 3, 4]
     T_world_tool: Floats  # [3, 4]
     centres: Floats  # [3, S] m
@@ -54,7 +54,7 @@ def make_step_workspace(robot, detector, joints, size, population):
         np.empty(size),
         np.empty(size),
         np.empty(size),
-        np.empty(LARGEST_DRAW, dtype=np.int64),
+        np.empty(MAX_DRAWN, dtype=np.int64),
         np.empty(1, dtype=np.uint64),
         np.empty(joints),
         np.empty((robot.bodies.shape[0], 3, 4)),
@@ -93,7 +93,7 @@ def keeps_rest(drive, track, q, step, work):
         for j in range(3):
             centre += work.T_world_body[drive.centre_body, i, j] * drive.p_body_centre[j]
         square += (work.T_world_tool[i, 3] - centre) ** 2
-    return square <= drive.farthest * drive.farthest and is_inside(track.ranges, work.q)
+    return square <= drive.max_distance * drive.max_distance and is_inside(track.ranges, work.q)
 
 
 @kernel

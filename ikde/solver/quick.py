@@ -10,7 +10,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from ikde.kernels.arrays import COUNTS, REACHED
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
@@ -33,7 +33,7 @@ class Quick:
     def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str) -> None:
         problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
         module, *tables = load_kernels(collision, kind)
-        question = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
+        question = flatten_search(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
         self._search, self._question = module.solve_target, (*tables, self._kind)

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.blocks import Terms, flatten_grader
+from ikde.kernels.flat_arguments import Terms, flatten_grader
 from ikde.kernels.grade_one import grade_one
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import KINDS
 from tests.conftest import random_q
-from tests.kernels.test_figures import ROBOTS, run, targets_near, terms_of
+from tests.kernels.test_grade_many import ROBOTS, run, targets_near, terms_of
 from tests.uncompiled import reachable, run_text
 
 

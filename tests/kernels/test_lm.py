@@ -11,7 +11,7 @@ import pytest
 import ikde
 from ikde.kernels import lm
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH, DescentArrays
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.kernels.tables import LANES
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
@@ -112,7 +112,7 @@ def solve_singly(module, asked, rows=None, *, first=0, budgets=None, outputs=Non
         for row in range(len(asked.targets)) if rows is None else rows:
             if outputs[2][row, REACHED]:
                 continue
-            question = (*asked.packed, row, *flatten_question(asked.ranges, asked.descent, asked.seeds))
+            question = (*asked.packed, row, *flatten_search(asked.ranges, asked.descent, asked.seeds))
             lane = (np.uint64(9), int(asked.streams[row]), first, int(budgets[row]), *(array[row] for array in outputs))
             module.solve_target(robot, detector, *question, *lane)
     return outputs

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, SLIDES, Floats, RobotArrays
+from ikde.kernels.arrays import COORDINATE, PRISMATIC, Floats, RobotArrays
 from ikde.kernels.tables import LANES
 from ikde.model.generate.collision import Test, find_root, group_by_guard, reach_name, write_margin
 from ikde.model.generate.kinematics import write_bodies
@@ -132,7 +132,7 @@ def _settings(robot: RobotArrays) -> list[str]:
 
 
 def _sines(robot: RobotArrays) -> list[str]:
-    turning = robot.bodies[1:][robot.bodies[1:, SLIDES] == 0]
+    turning = robot.bodies[1:][robot.bodies[1:, PRISMATIC] == 0]
     return [f"s{k}, c{k} = sin_cos(q{k})" for k in sorted(set(turning[:, COORDINATE].tolist()))]
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Ints
-from ikde.kernels.pose_error import POSE
+from ikde.kernels.arrays import POSE, Ints
 from ikde.model.closed_form import find_ur_arm, pack_ur_arm
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ikde.kernels.arrays import Ints
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engines.engine import Question, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
@@ -45,7 +45,7 @@ class DampedLeastSquares:
                     which = (asked.seed, asked.streams, attempts)
                     module.solve_targets(robot, detector, *where, *settings, *which, *asked.outputs)
                     continue
-                block = flatten_question(*settings)
+                block = flatten_search(*settings)
                 for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
                     lane = (asked.seed, int(asked.streams[row]), begin, end, *(array[row] for array in asked.outputs))
                     module.solve_target(robot, detector, *asked.targets, row, *block, *lane)

@@ -52,7 +52,7 @@ def empty_cache(tmp_path, monkeypatch):
     """Modules and their machine code go into a folder of the test's own."""
     monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path)
     monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", True)
-    monkeypatch.setattr(cache_files, "TOLD", set())
+    monkeypatch.setattr(cache_files, "WARNED", set())
     forget()
     yield tmp_path
     forget()

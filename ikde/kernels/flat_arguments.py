@@ -1,6 +1,6 @@
-"""What stays from target to target, in flat arrays: numba looks at every array that it hands over.
+"""What stays from target to target, in flat arrays: numba unpacks every array that it hands over.
 
-A named tuple is looked at field by field, in Python, on every call: the 27 arrays and numbers of a search took 12 us,
+A named tuple is unpacked field by field, in Python, on every call: the 27 arrays and numbers of a search took 12 us,
 five times as long as the search. The two `flatten_` functions lay named tuples end to end; kernels unpack them free.
 """
 
@@ -20,8 +20,8 @@ class Terms(NamedTuple):
     orientation_tolerance: float  # rad
 
 
-def flatten_question(ranges: Floats, descent: DescentArrays, seeds: SeedArrays) -> tuple[Floats, Ints, Floats, Floats]:
-    """What `unpack_question` takes; the pool, which is large, stays as it is."""
+def flatten_search(ranges: Floats, descent: DescentArrays, seeds: SeedArrays) -> tuple[Floats, Ints, Floats, Floats]:
+    """What `unpack_search` takes; the pool, which is large, stays as it is."""
     q, T_world_tool, *others = seeds
     sizes = np.array([ranges.shape[1], len(seeds.grid)])
     return *_flatten(sizes, ranges, *descent, *others), q, T_world_tool
@@ -46,7 +46,7 @@ def _flatten(*values: Floats | Ints | Indices | float) -> tuple[Floats, Ints]:
 
 
 @kernel
-def unpack_question(numbers, whole, q, T_world_tool):
+def unpack_search(numbers, whole, q, T_world_tool):
     """Ranges [3, N], `DescentArrays` and `SeedArrays`, as views."""
     joints, directions = whole[0], whole[1]
     n, w, scale = numbers[3 * joints :], whole[2:], 2 * directions

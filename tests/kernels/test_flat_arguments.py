@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import DescentArrays
-from ikde.kernels.blocks import flatten_grader, flatten_question, unpack_grader, unpack_question
+from ikde.kernels.flat_arguments import flatten_grader, flatten_search, unpack_grader, unpack_search
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests.conftest import random_q
 from tests.kernels.seeding import no_seeds, pack_seeds
-from tests.kernels.test_figures import ROBOTS, terms_of
+from tests.kernels.test_grade_many import ROBOTS, terms_of
 
 
 def assert_same(ours, theirs):
@@ -32,7 +32,7 @@ def test_the_question_comes_back(qiao, rng):
     ranges = np.array([qiao.lower, qiao.upper, qiao.home])
     descent = DescentArrays(position_tolerance=0.25, orientation_tolerance=0.5, most_steps=7, patience=3)
     for seeds in (pack_seeds(qiao, random_q(qiao, rng, 100), np.array([0, 1, 2])), no_seeds(qiao, 0.125)):
-        back = unpack_question(*flatten_question(ranges, descent, seeds))
+        back = unpack_search(*flatten_search(ranges, descent, seeds))
         assert (back[0] == ranges).all()
         assert_same(descent, back[1])
         assert_same(seeds, back[2])

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels import figures as module
-from ikde.kernels.blocks import Terms, flatten_grader
+from ikde.kernels import grade_many as module
 from ikde.kernels.clearance import compute_clearance
-from ikde.kernels.figures import LANES, compute_figures
+from ikde.kernels.flat_arguments import Terms, flatten_grader
+from ikde.kernels.grade_many import LANES, grade_many
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
 from ikde.model.collision_model import CollisionModel
@@ -36,7 +36,7 @@ def run(robot, detector, targets, Q, terms=None):
     block = flatten_grader(
         pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays, terms or terms_of(robot)
     )
-    compute_figures(*block, *pack_targets(targets), np.ascontiguousarray(Q), figures, pairs, accepted)
+    grade_many(*block, *pack_targets(targets), np.ascontiguousarray(Q), figures, pairs, accepted)
     return figures, pairs, accepted
 
 
@@ -117,7 +117,7 @@ def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
         block = flatten_grader(pack_robot(qiao), nearest, terms_of(qiao, float(tolerance)))
         accepted = np.zeros(1, dtype=np.bool_)
         out = (np.empty((1, 3)), np.empty(1, dtype=np.int64), accepted)
-        compute_figures(*block, *pack_targets(targets), q, *out)
+        grade_many(*block, *pack_targets(targets), q, *out)
         assert accepted[0] == expected
         assert grade_one(*block, *pack_targets(targets), q[0])[4] == expected
 
@@ -125,15 +125,15 @@ def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
 def test_it_shares_no_code_with_the_search():
     names = {getattr(value, "__module__", "") for value in vars(module).values()}
     assert {name for name in names if name.startswith("ikde.")} <= {
-        *(f"ikde.kernels.{own}" for own in ("figures", "jit", "trig", "arrays", "blocks")),
+        *(f"ikde.kernels.{own}" for own in ("grade_many", "jit", "trig", "arrays", "flat_arguments")),
     }
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 def test_it_is_vectorised(qiao, monkeypatch):
-    fresh = numba.njit(error_model="numpy", nogil=True)(compute_figures.py_func)  # of cached code there is no text
-    monkeypatch.setattr(f"{__name__}.compute_figures", fresh)
+    fresh = numba.njit(error_model="numpy", nogil=True)(grade_many.py_func)  # of cached code there is no text
+    monkeypatch.setattr(f"{__name__}.grade_many", fresh)
     run(qiao, CollisionModel.of(qiao).detector, Targets(np.zeros((1, 3))), qiao.home[None])
     text = next(iter(fresh.inspect_asm().values()))
     if "vsubpd" not in text:

@@ -1,9 +1,9 @@
-"""The grader: figures and verdict of finished configurations, in lanes.
+"""The grader of many: metrics and verdict of finished configurations, in lanes.
 
 It shares nothing with what searches but the tables of robot, detector and targets and the functions of `trig`: it walks
 the tree itself, places every sphere and measures every pair, with no bounds and no early exit. Up to 32 configurations
 stand side by side in each row of its buffers, so that every inner loop runs over lanes and the compiler vectorises it.
-Sums stand in the order of the scalar kernels, so the bits are theirs; `tests/kernels/test_figures.py` holds it.
+Sums stand in the order of the scalar kernels, so the bits are theirs; `tests/kernels/test_grade_many.py` holds it.
 """
 
 import math
@@ -11,21 +11,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import BODY, COORDINATE, FIRST, LAST, PARENT, SLIDES, Floats, Ints
-from ikde.kernels.blocks import unpack_grader
+from ikde.kernels.arrays import AXIS, BODY, COORDINATE, FIRST, LAST, PARENT, POSITION, PRISMATIC, Floats, Ints
+from ikde.kernels.flat_arguments import unpack_grader
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
 POSITION_ERROR, ORIENTATION_ERROR, CLEARANCE = range(3)
 LANES = 32  # shorter loops are unrolled instead, and roots are then taken one by one
-POSITION, AXIS = 0, 1  # kinds of target; the third is a pose
 
 
 class Lanes(NamedTuple):
     """Buffers, a column a lane. A transform is twelve rows: 4 i + j for entry (i, j) of its upper three rows."""
 
     q: Floats  # [N, L] m or rad
-    turn: Floats  # [3, L] sine, cosine and slide of one joint
+    turn: Floats  # [3, L] sine, cosine and travel of one joint
     product: Floats  # [4, L] one row of a transform, before the joint moves
     bodies: Floats  # [12 B, L] T_world_body
     tool: Floats  # [12, L] T_world_tool
@@ -48,7 +47,7 @@ def load(q, first, count, out_q):
 def place_body(robot, body, count, lanes):
     """T_world_body = T_world_parent @ T_parent_body @ (Rz(q) or Tz(q)) of one body, by its parent's."""
     T, product, turn, L = lanes.bodies, lanes.product, lanes.turn, robot.T_parent_body[body]
-    joint, slides = np.uint64(robot.bodies[body, COORDINATE]), robot.bodies[body, SLIDES] == 1
+    joint, slides = np.uint64(robot.bodies[body, COORDINATE]), robot.bodies[body, PRISMATIC] == 1
     for lane in range(count):
         s, c = sin_cos(lanes.q[joint, lane])
         turn[0, lane], turn[1, lane], turn[2, lane] = s, c, 0.0
@@ -215,11 +214,11 @@ def is_inside(limits, q):
 
 
 @kernel
-def compute_figures(numbers, whole, kinds, T_world_tool, q, out_figures, out_pairs, out_accepted):
-    """Figures of configurations `q` [T, N], a target each.
+def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, out_accepted):
+    """Metrics of configurations `q` [T, N], a target each.
 
-    numbers, whole are those of `blocks.unpack_grader`; kinds and T_world_tool those of `TargetArrays`.
-    `out_figures` [T, 3]: position error in m, orientation error in rad, clearance in m (inf without pairs);
+    numbers, whole are those of `flat_arguments.unpack_grader`; kinds and T_world_tool those of `TargetArrays`.
+    `out_metrics` [T, 3]: position error in m, orientation error in rad, clearance in m (inf without pairs);
     `out_pairs` [T]: index of the closest pair (-1 without pairs); `out_accepted` [T]: within tolerances and limits of
     `terms`, and farther apart than the safe distance.
     """
@@ -252,7 +251,7 @@ def compute_figures(numbers, whole, kinds, T_world_tool, q, out_figures, out_pai
             position = measure_position(asked, lanes.tool, lane)
             orientation = measure_orientation(kinds[index], asked, lanes.tool, lane)
             clearance = lanes.clearance[lane]
-            out_figures[index, POSITION_ERROR], out_figures[index, ORIENTATION_ERROR] = position, orientation
-            out_figures[index, CLEARANCE], out_pairs[index] = clearance, lanes.closest[lane]
+            out_metrics[index, POSITION_ERROR], out_metrics[index, ORIENTATION_ERROR] = position, orientation
+            out_metrics[index, CLEARANCE], out_pairs[index] = clearance, lanes.closest[lane]
             meets = position <= terms.position_tolerance and orientation <= terms.orientation_tolerance
             out_accepted[index] = meets and clearance > detector.safe_distance and is_inside(terms.limits, q[index])
