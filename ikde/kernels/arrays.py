@@ -31,8 +31,8 @@ class RobotArrays(NamedTuple):
 PARENT, COORDINATE, PRISMATIC, MOVES_TOOL = range(4)  # columns of `RobotArrays.bodies`
 
 
-class DetectorArrays(NamedTuple):
-    """One detector: S spheres, those of one of the C components together, P component pairs, W rows of spheres."""
+class CollisionArrays(NamedTuple):
+    """What is compared on a robot: S spheres of C components, one after the other, P pairs of components, W rows."""
 
     safe_distance: float  # m
     p_body_sphere: Floats  # [3, S] m
@@ -44,7 +44,7 @@ class DetectorArrays(NamedTuple):
     offset: Floats  # [S] m along the row's line, from its middle
 
 
-BODY, FIRST, LAST = range(3)  # columns of `DetectorArrays.components`
+BODY, FIRST, LAST = range(3)  # columns of `CollisionArrays.components`
 
 
 class TargetArrays(NamedTuple):

@@ -38,7 +38,7 @@ def keep_better(met, badness, q, out_q, out_score):
 
 
 @inline_kernel
-def finish_attempt(detector, search, q, cost, meets, work, out_q, out_score, out_counts, out_pairs):
+def finish_attempt(collision, search, q, cost, meets, work, out_q, out_score, out_counts, out_pairs):
     """Keep and count what an attempt came to, `q` [N], whose poses are those in `work`; True if it is reached.
 
     What is kept is the best by `out_score` [2]: poses that were met (0, depth in m) before those that were not (1, cost
@@ -48,7 +48,7 @@ def finish_attempt(detector, search, q, cost, meets, work, out_q, out_score, out
     out_counts[ATTEMPTS] += 1
     depth = 0.0
     if search.collision_rule != IGNORE:
-        depth = compute_depth(detector, work.T_world_body, work.bounds, work.centres)
+        depth = compute_depth(collision, work.T_world_body, work.bounds, work.centres)
     inside = is_inside(search.ranges, q)
     is_met = meets and inside
     keep_better(0.0 if is_met else 1.0, depth if is_met else cost, q, out_q, out_score)
@@ -56,7 +56,7 @@ def finish_attempt(detector, search, q, cost, meets, work, out_q, out_score, out
         out_counts[OUTSIDE] += 1
     elif meets and depth > 0.0:
         out_counts[COLLIDING] += 1
-        count_colliding_pairs(detector, work.centres, out_pairs)
+        count_colliding_pairs(collision, work.centres, out_pairs)
     elif meets:
         out_counts[REACHED] = 1
         return True

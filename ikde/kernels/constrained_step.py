@@ -136,7 +136,7 @@ def add_normal(system, slope, offset, at):
 
 
 @inline_kernel
-def set_half_spaces(constraints, count, step, system):
+def set_half_spaces(slack, slope, count, step, system):
     """Box and constraints as half spaces of y; returns how many."""
     spaces, at = system.spaces, 0
     for k in range(step.size):
@@ -150,22 +150,23 @@ def set_half_spaces(constraints, count, step, system):
         spaces.offsets[at], spaces.offsets[at + 1] = scale * system.lower[k], -scale * system.upper[k]
         at += 2
     for i in range(count):
-        offset = -constraints.slack[i]
+        offset = -slack[i]
         for k in range(step.size):
-            offset += constraints.slope[i, k] * step[k]
-        at = add_normal(system, constraints.slope[i], offset, at)
+            offset += slope[i, k] * step[k]
+        at = add_normal(system, slope[i], offset, at)
     return at
 
 
 @leaf_kernel
-def solve_step(jacobian, error, rows, stiffness, preferred, constraints, count, system, step):
+def solve_step(jacobian, error, rows, stiffness, preferred, slack, slope, count, system, step):
     """Improve `step` [D] in place; False if no step meets all constraints: the step is then inside the box alone.
 
-    `jacobian` [6, D] and `error` [6] of the tool, and the constraints, are those at the step that is given.
+    `jacobian` [6, D] and `error` [6] of the tool, and `slack` and `slope` of the constraints, are those at the
+    step that is given.
     """
     factor(jacobian, rows, stiffness, system.matrix, system.inverse)
     set_free_point(jacobian, error, rows, stiffness, preferred, step, system)
-    is_possible = find_nearest_point(system.spaces, set_half_spaces(constraints, count, step, system), system.y)
+    is_possible = find_nearest_point(system.spaces, set_half_spaces(slack, slope, count, step, system), system.y)
     for k in range(step.size):
         total = 0.0
         for a in range(k, step.size):

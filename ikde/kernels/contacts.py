@@ -12,7 +12,7 @@ import numpy as np
 from ikde.kernels.arrays import BODY, COORDINATE, PARENT, PRISMATIC, Floats, Indices
 from ikde.kernels.clearance import bounds_are_apart, find_closest_spheres
 from ikde.kernels.damped import descend, fill_jacobian
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 
 MAX_CONTACTS = 6  # of a damped step towards a whole pose; what a simpler target leaves of its rows is theirs too
 
@@ -33,14 +33,14 @@ def make_contacts(bounds, centres, size):
 
 
 @inline_kernel
-def find_contacts(detector, reach, room, contacts):
+def find_contacts(collision, reach, room, contacts):
     """Find the pairs nearer than `reach` (m), the nearest `room` of them if there are more; returns how many."""
     count = 0
-    for pair in range(detector.pairs.shape[0]):
-        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-        if bounds_are_apart(detector, contacts.bounds, a, b, reach):
+    for pair in range(collision.pairs.shape[0]):
+        a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+        if bounds_are_apart(collision, contacts.bounds, a, b, reach):
             continue
-        gap, i, j = find_closest_spheres(detector, contacts.centres, a, b)
+        gap, i, j = find_closest_spheres(collision, contacts.centres, a, b)
         if gap >= reach:
             continue
         place = count
@@ -74,7 +74,7 @@ def add_chain(robot, T_world_body, body, x, y, z, nx, ny, nz, out_row):
 
 
 @inline_kernel
-def fill_gradient(robot, detector, T_world_body, contacts, k, out_row):
+def fill_gradient(robot, collision, T_world_body, contacts, k, out_row):
     """Gradient of the gap of contact `k` by the joints, into `out_row` [N]; 0 where two centres coincide."""
     centres, pair, i, j = contacts.centres, contacts.spheres[k, 0], contacts.spheres[k, 1], contacts.spheres[k, 2]
     for column in range(out_row.size):
@@ -84,27 +84,27 @@ def fill_gradient(robot, detector, T_world_body, contacts, k, out_row):
     if distance == 0.0:
         return
     x, y, z = x / distance, y / distance, z / distance
-    a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-    body_a, body_b = detector.components[a, BODY], detector.components[b, BODY]
+    a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+    body_a, body_b = collision.components[a, BODY], collision.components[b, BODY]
     add_chain(robot, T_world_body, body_a, centres[0, i], centres[1, i], centres[2, i], x, y, z, out_row)
     add_chain(robot, T_world_body, body_b, centres[0, j], centres[1, j], centres[2, j], -x, -y, -z, out_row)
 
 
-@kernel
-def add_contacts(robot, detector, reach, rows, contacts, work):
+@leaf_kernel
+def add_contacts(robot, collision, reach, rows, contacts, work):
     """Append a row for each contact to Jacobian and error in `work`: its gap is to grow to `reach` (m).
 
     Returns the rows in use.
     """
-    count = find_contacts(detector, reach, work.error.size - rows, contacts)
+    count = find_contacts(collision, reach, work.error.size - rows, contacts)
     for k in range(count):
-        fill_gradient(robot, detector, work.T_world_body, contacts, k, work.jacobian[rows + k])
+        fill_gradient(robot, collision, work.T_world_body, contacts, k, work.jacobian[rows + k])
         work.error[rows + k] = reach - contacts.gap[k]
     return rows + count
 
 
 @inline_kernel
-def take_clear_step(robot, detector, target, index, ranges, descent, reach, contacts, q, work):
+def take_clear_step(robot, collision, target, index, ranges, descent, reach, contacts, q, work):
     """One damped step on `q` [N], in place, towards the target and away from contact.
 
     `work`, a `DescentWorkspace`, holds the poses and the tool's error at `q`; the spheres of `contacts` are placed
@@ -113,5 +113,5 @@ def take_clear_step(robot, detector, target, index, ranges, descent, reach, cont
     """
     rows = fill_jacobian(robot, target, index, descent, work)
     if reach > -math.inf:
-        rows = add_contacts(robot, detector, reach, rows, contacts, work)
+        rows = add_contacts(robot, collision, reach, rows, contacts, work)
     return descend(ranges, descent, rows, q, work)

@@ -13,30 +13,32 @@ from ikde.kernels.rng import seed_stream
 
 
 @kernel
-def solve_lane(robot, detector, target, index, search, seed, stream, attempts, out_q, out_score, out_counts, out_pairs):
+def solve_lane(
+    robot, collision, target, index, search, seed, stream, attempts, out_q, out_score, out_counts, out_pairs
+):
     """Run attempts number attempts[0] .. attempts[1]-1 on one target, up to the first that is reached.
 
     `REJECT` is the paper's rule: search on the pose error alone, test the best, start again until it is free
     [Qiao2021, section 5.3.3]. The outputs are those of `finish_attempt`.
     """
     joints = out_q.size
-    work = make_workspace(robot, detector, joints, search.population)
+    work = make_workspace(robot, collision, joints, search.population)
     lower, upper = np.empty(joints), np.empty(joints)
     state = np.empty(1, dtype=np.uint64)
     for attempt in range(attempts[0], attempts[1]):
         set_box(search.ranges, search.first_box, attempt, lower, upper)
         seed_stream(seed, stream, attempt, state)
-        best, meets, evaluations = evolve(robot, detector, target, index, search, lower, upper, state, work)
+        best, meets, evaluations = evolve(robot, collision, target, index, search, lower, upper, state, work)
         out_counts[EVALUATIONS] += evaluations
         q = work.x[best]
         cost, _ = compute_cost(robot, target, index, search, q, work)
-        if finish_attempt(detector, search, q, cost, meets, work, out_q, out_score, out_counts, out_pairs):
+        if finish_attempt(collision, search, q, cost, meets, work, out_q, out_score, out_counts, out_pairs):
             return
 
 
 @kernel
 def solve_lanes(
-    robot, detector, target, lanes, search, seed, streams, attempts, last, out_q, out_score, out_counts, out_pairs
+    robot, collision, target, lanes, search, seed, streams, attempts, last, out_q, out_score, out_counts, out_pairs
 ):
     """Run attempts attempts[0] .. attempts[1]-1 of the lanes lanes[0] .. lanes[1]-1 that are not reached yet.
 
@@ -49,4 +51,4 @@ def solve_lanes(
             continue
         block[0], block[1] = attempts[0], min(attempts[1], last[index])
         outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
-        solve_lane(robot, detector, target, index, search, seed, streams[index], block, *outputs)
+        solve_lane(robot, collision, target, index, search, seed, streams[index], block, *outputs)

@@ -34,8 +34,8 @@ class Workspace(NamedTuple):
 
 
 @kernel
-def make_workspace(robot, detector, joints, population):
-    """Allocate the buffers for a robot, a detector and a population size."""
+def make_workspace(robot, collision, joints, population):
+    """Allocate the buffers for a robot, a collision model and a population size."""
     return Workspace(
         np.empty((population, joints)),
         np.empty((population, 2)),
@@ -45,8 +45,8 @@ def make_workspace(robot, detector, joints, population):
         np.empty(MAX_DRAWN, dtype=np.int64),
         np.empty((robot.bodies.shape[0], 3, 4)),
         np.empty((3, 4)),
-        np.empty((3, detector.radius.size)),
-        np.empty((detector.components.shape[0], 3)),
+        np.empty((3, collision.radius.size)),
+        np.empty((collision.components.shape[0], 3)),
     )
 
 
@@ -66,14 +66,14 @@ def compute_cost(robot, target, index, search, q, work):
 
 
 @kernel
-def compute_depth(detector, T_world_body, bounds, centres):
+def compute_depth(collision, T_world_body, bounds, centres):
     """Penetration beyond the safe distance in m, 0 if free. `bounds` [C, 3] and `centres` [3, S] are buffers."""
-    compute_bounds(detector, T_world_body, bounds)
-    compute_centres(detector, T_world_body, centres)
-    if not collides(detector, bounds, centres):
+    compute_bounds(collision, T_world_body, bounds)
+    compute_centres(collision, T_world_body, centres)
+    if not collides(collision, bounds, centres):
         return 0.0
-    clearance, _ = compute_clearance(detector, bounds, centres)
-    return max(np.rint((detector.safe_distance - clearance) / DEPTH_STEP), 1.0) * DEPTH_STEP
+    clearance, _ = compute_clearance(collision, bounds, centres)
+    return max(np.rint((collision.safe_distance - clearance) / DEPTH_STEP), 1.0) * DEPTH_STEP
 
 
 @inline_kernel
@@ -125,12 +125,12 @@ def fill_trial(search, lower, upper, state, work, i, best):
 
 
 @inline_kernel
-def score_point(robot, detector, target, index, search, q, work, rival):
+def score_point(robot, collision, target, index, search, q, work, rival):
     """Cost, depth and `meets` of `q`; whether it collides is checked only if it could still beat `rival` [2]."""
     cost, meets = compute_cost(robot, target, index, search, q, work)
     if search.collision_rule != FEASIBILITY or (rival[1] == 0.0 and cost > rival[0]):
         return cost, 0.0, meets
-    depth = compute_depth(detector, work.T_world_body, work.bounds, work.centres)
+    depth = compute_depth(collision, work.T_world_body, work.bounds, work.centres)
     return cost, depth, meets and depth == 0.0
 
 
@@ -143,7 +143,7 @@ def keep(x, score, i, q, cost, depth):
 
 
 @kernel
-def evolve(robot, detector, target, index, search, lower, upper, state, work):
+def evolve(robot, collision, target, index, search, lower, upper, state, work):
     """Evolve one population within [lower, upper]. Returns (best member, meets the target, evaluations).
 
     The best member is `work.x[best]`; under `FEASIBILITY` meeting the target includes being free of collision. The
@@ -158,7 +158,7 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
                 fill_start(search, lower, upper, state, work, i)
             else:
                 fill_trial(search, lower, upper, state, work, i, best)
-            cost, depth, meets = score_point(robot, detector, target, index, search, work.trial, work, work.score[i])
+            cost, depth, meets = score_point(robot, collision, target, index, search, work.trial, work, work.score[i])
             evaluations += 1
             wins = is_better(cost, depth, work.score[i])
             if wins and (meets or search.in_place):

@@ -1,8 +1,8 @@
 """The grader of many: metrics and verdict of finished configurations, in lanes.
 
-It shares nothing with what searches but the tables of robot, detector and targets and the functions of `trig`: it walks
-the tree itself, places every sphere and measures every pair, with no bounds and no early exit. Up to 32 configurations
-stand side by side in each row of its buffers, so that every inner loop runs over lanes and the compiler vectorises it.
+It shares nothing with what searches but the tables of robot, collision model and targets, and the functions of `trig`:
+it walks the tree itself, places every sphere and measures every pair, without bounds or early exit. Up to 32
+configurations stand side by side in each row of its buffers, so that the compiler vectorises every inner loop.
 Sums stand in the order of the scalar kernels, so the bits are theirs; `tests/kernels/test_grade_many.py` holds it.
 """
 
@@ -91,12 +91,12 @@ def place_tool(robot, count, lanes):
 
 
 @inline_kernel
-def place_spheres(detector, count, lanes):
+def place_spheres(collision, count, lanes):
     """Centres of all spheres in the world."""
-    T, p = lanes.bodies, detector.p_body_sphere
-    for component in range(detector.components.shape[0]):
-        body = detector.components[component, BODY]
-        for sphere in range(detector.components[component, FIRST], detector.components[component, LAST]):
+    T, p = lanes.bodies, collision.p_body_sphere
+    for component in range(collision.components.shape[0]):
+        body = collision.components[component, BODY]
+        for sphere in range(collision.components[component, FIRST], collision.components[component, LAST]):
             x, y, z = p[0, sphere], p[1, sphere], p[2, sphere]
             for i in range(3):
                 row, own = np.uint64(12) * body + np.uint64(4 * i), np.uint64(3) * sphere + np.uint64(i)
@@ -139,18 +139,18 @@ def approach(first_i, last_i, first_j, last_j, count, lanes):
 
 
 @inline_kernel
-def measure_pair(detector, pair, count, lanes):
+def measure_pair(collision, pair, count, lanes):
     """Smallest distance - R_i - R_j between two components into `lanes.gap`.
 
     Between spheres of equal radii the nearest centres decide: rounding keeps order, so one root is enough.
     """
-    a, b, radius = detector.pairs[pair, 0], detector.pairs[pair, 1], detector.radius
+    a, b, radius = collision.pairs[pair, 0], collision.pairs[pair, 1], collision.radius
     for lane in range(count):
         lanes.gap[lane] = np.inf
-    i, last_i = detector.components[a, FIRST], detector.components[a, LAST]
+    i, last_i = collision.components[a, FIRST], collision.components[a, LAST]
     while i < last_i:
         end_i = end_of_run(radius, i, last_i)
-        j, last_j = detector.components[b, FIRST], detector.components[b, LAST]
+        j, last_j = collision.components[b, FIRST], collision.components[b, LAST]
         while j < last_j:
             end_j = end_of_run(radius, j, last_j)
             approach(i, end_i, j, end_j, count, lanes)
@@ -163,12 +163,12 @@ def measure_pair(detector, pair, count, lanes):
 
 
 @inline_kernel
-def measure_pairs(detector, count, lanes):
+def measure_pairs(collision, count, lanes):
     """Smallest clearance over all pairs and the first pair that has it (inf and -1 without pairs)."""
     for lane in range(count):
         lanes.clearance[lane], lanes.closest[lane] = np.inf, -1
-    for pair in range(detector.pairs.shape[0]):
-        measure_pair(detector, pair, count, lanes)
+    for pair in range(collision.pairs.shape[0]):
+        measure_pair(collision, pair, count, lanes)
         for lane in range(count):
             closer = lanes.gap[lane] < lanes.clearance[lane]
             lanes.closest[lane] = pair if closer else lanes.closest[lane]
@@ -222,14 +222,14 @@ def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, o
     `out_pairs` [T]: index of the closest pair (-1 without pairs); `out_accepted` [T]: within tolerances and limits of
     `terms`, and farther apart than the safe distance.
     """
-    robot, detector, terms = unpack_grader(numbers, whole)
+    robot, collision, terms = unpack_grader(numbers, whole)
     lanes = Lanes(
         np.empty((q.shape[1], LANES)),
         np.empty((3, LANES)),
         np.empty((4, LANES)),
         np.empty((12 * robot.bodies.shape[0], LANES)),
         np.empty((12, LANES)),
-        np.empty((3 * detector.radius.size, LANES)),
+        np.empty((3 * collision.radius.size, LANES)),
         np.empty(LANES),
         np.empty(LANES),
         np.empty(LANES),
@@ -243,8 +243,8 @@ def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, o
         for body in range(1, robot.bodies.shape[0]):
             place_body(robot, body, count, lanes)
         place_tool(robot, count, lanes)
-        place_spheres(detector, count, lanes)
-        measure_pairs(detector, count, lanes)
+        place_spheres(collision, count, lanes)
+        measure_pairs(collision, count, lanes)
         for lane in range(count):
             index = first + lane
             asked = T_world_tool[index]
@@ -254,4 +254,4 @@ def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, o
             out_metrics[index, POSITION_ERROR], out_metrics[index, ORIENTATION_ERROR] = position, orientation
             out_metrics[index, CLEARANCE], out_pairs[index] = clearance, lanes.closest[lane]
             meets = position <= terms.position_tolerance and orientation <= terms.orientation_tolerance
-            out_accepted[index] = meets and clearance > detector.safe_distance and is_inside(terms.limits, q[index])
+            out_accepted[index] = meets and clearance > collision.safe_distance and is_inside(terms.limits, q[index])

@@ -22,16 +22,16 @@ def grade_one(numbers, whole, kinds, T_world_tool, q):
 
     The other arguments, and what is given back, are those of `grade_many`, for one target.
     """
-    robot, detector, terms = unpack_grader(numbers, whole)
+    robot, collision, terms = unpack_grader(numbers, whole)
     target = TargetArrays(kinds, T_world_tool)
     T_world_body, tool = np.empty((robot.bodies.shape[0], 3, 4)), np.empty((3, 4))
-    bounds, centres = np.empty((detector.components.shape[0], 3)), np.empty((3, detector.radius.size))
+    bounds, centres = np.empty((collision.components.shape[0], 3)), np.empty((3, collision.radius.size))
     compute_bodies(robot, q, T_world_body)
     compute_tool(robot, T_world_body, tool)
-    compute_bounds(detector, T_world_body, bounds)
-    compute_centres(detector, T_world_body, centres)
+    compute_bounds(collision, T_world_body, bounds)
+    compute_centres(collision, T_world_body, centres)
     position, orientation = compute_position_error(target, 0, tool), compute_orientation_error(target, 0, tool)
-    clearance, pair = compute_clearance(detector, bounds, centres)
+    clearance, pair = compute_clearance(collision, bounds, centres)
     meets = position <= terms.position_tolerance and orientation <= terms.orientation_tolerance
-    accepted = meets and clearance > detector.safe_distance and is_inside(terms.limits, q)
+    accepted = meets and clearance > collision.safe_distance and is_inside(terms.limits, q)
     return position, orientation, clearance, pair, accepted

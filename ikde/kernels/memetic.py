@@ -68,10 +68,10 @@ class MemeticWorkspace(NamedTuple):
 
 
 @kernel
-def make_memetic_workspace(robot, detector, joints, memetic):
-    """Allocate the buffers for a robot, a detector and the settings."""
+def make_memetic_workspace(robot, collision, joints, memetic):
+    """Allocate the buffers for a robot, a collision model and the settings."""
     population = memetic.first_population
-    members = make_workspace(robot, detector, joints, population)
+    members = make_workspace(robot, collision, joints, population)
     descent = make_descent_workspace(robot, joints, 6 + MAX_CONTACTS)
     return MemeticWorkspace(
         members,
@@ -146,13 +146,13 @@ def fill_trial(search, memetic, box, state, work, i, count, progress, weight, cr
 
 
 @kernel
-def score(robot, detector, target, index, search, q, members, rival):
+def score(robot, collision, target, index, search, q, members, rival):
     """`score_point`, compiled once for all its callers."""
-    return score_point(robot, detector, target, index, search, q, members, rival)
+    return score_point(robot, collision, target, index, search, q, members, rival)
 
 
 @kernel
-def breed(robot, detector, target, index, search, memetic, box, state, work, count, spent):
+def breed(robot, collision, target, index, search, memetic, box, state, work, count, spent):
     """One generation: every member is challenged by a trial. Returns (member that meets the target, evaluations)."""
     members, history = work.members, work.history
     progress = spent / memetic.evaluations
@@ -167,7 +167,7 @@ def breed(robot, detector, target, index, search, memetic, box, state, work, cou
         if memetic.is_weighted:
             weight, crossover = soften(weight, crossover, progress)
         fill_trial(search, memetic, box, state, work, i, count, progress, weight, crossover)
-        cost, depth, meets = score(robot, detector, target, index, search, members.trial, members, rival)
+        cost, depth, meets = score(robot, collision, target, index, search, members.trial, members, rival)
         spent += 1
         if not is_better(cost, depth, rival):
             continue
@@ -187,7 +187,7 @@ def breed(robot, detector, target, index, search, memetic, box, state, work, cou
 
 
 @kernel
-def polish(robot, detector, target, index, search, memetic, descent, box, reach, steps, q, work, spent):
+def polish(robot, collision, target, index, search, memetic, descent, box, reach, steps, q, work, spent):
     """At most so many damped steps on `q` [N], in place, until it meets the target, stands still or spends the budget.
 
     `reach` in m as for `clear_step`; with -inf collisions are ignored. Returns (cost in m, meets, evaluations): 1 a
@@ -198,14 +198,14 @@ def polish(robot, detector, target, index, search, memetic, descent, box, reach,
     for step in range(steps + 1):
         cost, meets = compute_cost(robot, target, index, search, q, members)
         spent += 1
-        compute_bounds(detector, members.T_world_body, members.bounds)
-        compute_centres(detector, members.T_world_body, members.centres)
+        compute_bounds(collision, members.T_world_body, members.bounds)
+        compute_centres(collision, members.T_world_body, members.centres)
         if meets and reach > -math.inf:
-            meets = not collides(detector, members.bounds, members.centres)
+            meets = not collides(collision, members.bounds, members.centres)
         if meets or idle >= memetic.patience or step == steps or spent + q.size >= memetic.evaluations:
             break
         compute_error(target, index, descent.rotation_length, members.T_world_tool, work.descent.error)
-        square = take_clear_step(robot, detector, target, index, box, descent, reach, work.contacts, q, work.descent)
+        square = take_clear_step(robot, collision, target, index, box, descent, reach, work.contacts, q, work.descent)
         spent += q.size
         idle = 0 if square < PROGRESS * smallest else idle + 1
         smallest = min(smallest, square)
@@ -214,7 +214,7 @@ def polish(robot, detector, target, index, search, memetic, descent, box, reach,
 
 @kernel
 def polish_best(
-    robot, detector, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
+    robot, collision, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
 ):
     """Polish the best members that have changed, up to the share of the evaluations that polishing may take.
 
@@ -222,7 +222,7 @@ def polish_best(
     `turns` is polished at once. Returns (member that meets the target, evaluations, those of polishing).
     """
     members, q, before = work.members, work.members.trial, spent - polished
-    reach = detector.safe_distance + memetic.margin if search.collision_rule == FEASIBILITY else -math.inf
+    reach = collision.safe_distance + memetic.margin if search.collision_rule == FEASIBILITY else -math.inf
     for n in range(turns * count):
         i, turn = work.order[n // turns], n % turns
         if spent >= memetic.evaluations or (turn == 0 and spent - before >= memetic.polish_share * spent):
@@ -232,7 +232,7 @@ def polish_best(
         for k in range(q.size):
             q[k] = members.x[i, k]
         cost, meets, spent = polish(
-            robot, detector, target, index, search, memetic, descent, box, reach, memetic.polish_steps, q, work, spent
+            robot, collision, target, index, search, memetic, descent, box, reach, memetic.polish_steps, q, work, spent
         )
         depth, work.fresh[i] = 0.0, 0
         if not meets and cost < work.champion_cost[0]:
@@ -242,7 +242,7 @@ def polish_best(
         if not meets and spent < memetic.evaluations:
             fill_start(search, box[0], box[1], state, members, RANDOM_MEMBER)
             members.score[i, 0], members.score[i, 1] = np.inf, np.inf
-            cost, depth, meets = score(robot, detector, target, index, search, q, members, members.score[i])
+            cost, depth, meets = score(robot, collision, target, index, search, q, members, members.score[i])
             keep(members.x, members.score, i, q, cost, depth)
             spent, work.fresh[i] = spent + 1, 1
         if meets:
@@ -253,14 +253,14 @@ def polish_best(
 
 
 @kernel
-def fill_population(robot, detector, target, index, search, memetic, box, state, work):
+def fill_population(robot, collision, target, index, search, memetic, box, state, work):
     """Draw and sort the first population. Returns (member that meets the target, members, evaluations)."""
     members, count = work.members, min(memetic.first_population, memetic.evaluations)
     for i in range(count):
         members.score[i, 0], members.score[i, 1] = np.inf, np.inf
         work.order[i], work.fresh[i] = i, 1
         fill_start(search, box[0], box[1], state, members, i)
-        cost, depth, meets = score(robot, detector, target, index, search, members.trial, members, members.score[i])
+        cost, depth, meets = score(robot, collision, target, index, search, members.trial, members, members.score[i])
         keep(members.x, members.score, i, members.trial, cost, depth)
         if meets:
             return i, count, i + 1
@@ -269,7 +269,7 @@ def fill_population(robot, detector, target, index, search, memetic, box, state,
 
 
 @kernel
-def evolve_memetic(robot, detector, target, index, search, memetic, descent, box, state, work):
+def evolve_memetic(robot, collision, target, index, search, memetic, descent, box, state, work):
     """Evolve one population within `box` [2, N]. Returns (best member, meets the target, evaluations).
 
     The best member is `work.members.x[best]`; under `FEASIBILITY` meeting the target includes being free. At most
@@ -278,14 +278,14 @@ def evolve_memetic(robot, detector, target, index, search, memetic, descent, box
     turns, polished = FIRST_TURNS, np.int64(0)
     reset_history(work.history, memetic.first_weight, memetic.first_crossover, memetic.is_weighted)
     work.champion_cost[0] = np.inf
-    found, count, spent = fill_population(robot, detector, target, index, search, memetic, box, state, work)
+    found, count, spent = fill_population(robot, collision, target, index, search, memetic, box, state, work)
     while found == NO_MEMBER and spent < memetic.evaluations:
         found, spent, polished = polish_best(
-            robot, detector, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
+            robot, collision, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
         )
         if found != NO_MEMBER or spent >= memetic.evaluations:
             break
-        found, spent = breed(robot, detector, target, index, search, memetic, box, state, work, count, spent)
+        found, spent = breed(robot, collision, target, index, search, memetic, box, state, work, count, spent)
         sort_members(work.members.score, work.order, count)
         planned = plan_population(memetic.first_population, memetic.last_population, spent / memetic.evaluations)
         if found == NO_MEMBER and planned < count:
@@ -299,7 +299,7 @@ def evolve_memetic(robot, detector, target, index, search, memetic, descent, box
 
 
 @inline_kernel
-def show_closest(robot, detector, target, index, search, memetic, descent, box, q, work):
+def show_closest(robot, collision, target, index, search, memetic, descent, box, q, work):
     """Into `q` [N], after an attempt in vain: what its champion comes to when collisions are ignored.
 
     So that a target that is reached only by colliding is known by the pairs that collide. Without a champion `q` stays.
@@ -310,13 +310,15 @@ def show_closest(robot, detector, target, index, search, memetic, descent, box, 
         steps = memetic.polish_steps
         for k in range(q.size):
             q[k] = work.champion[k]
-    return polish(robot, detector, target, index, search, memetic, descent, box, -math.inf, steps, q, work, np.int64(0))
+    return polish(
+        robot, collision, target, index, search, memetic, descent, box, -math.inf, steps, q, work, np.int64(0)
+    )
 
 
 @kernel
 def solve_memetic_lane(
     robot,
-    detector,
+    collision,
     target,
     index,
     search,
@@ -336,15 +338,15 @@ def solve_memetic_lane(
     after one in vain at most `memetic.polish_steps` damped steps more.
     """
     joints = out_q.size
-    work = make_memetic_workspace(robot, detector, joints, memetic)
+    work = make_memetic_workspace(robot, collision, joints, memetic)
     members, box, state = work.members, np.empty((2, joints)), np.empty(1, dtype=np.uint64)
     for attempt in range(attempts[0], attempts[1]):
         set_box(search.ranges, search.first_box, attempt, box[0], box[1])
         seed_stream(seed, stream, attempt, state)
-        best, meets, spent = evolve_memetic(robot, detector, target, index, search, memetic, descent, box, state, work)
+        best, meets, spent = evolve_memetic(robot, collision, target, index, search, memetic, descent, box, state, work)
         q, cost, more = members.x[best], 0.0, 0
         if not meets:
-            cost, meets, more = show_closest(robot, detector, target, index, search, memetic, descent, box, q, work)
+            cost, meets, more = show_closest(robot, collision, target, index, search, memetic, descent, box, q, work)
         out_counts[EVALUATIONS] += spent + more  # the poses in `members` are those of `q`, the last point evaluated
-        if finish_attempt(detector, search, q, cost, meets, members, out_q, out_score, out_counts, out_pairs):
+        if finish_attempt(collision, search, q, cost, meets, members, out_q, out_score, out_counts, out_pairs):
             return

@@ -31,28 +31,28 @@ class StepConstraints(NamedTuple):
 
 
 @kernel
-def make_step_constraints(detector, joints, size):
+def make_step_constraints(collision, joints, size):
     """Room for the rows of a step [size] of so many joints."""
     return StepConstraints(
         np.empty(MAX_CONSTRAINTS),
         np.empty((MAX_CONSTRAINTS, size)),
         np.empty(MAX_CONSTRAINTS, dtype=np.int64),
         np.empty(joints),
-        make_contacts(np.empty((detector.components.shape[0], 3)), np.empty((3, detector.radius.size)), MAX_PAIRS),
+        make_contacts(np.empty((collision.components.shape[0], 3)), np.empty((3, collision.radius.size)), MAX_PAIRS),
     )
 
 
 @leaf_kernel
-def constrain_pairs(robot, detector, drive, track, T_world_body, q, step, constraints):
+def constrain_pairs(robot, collision, drive, track, T_world_body, q, step, constraints):
     """Rows of the pairs nearer than the reach at the poses of the step's end; returns how many."""
     if track.reach == -math.inf:
         return 0
     contacts = constraints.contacts
-    compute_bounds(detector, T_world_body, contacts.bounds)
-    compute_centres(detector, T_world_body, contacts.centres)
-    count = find_contacts(detector, track.reach, MAX_PAIRS, contacts)
+    compute_bounds(collision, T_world_body, contacts.bounds)
+    compute_centres(collision, T_world_body, contacts.centres)
+    count = find_contacts(collision, track.reach, MAX_PAIRS, contacts)
     for k in range(count):
-        fill_gradient(robot, detector, T_world_body, contacts, k, constraints.row)
+        fill_gradient(robot, collision, T_world_body, contacts, k, constraints.row)
         fold_row(drive, q, step, constraints.row, constraints.slope[k])
         constraints.slack[k], constraints.pair[k] = contacts.gap[k] - track.margin, contacts.spheres[k, 0]
     return count
@@ -134,9 +134,9 @@ def constrain_distance(robot, drive, T_world_body, T_world_tool, q, step, count,
 
 
 @inline_kernel
-def constrain_step(robot, detector, drive, track, T_world_body, T_world_tool, q, q_end, step, constraints):
+def constrain_step(robot, collision, drive, track, T_world_body, T_world_tool, q, q_end, step, constraints):
     """All constraints of a step from `q` [N] to `q_end` [N]; returns how many."""
-    count = constrain_pairs(robot, detector, drive, track, T_world_body, q, step, constraints)
+    count = constrain_pairs(robot, collision, drive, track, T_world_body, q, step, constraints)
     if drive.base[0] >= 0:
         count = constrain_base(drive, track, q, q_end, step, count, constraints)
         count = constrain_wheels(drive, step, count, constraints)

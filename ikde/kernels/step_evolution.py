@@ -44,7 +44,7 @@ class StepWorkspace(NamedTuple):
 
 
 @kernel
-def make_step_workspace(robot, detector, joints, size, population):
+def make_step_workspace(robot, collision, joints, size, population):
     """Allocate the room for a robot, steps [size] and a population."""
     return StepWorkspace(
         np.empty((2 * population, size)),
@@ -59,8 +59,8 @@ def make_step_workspace(robot, detector, joints, size, population):
         np.empty(joints),
         np.empty((robot.bodies.shape[0], 3, 4)),
         np.empty((3, 4)),
-        np.empty((3, detector.radius.size)),
-        np.empty((detector.components.shape[0], 3)),
+        np.empty((3, collision.radius.size)),
+        np.empty((collision.components.shape[0], 3)),
     )
 
 
@@ -97,7 +97,7 @@ def keeps_rest(drive, track, q, step, work):
 
 
 @kernel
-def judge_step(robot, detector, drive, track, target, index, search, q, step, work):
+def judge_step(robot, collision, drive, track, target, index, search, q, step, work):
     """The termination (35): whether a step meets the target, keeps all limits and is free. Returns verdict and pair."""
     compute_fitness(robot, drive, target, index, search, q, step, work)
     for i in range(3):
@@ -107,9 +107,9 @@ def judge_step(robot, detector, drive, track, target, index, search, q, step, wo
         return MISSED, NO_PAIR
     if not keeps_rest(drive, track, q, step, work):
         return LIMITED, NO_PAIR
-    compute_bounds(detector, work.T_world_body, work.bounds)
-    compute_centres(detector, work.T_world_body, work.centres)
-    pair = find_colliding_pair(detector, work.bounds, work.centres)
+    compute_bounds(collision, work.T_world_body, work.bounds)
+    compute_centres(collision, work.T_world_body, work.centres)
+    pair = find_colliding_pair(collision, work.bounds, work.centres)
     return SOLVED if pair < 0 else COLLIDES, pair
 
 
@@ -168,7 +168,7 @@ def breed_steps(robot, drive, target, index, search, strategy, best, q, work):
 
 
 @kernel
-def evolve_steps(robot, detector, drive, track, target, index, search, q, work):
+def evolve_steps(robot, collision, drive, track, target, index, search, q, work):
     """Evolve one population until its best is solved. Returns (best member, verdict, pair, evaluations)."""
     draw_population(robot, drive, target, index, search, q, work)
     best, evaluations, judged = np.int64(0), 2 * search.population, math.inf
@@ -176,7 +176,7 @@ def evolve_steps(robot, detector, drive, track, target, index, search, q, work):
     for generation in range(1, search.generations + 2):
         if work.fitness[best] < judged:
             judged = work.fitness[best]
-            verdict, pair = judge_step(robot, detector, drive, track, target, index, search, q, work.x[best], work)
+            verdict, pair = judge_step(robot, collision, drive, track, target, index, search, q, work.x[best], work)
         if verdict == SOLVED or generation > search.generations:
             break
         strategy = search.even if generation % 2 == 0 else search.odd
@@ -187,7 +187,7 @@ def evolve_steps(robot, detector, drive, track, target, index, search, q, work):
 
 @kernel
 def evolve_sample(
-    robot, detector, drive, track, target, index, search, seed, q, last, first_step, work, out_q, out_step
+    robot, collision, drive, track, target, index, search, seed, q, last, first_step, work, out_q, out_step
 ):
     """Population after population until one is solved: the success index. `out_q` [N], `out_step` [D]: the best.
 
@@ -199,7 +199,7 @@ def evolve_sample(
         return kept, kept_pair, 0, evaluations
     for attempt in range(search.attempts):
         seed_stream(seed, index, attempt, work.state)
-        best, verdict, pair, spent = evolve_steps(robot, detector, drive, track, target, index, search, q, work)
+        best, verdict, pair, spent = evolve_steps(robot, collision, drive, track, target, index, search, q, work)
         evaluations += spent
         if verdict < kept or (verdict == kept and work.fitness[best] < kept_fitness):
             kept, kept_pair, kept_fitness = verdict, pair, work.fitness[best]

@@ -49,7 +49,7 @@ class Sample(NamedTuple):
 
 
 @kernel
-def make_sample(robot, detector, joints, size):
+def make_sample(robot, collision, joints, size):
     """Allocate the room for a robot and steps [size]."""
     return Sample(
         np.empty((robot.bodies.shape[0], 3, 4)),
@@ -61,15 +61,15 @@ def make_sample(robot, detector, joints, size):
         np.empty(6),
         np.empty(size),
         make_system(size),
-        make_step_constraints(detector, joints, size),
+        make_step_constraints(collision, joints, size),
     )
 
 
 @leaf_kernel
-def pose(robot, q, work):
+def compute_poses(robot, q, T_world_body, T_world_tool):
     """Poses of bodies and tool at `q` [N]."""
-    compute_bodies(robot, q, work.T_world_body)
-    compute_tool(robot, work.T_world_body, work.T_world_tool)
+    compute_bodies(robot, q, T_world_body)
+    compute_tool(robot, T_world_body, T_world_tool)
 
 
 @leaf_kernel
@@ -101,12 +101,12 @@ def add_manipulability_gradient(robot, drive, track, target, index, weights, q, 
 
 
 @leaf_kernel
-def set_preferred_step(robot, detector, drive, track, target, index, weights, q, last, still, work):
+def set_preferred_step(robot, collision, drive, track, target, index, weights, q, last, still, work):
     """What the null space is used for in the step from `q` [N] after the step `last` [D]; `still` [D] is zero."""
-    pose(robot, q, work)
+    compute_poses(robot, q, work.T_world_body, work.T_world_tool)
     start_preferred(weights, work.preferred)
     avoid_limits(drive, track, weights, q, work.preferred)
-    count = constrain_pairs(robot, detector, drive, track, work.T_world_body, q, still, work.constraints)
+    count = constrain_pairs(robot, collision, drive, track, work.T_world_body, q, still, work.constraints)
     avoid_contacts(track, weights, count, work.constraints, work.preferred)
     if weights[MANIPULABILITY] > 0.0:
         add_manipulability_gradient(robot, drive, track, target, index, weights, q, still, work)
@@ -124,7 +124,7 @@ def find_min_slack(constraints, count, pairs_only):
 
 
 @leaf_kernel
-def track_sample(robot, detector, drive, track, target, index, weights, q, last, first_step, work, out_q, out_step):
+def track_sample(robot, collision, drive, track, target, index, weights, q, last, first_step, work, out_q, out_step):
     """Step from `q` [N] so that the tool meets a target, to `out_q` [N] by `out_step` [D], and how that ended.
 
     `last` [D] is the step before, `weights` [3 + D] what the null space is used for. Returns the status, the rounds,
@@ -133,7 +133,7 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
     """
     for k in range(out_step.size):
         out_step[k] = 0.0
-    set_preferred_step(robot, detector, drive, track, target, index, weights, q, last, out_step, work)
+    set_preferred_step(robot, collision, drive, track, target, index, weights, q, last, out_step, work)
     if not set_step_box(drive, track.ranges, q, last, first_step, work.system.lower, work.system.upper):
         return NO_STEP, 0, 0.0
     for k in range(out_step.size):
@@ -141,15 +141,13 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
     is_near, least, pull = False, math.inf, STIFFNESS
     for round_ in range(track.max_rounds):
         take_drive_step(drive, q, out_step, out_q)
-        pose(robot, out_q, work)
+        compute_poses(robot, out_q, work.T_world_body, work.T_world_tool)
         position, orientation = compute_error(target, index, track.rotation_length, work.T_world_tool, work.error)
         count = constrain_step(
-            robot, detector, drive, track, work.T_world_body, work.T_world_tool, q, out_q, out_step, work.constraints
+            robot, collision, drive, track, work.T_world_body, work.T_world_tool, q, out_q, out_step, work.constraints
         )
-        is_free, least = (
-            find_min_slack(work.constraints, count, False) >= SLACK,
-            find_min_slack(work.constraints, count, True),
-        )
+        is_free = find_min_slack(work.constraints, count, False) >= SLACK
+        least = find_min_slack(work.constraints, count, True)
         if round_ > 0 and is_free and position <= track.position_goal and orientation <= track.orientation_goal:
             return REACHED, round_, least
         is_near = is_free and position <= track.position_tolerance and orientation <= track.orientation_tolerance
@@ -159,9 +157,8 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
         if round_ >= USUAL_ROUNDS:
             pull = min(STIFFER * pull, STIFFEST)
         stiffness = pull / measure_travel(work.jacobian, rows)
-        found = solve_step(
-            work.jacobian, work.error, rows, stiffness, work.preferred, work.constraints, count, work.system, out_step
-        )
+        parts = (work.preferred, work.constraints.slack, work.constraints.slope, count, work.system, out_step)
+        found = solve_step(work.jacobian, work.error, rows, stiffness, *parts)
         if not found and round_ >= STUCK_ROUNDS:
             return INFEASIBLE, round_, least
         for k in range(out_step.size):
@@ -170,7 +167,7 @@ def track_sample(robot, detector, drive, track, target, index, weights, q, last,
 
 
 @leaf_kernel
-def track_span(robot, detector, drive, track, target, first, last, weights, q, steps, work, out_rounds, out_least):
+def track_span(robot, collision, drive, track, target, first, last, weights, q, steps, work, out_rounds, out_least):
     """Samples first + 1 .. last, into `q` [K + 1, N] and `steps` [K + 1, D]; `weights` [K + 1, 3 + D].
 
     Returns the last sample that was reached, and how the one after it ended.
@@ -178,7 +175,7 @@ def track_span(robot, detector, drive, track, target, first, last, weights, q, s
     for k in range(first + 1, last + 1):
         status, out_rounds[k], out_least[k] = track_sample(
             robot,
-            detector,
+            collision,
             drive,
             track,
             target,

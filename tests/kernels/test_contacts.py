@@ -70,7 +70,7 @@ def test_contacts_are_the_nearest_pairs_with_their_spheres(seed, room, rng):
     robot = random_robot(seed)
     placed = Placed(robot, random_q(robot, rng), rows=60)
     gaps = clearances(robot, placed.q)
-    for reach in (*np.median(gaps, keepdims=True), FAR) if len(gaps) else (FAR,):
+    for reach in (gaps.mean(), FAR):
         count = find_contacts(placed.spheres, reach, room, placed.contacts)
         found, (pairs, i, j) = placed.contacts.gap[:count], placed.contacts.spheres[:count].T
         near = np.argsort(gaps)[: min(room, (gaps < reach).sum())]

@@ -28,11 +28,13 @@ def test_the_graders_tables_come_back(robot):
             assert_same(ours, theirs)
 
 
-def test_the_question_comes_back(qiao, rng):
+def test_the_search_comes_back(qiao, rng):
     ranges = np.array([qiao.lower, qiao.upper, qiao.home])
     descent = DescentArrays(position_tolerance=0.25, orientation_tolerance=0.5, most_steps=7, patience=3)
     for seeds in (pack_seeds(qiao, random_q(qiao, rng, 100), np.array([0, 1, 2])), no_seeds(qiao, 0.125)):
-        back = unpack_search(*flatten_search(ranges, descent, seeds))
-        assert (back[0] == ranges).all()
-        assert_same(descent, back[1])
-        assert_same(seeds, back[2])
+        for choice in (None, "none"):
+            packed = (pack_robot(qiao), CollisionModel.of(qiao, choice).arrays, descent, seeds)
+            robot, collision, back, *others = unpack_search(*flatten_search(*packed[:2], ranges, *packed[2:]))
+            assert (back == ranges).all()
+            for ours, theirs in zip(packed, (robot, collision, *others), strict=True):
+                assert_same(ours, theirs)

@@ -13,7 +13,7 @@ from tests.conftest import random_q
 from tests.kernels.driving import Stand
 from tests.uncompiled import plain
 
-set_preferred_step, pose = plain(tracking.set_preferred_step), plain(tracking.pose)
+set_preferred_step, compute_poses = plain(tracking.set_preferred_step), plain(tracking.compute_poses)
 add_manipulability_gradient = plain(tracking.add_manipulability_gradient)
 NAMES = ("differential", "omnidirectional")
 
@@ -31,12 +31,12 @@ def preferred_of(stand, kind="position", **weights):
 def log_manipulability(stand, kind, q):
     """Log det(I + stiffness J^T J) / 2 at `q`, with the stiffness of where it stands."""
     work = stand.work
-    pose(stand.arrays, stand.q, work)
+    compute_poses(stand.arrays, stand.q, work.T_world_body, work.T_world_tool)
     fill = plain(tracking.fill_step_jacobian)
     still = np.zeros(stand.size)
     rows = fill(stand.arrays, stand.drive, stand.track, stand.target(kind), 0, stand.q, still, work)
     stiffness = nullspace.MANIPULABILITY_STIFFNESS / ((work.jacobian[:rows] ** 2).sum() / rows)
-    pose(stand.arrays, q, work)
+    compute_poses(stand.arrays, q, work.T_world_body, work.T_world_tool)
     fill(stand.arrays, stand.drive, stand.track, stand.target(kind), 0, q, still, work)
     J = work.jacobian[:rows]
     return 0.5 * np.linalg.slogdet(np.eye(stand.size) + stiffness * J.T @ J)[1]
@@ -49,7 +49,7 @@ def test_log_manipulability_is_a_gradient(qiao, rng, name, kind):
         stand = Stand(qiao, random_q(qiao, rng), name)
         stand.weights[MANIPULABILITY] = 1.0
         stand.work.preferred[:] = 0.0
-        pose(stand.arrays, stand.q, stand.work)
+        compute_poses(stand.arrays, stand.q, stand.work.T_world_body, stand.work.T_world_tool)
         parts = (stand.arrays, stand.drive, stand.track, stand.target(kind), 0, stand.weights)
         add_manipulability_gradient(*parts, stand.q, np.zeros(stand.size), stand.work)
         found = stand.work.preferred.copy()

@@ -6,7 +6,7 @@ import pytest
 from ikde.kernels import step_constraints as kernels
 from ikde.kernels.drive import take_drive_step
 from ikde.kernels.step_constraints import MAX_PAIRS, make_step_constraints
-from ikde.kernels.tracking import pose
+from ikde.kernels.tracking import compute_poses
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.track.drive import step_base
@@ -27,9 +27,9 @@ def end_of(stand, step):
 def rows_at(stand, step):
     """All rows at a step: slack, slope and pair, and where it ends."""
     q_end = end_of(stand, step)
-    plain(pose)(stand.arrays, q_end, stand.work)
     found = make_step_constraints(stand.spheres, len(q_end), stand.size)
     T_body, T_tool = stand.work.T_world_body, stand.work.T_world_tool
+    plain(compute_poses)(stand.arrays, q_end, T_body, T_tool)
     packed = (stand.arrays, stand.spheres, stand.drive, stand.track)
     count = constrain_step(*packed, T_body, T_tool, stand.q, q_end, step, found)
     return found.slack[:count].copy(), found.slope[:count].copy(), found.pair[:count].copy()

@@ -283,6 +283,7 @@ import json, pathlib, sys, time
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
+from ikde.solver.problem import pack_searched
 from tests.model.generate.test_module import tiny_robot
 import numpy as np
 robot = tiny_robot()
@@ -291,7 +292,8 @@ while not pathlib.Path(sys.argv[1]).exists():
 with compile_clock() as clock:
     module = load_module(CollisionModel.of(robot), "position")
     q = np.linspace(-2.0, 2.0, 9)
-    found = [int(module.find_collision(0, 0.0, q[k : k + 1], 0)) for k in range(9)]
+    models = pack_searched(CollisionModel.of(robot))
+    found = [int(module.find_collision(*models, q[k : k + 1], 0)) for k in range(9)]
 print(json.dumps({"found": found, "seconds": clock.seconds, "file": module.__file__}))
 """
 
