@@ -72,7 +72,10 @@ class SearchArrays(NamedTuple):
     crossover: float  # CR
     repair: int  # index into `mutation.REPAIRS`
     in_place: bool  # a better trial replaces its parent at once, not at the end of the generation
-    collision_rule: int  # one of `evolution.IGNORE`, `REJECT`, `FEASIBILITY`
+    collision_rule: int  # IGNORE, REJECT or FEASIBILITY
+
+
+IGNORE, REJECT, FEASIBILITY = range(3)  # what a search makes of collisions
 
 
 class DescentArrays(NamedTuple):

@@ -1,8 +1,7 @@
 """How an attempt of a differential evolution begins and ends: the box it searches, and what is kept and counted."""
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, OUTSIDE, REACHED
-from ikde.kernels.clearance import count_colliding_pairs
-from ikde.kernels.evolution import IGNORE, compute_depth
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, IGNORE, OUTSIDE, REACHED
+from ikde.kernels.clearance import compute_depth, count_colliding_pairs
 from ikde.kernels.jit import inline_kernel, kernel
 
 

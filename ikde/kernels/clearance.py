@@ -13,6 +13,8 @@ from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
+DEPTH_STEP = 1e-9  # m: depths are whole steps, at least one, so that rounding noise cannot decide between equals
+
 
 @inline_kernel
 def bounds_are_apart(collision, bounds, a, b, distance):
@@ -102,6 +104,17 @@ def compute_clearance(collision, bounds, centres):
         if gap < smallest:
             smallest, closest = gap, pair
     return smallest, closest
+
+
+@kernel
+def compute_depth(collision, T_world_body, bounds, centres):
+    """Penetration beyond the safe distance in m, 0 if free. `bounds` [C, 3] and `centres` [3, S] are buffers."""
+    compute_bounds(collision, T_world_body, bounds)
+    compute_centres(collision, T_world_body, centres)
+    if not collides(collision, bounds, centres):
+        return 0.0
+    clearance, _ = compute_clearance(collision, bounds, centres)
+    return max(np.rint((collision.safe_distance - clearance) / DEPTH_STEP), 1.0) * DEPTH_STEP
 
 
 @kernel

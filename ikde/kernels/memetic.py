@@ -13,13 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import EVALUATIONS, Floats, Ints
+from ikde.kernels.arrays import EVALUATIONS, FEASIBILITY, Floats, Ints
 from ikde.kernels.attempt import finish_attempt, set_box
 from ikde.kernels.clearance import collides
 from ikde.kernels.contacts import MAX_CONTACTS, Contacts, make_contacts, take_clear_step
 from ikde.kernels.damped import DescentWorkspace, compute_error, make_descent_workspace
 from ikde.kernels.evolution import (
-    FEASIBILITY,
     Workspace,
     compute_cost,
     fill_start,
@@ -29,21 +28,21 @@ from ikde.kernels.evolution import (
     score_point,
 )
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.mutation import repair_bound
-from ikde.kernels.rng import next_index, next_uniform, seed_stream
+from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.kernels.success_history import (
-    ARCHIVED,
     HistoryWorkspace,
     add_success,
     add_to_archive,
     draw_crossover,
     draw_weight,
+    drop_worst,
+    fill_trial,
     make_history,
     plan_population,
-    pull_factor,
     reset_history,
     soften,
+    sort_members,
     trim_archive,
     update_memory,
 )
@@ -91,58 +90,6 @@ def make_memetic_workspace(robot, collision, joints, memetic):
         np.empty(joints),
         np.empty(1),
     )
-
-
-@inline_kernel
-def sort_members(score, order, count):
-    """Put the first `count` members of `order` into Deb's order, best first; quick where it is nearly sorted."""
-    for n in range(1, count):
-        member, m = order[n], n
-        while m > 0 and not is_better(score[order[m - 1], 0], score[order[m - 1], 1], score[member]):
-            order[m] = order[m - 1]
-            m -= 1
-        order[m] = member
-
-
-@inline_kernel
-def drop_worst(members, order, fresh, count, kept):
-    """Keep the `kept` best of `count` sorted members, renumbered so that they stand first; they stay sorted.
-
-    The last member moves into the place of each one that is dropped.
-    """
-    for size in range(count, kept, -1):
-        worst, last = order[size - 1], size - 1
-        if worst != last:
-            keep(members.x, members.score, worst, members.x[last], members.score[last, 0], members.score[last, 1])
-            fresh[worst] = fresh[last]
-            for n in range(size - 1):
-                if order[n] == last:
-                    order[n] = worst
-
-
-@inline_kernel
-def fill_trial(search, memetic, box, state, work, i, count, progress, weight, crossover):
-    """Current-to-pbest/1 with the archive, binomial crossover, bound repair: the trial for member `i` of `count`.
-
-    [Tanabe2014, eq. 3]; v = x_i + F' (x_pbest - x_i) + F (x_r1 - x_r2), with r2 from the population or the archive.
-    """
-    members, history, x = work.members, work.history, work.members.x
-    share = memetic.first_share + (memetic.last_share - memetic.first_share) * progress
-    best = work.order[next_index(state, max(np.int64(np.rint(share * count)), 2))]
-    r1, r2 = i, i
-    while r1 == i:
-        r1 = next_index(state, count)
-    while r2 in (i, r1):
-        r2 = next_index(state, count + history.counts[ARCHIVED])
-    pull = weight * pull_factor(progress) if memetic.is_weighted else weight
-    joints = members.trial.size
-    forced = next_index(state, joints)
-    for k in range(joints):
-        members.trial[k] = x[i, k]
-        if k == forced or next_uniform(state) < crossover:
-            other = x[r2, k] if r2 < count else history.archive[r2 - count, k]
-            donor = x[i, k] + pull * (x[best, k] - x[i, k]) + weight * (x[r1, k] - other)
-            members.trial[k] = repair_bound(search.repair, state, donor, x[i, k], box[0, k], box[1, k])
 
 
 @kernel

@@ -7,8 +7,8 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, OUTSIDE, REACHED
 from ikde.kernels.attempt import finish_attempt, is_inside, keep_better, set_box
 from ikde.kernels.evolution import make_workspace
 from ikde.kernels.frames import compute_bodies
-from ikde.model.pack import pack_detector, pack_robot
-from ikde.solver.problem import make_problem, pack_search
+from ikde.model.collision_model import CollisionModel
+from ikde.solver.problem import make_problem, pack_search, pack_searched
 from ikde.solver.settings import SolveSettings
 from tests import reference
 
@@ -47,7 +47,7 @@ def test_a_box_has_its_share_of_the_range_on_either_side(attempt):
 
 
 def test_without_near_the_first_box_is_the_whole_range(qiao):
-    problem = make_problem(qiao, SolveSettings(), detector=None, near=None, freeze=None)
+    problem = make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=None)
     search = pack_search(problem)
     lower, upper = run_box(0, search.first_box, search.ranges)
     np.testing.assert_array_equal([lower, upper], [qiao.lower, qiao.upper])
@@ -75,10 +75,10 @@ def test_what_is_met_is_kept_before_what_is_not_and_the_better_of_two():
     assert score.tolist() == [0.0, 0.0]
 
 
-def finish(robot, q, *, cost=0.3, meets=True, detector=None):
+def finish(robot, q, *, cost=0.3, meets=True, collision=None):
     """(reached, q, score, counts, pairs) after one attempt that ends at `q`."""
-    problem = make_problem(robot, SolveSettings(method="de"), detector=detector, near=None, freeze=None)
-    packed, spheres = pack_robot(robot), pack_detector(robot, problem.detector)
+    problem = make_problem(robot, SolveSettings(method="de"), collision=collision, near=None, freeze=None)
+    packed, spheres = pack_searched(problem.collision)
     work = make_workspace(packed, spheres, len(q), 4)
     compute_bodies(packed, q, work.T_world_body)
     out = (np.zeros(len(q)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64), np.zeros(len(spheres.pairs), int))
@@ -111,12 +111,13 @@ def test_what_leaves_its_range_is_counted_as_outside_and_kept_by_its_cost(qiao):
 
 
 def test_what_collides_is_kept_by_its_depth_and_its_pairs_are_counted(qiao, rng):
-    chosen = qiao.detector(None)
+    model = CollisionModel.of(qiao)
+    chosen = model.detector
     q = next(q for q in rng.uniform(qiao.lower, qiao.upper, (200, 9)) if reference.compute_depth(qiao, chosen, q) > 0)
     reached, _, score, counts, pairs = finish(qiao, q)
     assert not reached
     assert score == pytest.approx([0.0, reference.compute_depth(qiao, chosen, q)], abs=1e-9)
     assert np.flatnonzero(counts).tolist() == [ATTEMPTS, COLLIDING]
-    gaps = reference.compute_pair_clearances(reference.list_spheres(qiao, chosen, q), qiao.pair_lists[chosen.pairs])
+    gaps = reference.compute_pair_clearances(reference.list_spheres(qiao, chosen, q), model.pairs)
     np.testing.assert_array_equal(pairs, gaps <= chosen.safe_distance_m)
-    assert finish(qiao, q, detector="none")[0]
+    assert finish(qiao, q, collision="none")[0]

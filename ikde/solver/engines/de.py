@@ -3,7 +3,7 @@
 import numpy as np
 
 from ikde.kernels.arrays import Ints
-from ikde.kernels.de_lane import solve_lanes
+from ikde.kernels.evolution import solve_lanes
 from ikde.solver.engines.engine import Question
 from ikde.solver.problem import Problem, pack_search, pack_searched
 
