@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from ikde.kernels.clearance import (
+    DEPTH_STEP,
     collides,
     compute_clearance,
+    compute_depth,
     count_colliding_pairs,
     find_closest_spheres,
     judge_centres,
 )
-from ikde.kernels.evolution import DEPTH_STEP, compute_depth
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests import reference

@@ -92,7 +92,7 @@ def test_the_clock_stands_still_when_nothing_compiles(qiao):
 ONE_SIGNATURE = """
 import ikde
 from ikde.kernels.grade_many import grade_many
-from ikde.kernels.de_lane import solve_lanes
+from ikde.kernels.evolution import solve_lanes
 from tests.random_robots import random_robot
 
 settings = ikde.SolveSettings(population=8, generations=5, restarts=2)
