@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import CollisionArrays, DescentArrays, Floats, Indices, Ints, RobotArrays, SeedArrays
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import kernel
 
 Value = Floats | Ints | Indices | float
 
@@ -55,9 +55,12 @@ def _flatten(*values: Value) -> tuple[Floats, Ints]:
     return numbers, whole
 
 
-@inline_kernel
+@kernel
 def unpack_models(numbers, whole):
-    """`RobotArrays` and `CollisionArrays` as views, and what follows them: numbers and whole numbers."""
+    """`RobotArrays` and `CollisionArrays` as views, and what follows them: numbers and whole numbers.
+
+    Views that are handed on are counted, so this is no `leaf_kernel`: numba would free what it never took.
+    """
     bodies, frames, components, pairs, rows, spheres = whole[0], whole[1], whole[2], whole[3], whole[4], whole[5]
     w, u = whole[6:], whole[6 + 4 * bodies :].view(np.uint64)
     T_body_frame = 12 * bodies

@@ -1,5 +1,7 @@
 """What is laid end to end comes apart as it was."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -38,3 +40,17 @@ def test_the_search_comes_back(qiao, rng):
             assert (back == ranges).all()
             for ours, theirs in zip(packed, (robot, collision, *others), strict=True):
                 assert_same(ours, theirs)
+
+
+def test_what_is_unpacked_often_is_still_there(qiao):
+    """Views that are not counted would free the blocks under them."""
+    models, ranges = (pack_robot(qiao), CollisionModel.of(qiao).arrays), np.array([qiao.lower, qiao.upper, qiao.home])
+    search = flatten_search(*models, ranges, DescentArrays(), no_seeds(qiao, 0.125))
+    grader = flatten_grader(*models, terms_of(qiao, 0.25, 0.5))
+    before = [sys.getrefcount(block) for block in (*search, *grader)]
+    for _ in range(100):
+        unpack_search(*search)
+        unpack_grader(*grader)
+    assert [sys.getrefcount(block) for block in (*search, *grader)] == before
+    assert_same(models[0], unpack_search(*search)[0])
+    assert_same(models[1], unpack_grader(*grader)[1])
