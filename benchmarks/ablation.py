@@ -31,15 +31,15 @@ from ikde.batch.generators import ReachableSource
 from ikde.kernels import lm as tables_lm
 from ikde.kernels import tables
 from ikde.kernels.arrays import COUNTS, SeedArrays
-from ikde.kernels.blocks import flatten_question
 from ikde.kernels.clearance import judge_centres
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble as generator
-from ikde.model.pack import pack_robot, pack_targets
+from ikde.model.pack import pack_targets
 from ikde.solver.engines import pool
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import NO_BASE, make_seeds
-from ikde.solver.problem import ROUNDING, make_problem
+from ikde.solver.problem import make_problem, pack_searched
 
 RESULTS = Path(__file__).parent / "results" / "ablation.json"
 LANES = tables.LANES
@@ -235,12 +235,12 @@ def draw_evenly(count: int) -> SeedArrays:
 
 def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: Variant) -> dict[str, Callable[[], Any]]:
     """What is timed: each gives its figure."""
-    robot, detector = pack_robot(problem.robot), problem.collision.arrays
+    models = pack_searched(problem.collision)
     is_table = variant.seeds == "tables"
-    first = (robot, detector) if is_table else (0, ROUNDING)
     count, joints = len(targets), len(problem.lower)
     q, score = np.empty((count, joints)), np.empty((count, 2))
-    counts, pairs = np.empty((count, COUNTS), dtype=np.int64), np.zeros((count, len(detector.pairs)), dtype=np.int64)
+    counts = np.empty((count, COUNTS), dtype=np.int64)
+    pairs = np.zeros((count, len(problem.collision.pairs)), dtype=np.int64)
     settings = (make_ranges(problem), make_descent(problem, "pose"), seeds, np.uint64(3))
     few = min(count, 1000) if is_table else count
     attempts = np.tile([0, 1000], (few, 1))
@@ -250,70 +250,71 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
         score[:], counts[:] = np.inf, 0
         began = time.perf_counter()
         with np.errstate(over="ignore"):
-            variant.module.solve_targets(*first, pack_targets(targets), np.array([0, few]), *settings, *lane)
+            variant.module.solve_targets(*models, pack_targets(targets), np.array([0, few]), *settings, *lane)
         return (time.perf_counter() - began) / few * 1e6
 
     def solve_singly() -> float:
         score[:], counts[:] = np.inf, 0
         began = time.perf_counter()
         single(
-            *first, *pack_targets(targets), few, *flatten_question(*settings[:3]), settings[3], q, score, counts, pairs
+            *(*pack_targets(targets), few, *flatten_search(*models, *settings[:3])),
+            *(settings[3], q, score, counts, pairs),
         )
         return (time.perf_counter() - began) / few * 1e6
 
     solve_target = variant.module.solve_target
 
     @numba.njit
-    def single(robot, detector, kinds, T, few, numbers, whole, pool, pool_T, seed, q, score, counts, pairs):
+    def single(kinds, T, few, numbers, whole, pool, pool_T, seed, q, score, counts, pairs):
         for k in range(few):
             question = (kinds, T, k, numbers, whole, pool, pool_T)
-            solve_target(robot, detector, *question, seed, k, 0, 1000, q[k], score[k], counts[k], pairs[k])
+            solve_target(*question, seed, k, 0, 1000, q[k], score[k], counts[k], pairs[k])
 
     jobs: dict[str, Callable[[], Any]] = {"lanes us": solve_lanes, "singly us": solve_singly}
     jobs |= {"steps": lambda: float(counts[:few, 2].mean()), "attempts": lambda: float(counts[:few, 1].mean())}
-    return jobs | make_check_jobs(problem, variant, first)
+    return jobs | make_check_jobs(problem, variant, models)
 
 
-def make_check_jobs(problem: Any, variant: Variant, first: tuple[Any, ...]) -> dict[str, Callable[[], Any]]:
+def make_check_jobs(problem: Any, variant: Variant, models: tuple[Any, ...]) -> dict[str, Callable[[], Any]]:
     """Nanoseconds of forward kinematics and the yes/no check, configuration by configuration and in lanes."""
     robot = problem.robot
-    arrays, detector = pack_robot(robot), CollisionModel(robot=robot, detector=problem.collision.detector).arrays
     qs = np.random.default_rng(1).uniform(robot.lower, robot.upper, (16_384, len(robot.joints)))
     hits = np.empty(len(qs), dtype=bool)
-    judge_centres(arrays, detector, qs, hits)
+    judge_centres(*models, qs, hits)
     sets = {"all": qs, "free": qs[~hits][: len(qs[~hits]) // LANES * LANES].copy()}
     find, make_buffers = variant.module.find_collision, variant.module.make_buffers
     jobs: dict[str, Callable[[], Any]] = {}
 
     @numba.njit
-    def loop(robot, detector, rows):
-        buffers, found = make_buffers(robot, detector, rows.shape[1]), 0
+    def loop(robot, collision, rows):
+        buffers, found = make_buffers(robot, collision, rows.shape[1]), 0
         for k in range(rows.shape[0]):
-            found += find(robot, detector, rows[k], buffers) >= 0
+            found += find(robot, collision, rows[k], buffers) >= 0
         return found
 
     for name, rows in sets.items():
-        jobs[f"check {name} ns"] = lambda rows=rows: timed(lambda: loop(*first, rows)) / len(rows)
+        jobs[f"check {name} ns"] = lambda rows=rows: timed(lambda: loop(*models, rows)) / len(rows)
     if hasattr(variant.module, "judge_lanes"):
         judge = variant.module.judge_lanes
 
         @numba.njit
-        def loop_lanes(detector, rows, free):
+        def loop_lanes(collision, rows, free):
             for k in range(rows.shape[0]):
-                judge(detector, rows[k], free[k])
+                judge(collision, rows[k], free[k])
 
         single = "ONE" in vars(variant.module)
         real = np.float32 if single else np.float64
         by_lane = qs.astype(real).reshape(-1, LANES, qs.shape[1]).transpose(0, 2, 1)
-        packed, told = np.ascontiguousarray(by_lane).reshape(len(qs) // LANES, -1), real(first[1])
+        packed = np.ascontiguousarray(by_lane).reshape(len(qs) // LANES, -1)
+        collision = models[1]._replace(safe_distance=real(models[1].safe_distance))
         free = np.empty((len(packed), LANES), dtype=np.bool_)
-        jobs["check lanes ns"] = lambda: timed(lambda: loop_lanes(told, packed, free)) / len(qs)
-        loop_lanes(told, packed, free)
+        jobs["check lanes ns"] = lambda: timed(lambda: loop_lanes(collision, packed, free)) / len(qs)
+        loop_lanes(collision, packed, free)
         wrong = float((free.ravel() == hits).mean())
         assert wrong == 0.0 or single
         if single:
             jobs["wrong in single precision"] = lambda: wrong
-    assert loop(*first, qs) == hits.sum()
+    assert loop(*models, qs) == hits.sum()
     return jobs
 
 

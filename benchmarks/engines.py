@@ -26,13 +26,13 @@ from rich.table import Table
 import ikde
 from ikde.batch.generators import ReachableSource
 from ikde.kernels.arrays import COUNTS
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.figures import compute_figures
-from ikde.solver.problem import make_problem
+from ikde.solver.problem import make_problem, pack_searched
 
 sys.path.insert(0, str(Path(__file__).parent / "peers"))
 from cases import make_case
@@ -124,15 +124,15 @@ def time_python(robot: ikde.Robot, targets: list[ikde.Target], rounds: int) -> n
 def time_kernel(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) -> np.ndarray:
     """Microseconds of the engine `lm` inside compiled code: for each target the median of rounds."""
     problem = make_problem(robot, ikde.SolveSettings(method="lm"), collision=None, near=None, freeze=None)
-    module, *tables = load_kernels(CollisionModel(robot=robot, detector=problem.collision.detector), kind)
-    run = make_loop(module.solve_target)
-    block = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
-    pairs = max(len(CollisionModel(robot=robot, detector=problem.collision.detector).pairs), 1)
+    run = make_loop(load_kernels(problem.collision, kind).solve_target)
+    search = (make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
+    block = flatten_search(*pack_searched(problem.collision), *search)
+    pairs = max(len(problem.collision.pairs), 1)
     times = np.empty((rounds, len(targets)))
     with np.errstate(over="ignore"):
-        run(*tables, *pack_targets(targets[:2]), *block, np.uint64(SEED), pairs, np.empty(2))
+        run(*pack_targets(targets[:2]), *block, np.uint64(SEED), pairs, np.empty(2))
         for row in times:
-            run(*tables, *pack_targets(targets), *block, np.uint64(SEED), pairs, row)
+            run(*pack_targets(targets), *block, np.uint64(SEED), pairs, row)
     return np.median(times, axis=0)
 
 
@@ -152,7 +152,7 @@ def make_loop(solve_target: Any) -> Callable[..., None]:
     clock.argtypes, clock.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_int
 
     @numba.njit
-    def run(robot, detector, kinds, T, numbers, whole, pool, pool_T, seed, pairs, out_us):
+    def run(kinds, T, numbers, whole, pool, pool_T, seed, pairs, out_us):
         now, q, score = np.zeros(4, dtype=np.int64), np.empty(pool.shape[1]), np.empty(2)
         counts, blocked = np.empty(COUNTS, dtype=np.int64), np.empty(pairs, dtype=np.int64)
         for k in range(out_us.size):
@@ -160,7 +160,7 @@ def make_loop(solve_target: Any) -> Callable[..., None]:
             clock(1, now.ctypes.data)
             before = now[0] * 1e6 + now[1] * 1e-3
             question = (kinds, T, k, numbers, whole, pool, pool_T)
-            solve_target(robot, detector, *question, seed, k, 0, 1000, q, score, counts, blocked)
+            solve_target(*question, seed, k, 0, 1000, q, score, counts, blocked)
             clock(1, now.ctypes.data)
             out_us[k] = now[0] * 1e6 + now[1] * 1e-3 - before
 

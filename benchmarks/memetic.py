@@ -31,7 +31,7 @@ from rich.table import Table
 import ikde
 from ikde.kernels.arrays import COUNTS, EVALUATIONS, REACHED, DescentArrays, MemeticArrays
 from ikde.kernels.damped import make_descent_workspace, take_step
-from ikde.kernels.lanes import solve_lane
+from ikde.kernels.evolution import solve_lane
 from ikde.kernels.memetic import solve_memetic_lane
 from ikde.kernels.mutation import MIDPOINT
 from ikde.model.collision_model import CollisionModel

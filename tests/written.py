@@ -41,7 +41,7 @@ class Liar:
         """The module with its solvers exchanged; its seeds are honest."""
         solvers = {"solve_target": self.solve_target, "solve_targets": self.solve_many(3)}
         if hasattr(module, "solve_branches"):
-            solvers["solve_branches"] = self.solve_many(6)
+            solvers["solve_branches"] = self.solve_many(5)
         return SimpleNamespace(**{**vars(module), **solvers})
 
     def solve_target(self, *arguments):

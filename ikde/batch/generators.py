@@ -10,7 +10,7 @@ import numpy as np
 from ikde.batch.sources import Orientation, PointSource
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.kernels.sampling import MOST_DRAWS, sample_ball, sample_box, sample_poses
+from ikde.kernels.sampling import MAX_DRAWS, sample_ball, sample_box, sample_poses
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.target import POSE, Targets
@@ -80,5 +80,5 @@ class ReachableSource:
             found = sample_poses(robot, detector, self.lower, self.upper, np.uint64(self.seed), np.int64(first), out_T)
         if found < len(out_T):
             judge = f"for {self.collision.name!r} " if self.collision.pairs else ""
-            raise InputError(f"no configuration {judge}is free of self-collision in {MOST_DRAWS:,} draws")
+            raise InputError(f"no configuration {judge}is free of self-collision in {MAX_DRAWS:,} draws")
         return out_T

@@ -14,7 +14,7 @@ import numpy as np
 from ikde.bench.approximation import APPROXIMATIONS
 from ikde.bench.budget import FULL, Budget
 from ikde.bench.misprints import Data
-from ikde.kernels.arrays import DetectorArrays, Floats, RobotArrays
+from ikde.kernels.arrays import CollisionArrays, Floats, RobotArrays
 from ikde.kernels.placing import place_by_key_points, place_by_transformation
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
@@ -116,7 +116,7 @@ class Placement:
 
     column: Mapping[str, str]
     robot: RobotArrays
-    detector: DetectorArrays
+    detector: CollisionArrays
     directions: Floats  # [K, 3]; none for centres
     T_world_body: Floats
     T_world_frame: Floats

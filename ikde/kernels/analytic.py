@@ -43,7 +43,7 @@ def place_arm(arm, branch, solutions, out_q):
 
 
 @inline_kernel
-def choose_branch(robot, detector, arm, ranges, nearest, first, count, solutions, q, buffers, out_counts, out_pairs):
+def choose_branch(robot, collision, arm, ranges, nearest, first, count, solutions, q, buffers, out_counts, out_pairs):
     """A branch that is free of collision, the next from `first` on or the nearest to ranges[2]; -1 if all collide."""
     chosen, smallest = -1, np.inf
     for turn in range(count):
@@ -52,7 +52,7 @@ def choose_branch(robot, detector, arm, ranges, nearest, first, count, solutions
         distance = find_distance(ranges, q) if nearest else 0.0
         if distance >= smallest:
             continue
-        pair = find_collision(robot, detector, q, buffers)
+        pair = find_collision(robot, collision, q, buffers)
         if pair < 0:
             chosen, smallest = branch, distance
             if not nearest:
@@ -65,9 +65,8 @@ def choose_branch(robot, detector, arm, ranges, nearest, first, count, solutions
 
 @kernel
 def solve_branches(
-    tables,
     robot,
-    detector,
+    collision,
     arm,
     carrier,
     target,
@@ -84,18 +83,18 @@ def solve_branches(
 ):
     """All branches of the arm from base after base, for rows[0] .. rows[1] - 1; outputs as `lm.solve_targets`.
 
-    `tables` are the robot's packed arrays, whatever `robot` is; `carrier` is the body that carries the arm. An attempt
-    is one place of the base, an evaluation one branch that exists. Who is not reached keeps the last that collided.
+    `carrier` is the body that carries the arm. An attempt is one place of the base, an evaluation one branch that
+    exists. An unreached target keeps its last colliding branch.
     """
     joints = out_q.shape[1]
-    q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, detector, joints)
-    T_world_body, T_carrier_tool = np.empty((tables.bodies.shape[0], 3, 4)), np.empty((3, 4))
+    q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
+    T_world_body, T_carrier_tool = np.empty((robot.bodies.shape[0], 3, 4)), np.empty((3, 4))
     work, solutions, codes = np.empty((2, ANGLES)), np.empty((BRANCHES, 6)), np.empty(BRANCHES, dtype=np.int64)
     for row in range(rows[0], rows[1]):
         for attempt in range(attempts[row - rows[0], 0], attempts[row - rows[0], 1]):
             seed_stream(seed, streams[row], attempt, state)
             draw_seed(seeds, target, row, ranges, state, attempt, q)
-            compute_bodies(tables, q, T_world_body)
+            compute_bodies(robot, q, T_world_body)
             find_carried(T_world_body[carrier], target.T_world_tool[row], T_carrier_tool)
             count = solve_ur_arm(arm, ranges, T_carrier_tool, work, solutions, codes)
             out_counts[row, ATTEMPTS] += 1
@@ -105,7 +104,7 @@ def solve_branches(
             nearest, tallies = seeds.first_box < 1.0, (out_counts[row], out_pairs[row])
             first = next_index(state, count)  # so that another stream shows another branch
             chosen = choose_branch(
-                robot, detector, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
+                robot, collision, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
             )
             place_arm(arm, max(chosen, 0), solutions, q)
             out_score[row, 0], out_score[row, 1] = 0.0, 0.0 if chosen >= 0 else UNKNOWN_DEPTH

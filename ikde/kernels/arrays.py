@@ -22,17 +22,17 @@ Indices = NDArray[np.uint64]
 class RobotArrays(NamedTuple):
     """The kinematic tree: B bodies with the world, F named frames with the world first and the tool last."""
 
-    bodies: Ints  # [B, 4] parent body, coordinate of q, 1 if it slides, 1 if the tool hangs on it
+    bodies: Ints  # [B, 4] parent body, coordinate of q, 1 if prismatic, 1 if it carries the tool
     T_parent_body: Floats  # [B, 3, 4] at q = 0
     frame_body: Indices  # [F] the body a frame is fixed to
     T_body_frame: Floats  # [F, 3, 4]
 
 
-PARENT, COORDINATE, SLIDES, MOVES_TOOL = range(4)  # columns of `RobotArrays.bodies`
+PARENT, COORDINATE, PRISMATIC, MOVES_TOOL = range(4)  # columns of `RobotArrays.bodies`
 
 
-class DetectorArrays(NamedTuple):
-    """One detector: S spheres, those of one of the C components together, P component pairs, W rows of spheres."""
+class CollisionArrays(NamedTuple):
+    """What is compared on a robot: S spheres of C components, one after the other, P pairs of components, W rows."""
 
     safe_distance: float  # m
     p_body_sphere: Floats  # [3, S] m
@@ -44,18 +44,21 @@ class DetectorArrays(NamedTuple):
     offset: Floats  # [S] m along the row's line, from its middle
 
 
-BODY, FIRST, LAST = range(3)  # columns of `DetectorArrays.components`
+BODY, FIRST, LAST = range(3)  # columns of `CollisionArrays.components`
 
 
 class TargetArrays(NamedTuple):
     """T targets in the world frame."""
 
-    kind: Ints  # [T] 0 position, 1 position and tool axis, 2 pose
+    kind: Ints  # [T] POSITION, AXIS (position and tool axis) or POSE
     T_world_tool: Floats  # [T, 3, 4]; for kind 1 only the z axis and the position are asked for, for 0 the position
 
 
+POSITION, AXIS, POSE = range(3)  # kinds of target
+
+
 class SearchArrays(NamedTuple):
-    """What a search is told: numbers from `SolveSettings`, ranges from the robot, `freeze` and `near`."""
+    """Settings of a search: numbers from `SolveSettings`, ranges from the robot, `freeze` and `near`."""
 
     ranges: Floats  # [3, N] lower, upper, and the centre of the growing boxes; m or rad
     first_box: float  # half-width of the first attempt's box as a share of each range; 1: the whole range at once
@@ -69,11 +72,14 @@ class SearchArrays(NamedTuple):
     crossover: float  # CR
     repair: int  # index into `mutation.REPAIRS`
     in_place: bool  # a better trial replaces its parent at once, not at the end of the generation
-    collision_rule: int  # one of `evolution.IGNORE`, `REJECT`, `FEASIBILITY`
+    collision_rule: int  # IGNORE, REJECT or FEASIBILITY
+
+
+IGNORE, REJECT, FEASIBILITY = range(3)  # what a search makes of collisions
 
 
 class DescentArrays(NamedTuple):
-    """What the damped least-squares steps of `kernels/damped.py` are told."""
+    """Settings of the damped least-squares steps of `kernels/damped.py`."""
 
     damping: float = 0.1  # lambda = damping * |error|^2 + least_damping
     least_damping: float = 1e-6  # m^2
@@ -109,7 +115,7 @@ class ClosedFormArrays(NamedTuple):
 
 
 class MemeticArrays(NamedTuple):
-    """What `kernels/memetic.py` is told beyond the ranges, tolerances, repair and collision rule of `SearchArrays`."""
+    """Settings of `kernels/memetic.py` beyond the ranges, tolerances, repair and collision rule of `SearchArrays`."""
 
     evaluations: int = 10_000  # budget of one attempt; a damped step counts N + 1
     first_population: int = 60  # at least 4
@@ -124,7 +130,7 @@ class MemeticArrays(NamedTuple):
     polish_share: float = 0.8  # of the evaluations that damped steps may take; 0: none
     polish_steps: int = 30  # at most, of one member
     patience: int = 2  # steps in a row without progress before a member is given up
-    margin: float = 1e-5  # m: pairs nearer than the safe distance and this are pushed apart
+    margin: float = 1e-5  # m: pairs nearer than the safe distance and this are moved apart
 
 
 class DriveArrays(NamedTuple):
@@ -141,25 +147,25 @@ class DriveArrays(NamedTuple):
     wheel_travel: float  # m per sample, the most that a wheel rolls; inf: any
     centre_body: int  # the body that carries the platform's centre
     p_body_centre: Floats  # [3] m
-    farthest: float  # m, of the tool from the platform's centre; inf: any
+    max_distance: float  # m, of the tool from the platform's centre; inf: any
 
 
 class TrackArrays(NamedTuple):
-    """What a step along a path is told."""
+    """Settings of a step along a path."""
 
     ranges: Floats  # [2, N] lower, upper; m or rad
-    reach: float  # m: pairs nearer than this are looked at; -inf: none
+    reach: float  # m: pairs nearer than this are constrained; -inf: none
     margin: float  # m: what every pair keeps
     rotation_length: float  # m/rad: what a radian counts beside a metre
     position_goal: float  # m: refined until both are met
     orientation_goal: float  # rad
     position_tolerance: float  # m: accepted if it comes no nearer
     orientation_tolerance: float  # rad
-    most_rounds: int  # of one step
+    max_rounds: int  # of one step
 
 
 class StepSearchArrays(NamedTuple):
-    """What the paper's search for one step along a path is told (`kernels/step_evolution.py`)."""
+    """Settings of the paper's search for one step along a path (`kernels/step_evolution.py`)."""
 
     population: int  # NP
     generations: int  # G, of one population
@@ -178,9 +184,9 @@ class StepSearchArrays(NamedTuple):
 CLEARANCE, LIMITS, MANIPULABILITY, DRIFT = range(4)  # columns of what the null space is used for; DRIFT: the first of D
 
 
-# Columns of what every search counts, `out_counts` [COUNTS]: 1 if reached; populations or starts; poses looked at;
+# Columns of what every search counts, `out_counts` [COUNTS]: 1 if reached; populations or starts; poses evaluated;
 # attempts that met the target but collided, or left the ranges.
 REACHED, ATTEMPTS, EVALUATIONS, COLLIDING, OUTSIDE = range(5)
 COUNTS = 5
 
-UNKNOWN_DEPTH = 1.0  # m, in a score: a collision whose depth nobody has measured; every measured one is better
+UNKNOWN_DEPTH = 1.0  # m, in a score: a collision whose depth is not measured; every measured one is better

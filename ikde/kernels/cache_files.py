@@ -13,7 +13,7 @@ from ikde.kernels.cache_folder import find_fault
 
 SEAL = hashlib.sha256().digest_size  # bytes
 FLAGS = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)  # no links, and no waiting for a pipe
-TOLD: set[str] = set()
+WARNED: set[str] = set()
 
 
 def read_file(path: Path) -> bytes | None:
@@ -87,6 +87,6 @@ def discard(path: Path, fault: str) -> None:
 
 
 def _tell_once(what: str, message: str) -> None:
-    if what not in TOLD:
-        TOLD.add(what)
+    if what not in WARNED:
+        WARNED.add(what)
         warnings.warn(message, CacheWarning, stacklevel=3)

@@ -16,7 +16,7 @@ from pathlib import Path
 from ikde.errors import CacheWarning
 
 MACHINE_CODE, ROBOTS = "machine_code", "robots"
-MOST_LINKS = 40
+MAX_LINKS = 40
 HAS_OWNERS = hasattr(os, "geteuid")
 USER = os.geteuid() if HAS_OWNERS else -1
 
@@ -43,8 +43,8 @@ def find_usable(wanted: Path) -> tuple[Path, bool]:
     further = prepare(spare)
     instead = f"{spare.parent} is used instead" if further is None else f"{further}; every process compiles for itself"
     advice = "mend that, or name another folder by IKDE_CACHE_DIR"
-    told = f"the cache folder {wanted.parent} is not used: {fault}; {advice}; {instead}"
-    warnings.warn(told, CacheWarning, stacklevel=2)
+    message = f"the cache folder {wanted.parent} is not used: {fault}; {advice}; {instead}"
+    warnings.warn(message, CacheWarning, stacklevel=2)
     return spare, further is None
 
 
@@ -71,7 +71,7 @@ def find_fault(state: os.stat_result) -> str | None:
     return None
 
 
-def _walk(path: Path, links: int = MOST_LINKS) -> Iterator[Path]:
+def _walk(path: Path, links: int = MAX_LINKS) -> Iterator[Path]:
     """Every folder and symbolic link that the system passes from the root to a path."""
     here = Path(path.anchor)
     yield here

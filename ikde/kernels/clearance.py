@@ -1,7 +1,7 @@
 """Self-collision by the distances between sphere centres [Qiao2021, eq. 19, 21].
 
 Two questions, two kernels: *does it collide* stops at the first contact; *how far apart* finds the smallest clearance,
-min over the detector's pairs of distance - R_i - R_j, and the pair it belongs to.
+min over the model's pairs of distance - R_i - R_j, and the pair it belongs to.
 """
 
 import math
@@ -13,112 +13,126 @@ from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
+DEPTH_STEP = 1e-9  # m: depths are whole steps, at least one, so that rounding noise cannot decide between equals
+
 
 @inline_kernel
-def bounds_are_apart(detector, bounds, a, b, distance):
+def bounds_are_apart(collision, bounds, a, b, distance):
     """True if the bounding spheres alone prove that two components are farther apart than `distance`."""
     dx, dy, dz = bounds[a, 0] - bounds[b, 0], bounds[a, 1] - bounds[b, 1], bounds[a, 2] - bounds[b, 2]
-    limit = detector.bounds[a, 3] + detector.bounds[b, 3] + distance
+    limit = collision.bounds[a, 3] + collision.bounds[b, 3] + distance
     return limit >= 0.0 and dx * dx + dy * dy + dz * dz > limit * limit
 
 
 @inline_kernel
-def is_touched(detector, centres, a, px, py, pz, reach):
+def is_touched(collision, centres, a, px, py, pz, reach):
     """True if a sphere of component `a` is within `reach` of the point (px, py, pz).
 
     The loop counts instead of leaving early, so that the compiler can vectorise it.
     """
-    x, y, z, radius = centres[0], centres[1], centres[2], detector.radius
+    x, y, z, radius = centres[0], centres[1], centres[2], collision.radius
     hits = 0
-    for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
+    for i in range(collision.components[a, FIRST], collision.components[a, LAST]):
         dx, dy, dz, limit = x[i] - px, y[i] - py, z[i] - pz, radius[i] + reach
         hits += dx * dx + dy * dy + dz * dz <= limit * limit
     return hits > 0
 
 
 @inline_kernel
-def pair_collides(detector, centres, a, b):
+def pair_collides(collision, centres, a, b):
     """True if a sphere of component `a` is within the safe distance of a sphere of component `b`."""
-    for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
-        reach = detector.radius[j] + detector.safe_distance
-        if is_touched(detector, centres, a, centres[0, j], centres[1, j], centres[2, j], reach):
+    for j in range(collision.components[b, FIRST], collision.components[b, LAST]):
+        reach = collision.radius[j] + collision.safe_distance
+        if is_touched(collision, centres, a, centres[0, j], centres[1, j], centres[2, j], reach):
             return True
     return False
 
 
 @inline_kernel
-def find_colliding_pair(detector, bounds, centres):
+def find_colliding_pair(collision, bounds, centres):
     """Index of the first pair of components within the safe distance, or -1.
 
     From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all.
     """
-    for pair in range(detector.pairs.shape[0]):
-        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-        if bounds_are_apart(detector, bounds, a, b, detector.safe_distance):
+    for pair in range(collision.pairs.shape[0]):
+        a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+        if bounds_are_apart(collision, bounds, a, b, collision.safe_distance):
             continue
-        reach = detector.bounds[b, 3] + detector.safe_distance
-        if not is_touched(detector, centres, a, bounds[b, 0], bounds[b, 1], bounds[b, 2], reach):
+        reach = collision.bounds[b, 3] + collision.safe_distance
+        if not is_touched(collision, centres, a, bounds[b, 0], bounds[b, 1], bounds[b, 2], reach):
             continue
-        if pair_collides(detector, centres, a, b):
+        if pair_collides(collision, centres, a, b):
             return np.int64(pair)
     return np.int64(-1)
 
 
 @inline_kernel
-def collides(detector, bounds, centres):
+def collides(collision, bounds, centres):
     """True if any pair of components is within the safe distance."""
-    return find_colliding_pair(detector, bounds, centres) >= 0
+    return find_colliding_pair(collision, bounds, centres) >= 0
 
 
-@kernel
-def compute_pair_clearance(detector, centres, a, b):
-    """Smallest distance - R_i - R_j between two components, in m; negative is the depth of penetration."""
-    smallest = math.inf
-    for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
-        for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
+@inline_kernel
+def find_closest_spheres(collision, centres, a, b):
+    """Smallest distance - R_i - R_j between two components in m, negative where they overlap, and its spheres i, j."""
+    smallest, first, second = math.inf, collision.components[a, FIRST], collision.components[b, FIRST]
+    for i in range(collision.components[a, FIRST], collision.components[a, LAST]):
+        for j in range(collision.components[b, FIRST], collision.components[b, LAST]):
             dx, dy, dz = (
                 centres[0, i] - centres[0, j],
                 centres[1, i] - centres[1, j],
                 centres[2, i] - centres[2, j],
             )
-            gap = math.sqrt(dx * dx + dy * dy + dz * dz) - detector.radius[i] - detector.radius[j]
-            smallest = min(smallest, gap)
-    return smallest
+            gap = math.sqrt(dx * dx + dy * dy + dz * dz) - collision.radius[i] - collision.radius[j]
+            if gap < smallest:
+                smallest, first, second = gap, i, j
+    return smallest, first, second
 
 
 @kernel
-def compute_clearance(detector, bounds, centres):
+def compute_clearance(collision, bounds, centres):
     """Smallest clearance over all pairs in m, and the index of its pair (inf and -1 if there are no pairs).
 
     A pair whose bounding spheres are already farther apart than the smallest clearance so far is skipped.
     """
     smallest, closest = math.inf, -1
-    for pair in range(detector.pairs.shape[0]):
-        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-        if bounds_are_apart(detector, bounds, a, b, smallest):
+    for pair in range(collision.pairs.shape[0]):
+        a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+        if bounds_are_apart(collision, bounds, a, b, smallest):
             continue
-        gap = compute_pair_clearance(detector, centres, a, b)
+        gap, _, _ = find_closest_spheres(collision, centres, a, b)
         if gap < smallest:
             smallest, closest = gap, pair
     return smallest, closest
 
 
 @kernel
-def count_colliding_pairs(detector, centres, out_counts):
+def compute_depth(collision, T_world_body, bounds, centres):
+    """Penetration beyond the safe distance in m, 0 if free. `bounds` [C, 3] and `centres` [3, S] are buffers."""
+    compute_bounds(collision, T_world_body, bounds)
+    compute_centres(collision, T_world_body, centres)
+    if not collides(collision, bounds, centres):
+        return 0.0
+    clearance, _ = compute_clearance(collision, bounds, centres)
+    return max(np.rint((collision.safe_distance - clearance) / DEPTH_STEP), 1.0) * DEPTH_STEP
+
+
+@kernel
+def count_colliding_pairs(collision, centres, out_counts):
     """Add 1 to `out_counts` [P] for each pair within the safe distance."""
-    for pair in range(detector.pairs.shape[0]):
-        if pair_collides(detector, centres, detector.pairs[pair, 0], detector.pairs[pair, 1]):
+    for pair in range(collision.pairs.shape[0]):
+        if pair_collides(collision, centres, collision.pairs[pair, 0], collision.pairs[pair, 1]):
             out_counts[pair] += 1
 
 
 @kernel
-def judge_centres(robot, detector, qs, out_collides):
+def judge_centres(robot, collision, qs, out_collides):
     """Whether each row of `qs` [n, N] collides, into `out_collides` [n]."""
     T_world_body = np.empty((robot.bodies.shape[0], 3, 4))
-    bounds = np.empty((detector.components.shape[0], 3))
-    centres = np.empty((3, detector.radius.size))
+    bounds = np.empty((collision.components.shape[0], 3))
+    centres = np.empty((3, collision.radius.size))
     for row in range(qs.shape[0]):
         compute_bodies(robot, qs[row], T_world_body)
-        compute_bounds(detector, T_world_body, bounds)
-        compute_centres(detector, T_world_body, centres)
-        out_collides[row] = collides(detector, bounds, centres)
+        compute_bounds(collision, T_world_body, bounds)
+        compute_centres(collision, T_world_body, centres)
+        out_collides[row] = collides(collision, bounds, centres)

@@ -1,6 +1,6 @@
 """All configurations of a UR-type arm that put its tool at a pose, in closed form [Hawkins2013].
 
-The arm is a `ClosedFormArrays`; `model.closed_form.URArm` tells its model. First come sines and cosines, the *sides* of
+The arm is a `ClosedFormArrays`; `model.closed_form.URArm` describes it. First come sines and cosines, the *sides* of
 all angles, then the angles, all at once, then the joints. Each side is computed from what the ones before it have
 settled, so that an angle which is badly determined near a singularity does not spoil the pose.
 
@@ -17,7 +17,7 @@ from ikde.kernels.trig import full_angle, sin_cos
 
 BRANCHES = 8
 ANGLES = 20  # theta1, theta5, theta6, theta2 + theta3 + theta4 of each shoulder, then three of each shoulder and wrist
-RIGHT, DOWN, FLIP = 1, 2, 4  # bits of a branch's code; `solver.families` tells what they look like
+RIGHT, DOWN, FLIP = 1, 2, 4  # bits of a branch's code; `solver.families` describes them
 SLACK = 1e-12  # rad, or a share: how far a cosine may be beyond 1, and a joint beyond its limit, to be set on it
 SINGULAR = 1e-12  # sine of theta5 below which theta6 is free; m from axis 1 below which theta1 is
 TWO_PI = 2.0 * math.pi
@@ -109,7 +109,7 @@ def write_links(arm, k, x, y, out_sides):
 
 @inline_kernel
 def write_shoulder(arm, ranges, rows, square, right, radius, out_sides):
-    """Sides of the ten angles of one shoulder: `ANGLES` tells where. `radius`: of the wrist centre along x1, signed."""
+    """Sides of the ten angles of one shoulder: `ANGLES` says where. `radius`: of the wrist centre along x1, signed."""
     d4, a4, d5 = arm.lengths[D4], arm.lengths[A4], arm.lengths[D5]
     px, py, height = rows[0][3], rows[1][3], rows[2][3]
     s1, c1 = find_shoulder(px, py, radius, d4, square, find_centre(arm, ranges))

@@ -9,13 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import AXIS, POSITION, Floats
 from ikde.kernels.frames import compute_bodies, compute_jacobian, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.pose_error import AXIS, POSITION
 
 AT_BOUND = 1e-12  # m or rad: a joint this near its bound stands at it
-SMALLEST_SQUARE = 1e-4  # of the cosine of half the angle: beyond 178.9 degrees the axis of rotation is lost
+MIN_SQUARE = 1e-4  # of the cosine of half the angle: beyond 178.9 degrees the axis of rotation is lost
 OPPOSITE = 2.0  # what the orientation error tends to at half a turn
 
 
@@ -71,11 +70,11 @@ def compute_turn(target, index, T_world_tool, out_v):
         out_v[1] += T[2, j] * R[0, j] - T[0, j] * R[2, j]
         out_v[2] += T[0, j] * R[1, j] - T[1, j] * R[0, j]
     square = 0.25 * (trace + 1.0)
-    scale = 0.5 / math.sqrt(max(square, SMALLEST_SQUARE))
+    scale = 0.5 / math.sqrt(max(square, MIN_SQUARE))
     for i in range(3):
         out_v[i] *= scale
     size = math.sqrt(out_v[0] * out_v[0] + out_v[1] * out_v[1] + out_v[2] * out_v[2])
-    return OPPOSITE if square < SMALLEST_SQUARE else size
+    return OPPOSITE if square < MIN_SQUARE else size
 
 
 @inline_kernel

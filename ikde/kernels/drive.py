@@ -2,7 +2,7 @@
 
 A base with wheels drives the exact arc of a constant speed v along its heading and a constant turn omega: with the
 distance d and the angle a of one sample, its chord is d sin(a / 2) / (a / 2) at the heading in the middle. So it never
-slides sideways [Qiao2022, eq. 5].
+slips sideways [Qiao2022, eq. 5].
 """
 
 import math
@@ -83,7 +83,7 @@ def fold_row(drive, q, step, row, out):
 def set_step_box(drive, ranges, q, last, first_step, out_lower, out_upper):
     """Bounds [D] of a step's shares: the largest step, the joint ranges, and the change from the `last` step [D].
 
-    Whoever may only brake so hard must begin in time: with steps that shrink by c, a step u needs u (u + c) / (2 c),
+    What may brake only so hard must begin in time: with steps that shrink by c, a step u needs u (u + c) / (2 c),
     and up to c / 8 more, to come to rest. The first step of all may be any. False if a joint cannot keep both.
     """
     first, is_possible = last.size - drive.others.size, True

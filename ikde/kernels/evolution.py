@@ -1,21 +1,18 @@
-"""Differential evolution: one attempt, from a random population to a member that meets the target or to the last
-generation [Storn1997; Qiao2022, section 3.1]."""
+"""The papers' differential evolution: one attempt, from a random population to a member that meets the target or to the
+last generation [Storn1997; Qiao2022, section 3.1]; and a whole solve, attempt after attempt, one lane a target."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, Ints
-from ikde.kernels.clearance import collides, compute_clearance
+from ikde.kernels.arrays import EVALUATIONS, FEASIBILITY, REACHED, Floats, Ints
+from ikde.kernels.attempt import finish_attempt, set_box
+from ikde.kernels.clearance import compute_depth
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.mutation import LARGEST_DRAW, draw_members, mutate, repair_bound
+from ikde.kernels.mutation import MAX_DRAWN, draw_members, mutate, repair_bound
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
-from ikde.kernels.rng import next_index, next_uniform
-from ikde.kernels.spheres import compute_bounds, compute_centres
-
-IGNORE, REJECT, FEASIBILITY = range(3)
-DEPTH_STEP = 1e-9  # m: depths are whole steps, at least one, so that rounding noise cannot decide between equals
+from ikde.kernels.rng import next_index, next_uniform, seed_stream
 
 
 class Workspace(NamedTuple):
@@ -34,19 +31,19 @@ class Workspace(NamedTuple):
 
 
 @kernel
-def make_workspace(robot, detector, joints, population):
-    """Allocate the buffers for a robot, a detector and a population size."""
+def make_workspace(robot, collision, joints, population):
+    """Allocate the buffers for a robot, a collision model and a population size."""
     return Workspace(
         np.empty((population, joints)),
         np.empty((population, 2)),
         np.empty((population, joints)),
         np.empty((population, 2)),
         np.empty(joints),
-        np.empty(LARGEST_DRAW, dtype=np.int64),
+        np.empty(MAX_DRAWN, dtype=np.int64),
         np.empty((robot.bodies.shape[0], 3, 4)),
         np.empty((3, 4)),
-        np.empty((3, detector.radius.size)),
-        np.empty((detector.components.shape[0], 3)),
+        np.empty((3, collision.radius.size)),
+        np.empty((collision.components.shape[0], 3)),
     )
 
 
@@ -63,17 +60,6 @@ def compute_cost(robot, target, index, search, q, work):
     orientation = compute_orientation_error(target, index, work.T_world_tool)
     meets = position <= search.position_tolerance and orientation <= search.orientation_tolerance
     return position + orientation * (search.position_tolerance / search.orientation_tolerance), meets
-
-
-@kernel
-def compute_depth(detector, T_world_body, bounds, centres):
-    """Penetration beyond the safe distance in m, 0 if free. `bounds` [C, 3] and `centres` [3, S] are buffers."""
-    compute_bounds(detector, T_world_body, bounds)
-    compute_centres(detector, T_world_body, centres)
-    if not collides(detector, bounds, centres):
-        return 0.0
-    clearance, _ = compute_clearance(detector, bounds, centres)
-    return max(np.rint((detector.safe_distance - clearance) / DEPTH_STEP), 1.0) * DEPTH_STEP
 
 
 @inline_kernel
@@ -125,12 +111,12 @@ def fill_trial(search, lower, upper, state, work, i, best):
 
 
 @inline_kernel
-def score_point(robot, detector, target, index, search, q, work, rival):
-    """Cost, depth and `meets` of `q`; whether it collides is looked at only if it could still beat `rival` [2]."""
+def score_point(robot, collision, target, index, search, q, work, rival):
+    """Cost, depth and `meets` of `q`; whether it collides is checked only if it could still beat `rival` [2]."""
     cost, meets = compute_cost(robot, target, index, search, q, work)
     if search.collision_rule != FEASIBILITY or (rival[1] == 0.0 and cost > rival[0]):
         return cost, 0.0, meets
-    depth = compute_depth(detector, work.T_world_body, work.bounds, work.centres)
+    depth = compute_depth(collision, work.T_world_body, work.bounds, work.centres)
     return cost, depth, meets and depth == 0.0
 
 
@@ -143,11 +129,11 @@ def keep(x, score, i, q, cost, depth):
 
 
 @kernel
-def evolve(robot, detector, target, index, search, lower, upper, state, work):
+def evolve(robot, collision, target, index, search, lower, upper, state, work):
     """Evolve one population within [lower, upper]. Returns (best member, meets the target, evaluations).
 
     The best member is `work.x[best]`; under `FEASIBILITY` meeting the target includes being free of collision. The
-    first population is drawn uniformly and challenges nobody; every later trial challenges member i.
+    first population is drawn uniformly and challenges no one; every later trial challenges member i.
     """
     population, evaluations, best = search.population, 0, np.int64(0)
     for i in range(population):
@@ -158,7 +144,7 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
                 fill_start(search, lower, upper, state, work, i)
             else:
                 fill_trial(search, lower, upper, state, work, i, best)
-            cost, depth, meets = score_point(robot, detector, target, index, search, work.trial, work, work.score[i])
+            cost, depth, meets = score_point(robot, collision, target, index, search, work.trial, work, work.score[i])
             evaluations += 1
             wins = is_better(cost, depth, work.score[i])
             if wins and (meets or search.in_place):
@@ -176,3 +162,45 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
                 keep(work.x, work.score, i, work.next_x[i], work.next_score[i, 0], work.next_score[i, 1])
             best = find_best(work.score)
     return best, False, evaluations
+
+
+@kernel
+def solve_lane(
+    robot, collision, target, index, search, seed, stream, attempts, out_q, out_score, out_counts, out_pairs
+):
+    """Run attempts number attempts[0] .. attempts[1]-1 on one target, up to the first that is reached.
+
+    `REJECT` is the paper's rule: search on the pose error alone, test the best, start again until it is free
+    [Qiao2021, section 5.3.3]. The outputs are those of `finish_attempt`.
+    """
+    joints = out_q.size
+    work = make_workspace(robot, collision, joints, search.population)
+    lower, upper = np.empty(joints), np.empty(joints)
+    state = np.empty(1, dtype=np.uint64)
+    for attempt in range(attempts[0], attempts[1]):
+        set_box(search.ranges, search.first_box, attempt, lower, upper)
+        seed_stream(seed, stream, attempt, state)
+        best, meets, evaluations = evolve(robot, collision, target, index, search, lower, upper, state, work)
+        out_counts[EVALUATIONS] += evaluations
+        q = work.x[best]
+        cost, _ = compute_cost(robot, target, index, search, q, work)
+        if finish_attempt(collision, search, q, cost, meets, work, out_q, out_score, out_counts, out_pairs):
+            return
+
+
+@kernel
+def solve_lanes(
+    robot, collision, target, lanes, search, seed, streams, attempts, last, out_q, out_score, out_counts, out_pairs
+):
+    """Run attempts attempts[0] .. attempts[1]-1 of the lanes lanes[0] .. lanes[1]-1 that are not reached yet.
+
+    A call from Python costs as much as a short search: this one call serves many. `streams` [T]; `last` [T]: where the
+    budget of each lane ends; the outputs are those of `solve_lane`, a row a lane.
+    """
+    block = np.empty(2, dtype=np.int64)
+    for index in range(lanes[0], lanes[1]):
+        if out_counts[index, REACHED]:
+            continue
+        block[0], block[1] = attempts[0], min(attempts[1], last[index])
+        outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
+        solve_lane(robot, collision, target, index, search, seed, streams[index], block, *outputs)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PARENT, SLIDES
+from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PARENT, PRISMATIC
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import sin_cos
 
@@ -20,7 +20,7 @@ def compute_bodies(robot, q, out_T):
     for body in range(1, bodies.shape[0]):
         parent = np.uint64(bodies[body, PARENT])  # an index without a sign
         value = q[bodies[body, COORDINATE]]
-        slides = bodies[body, SLIDES] == 1
+        slides = bodies[body, PRISMATIC] == 1
         s, c = (0.0, 1.0) if slides else sin_cos(value)
         along = value if slides else 0.0
         for i in range(3):
@@ -83,7 +83,7 @@ def compute_jacobian(robot, T_world_body, T_world_tool, out_jacobian):
             continue
         column = robot.bodies[body, COORDINATE]
         x, y, z = T_world_body[body, 0, 2], T_world_body[body, 1, 2], T_world_body[body, 2, 2]
-        if robot.bodies[body, SLIDES] == 1:
+        if robot.bodies[body, PRISMATIC] == 1:
             out_jacobian[0, column], out_jacobian[1, column], out_jacobian[2, column] = x, y, z
             continue
         dx = T_world_tool[0, 3] - T_world_body[body, 0, 3]

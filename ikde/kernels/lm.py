@@ -8,7 +8,7 @@ them side by side and gives a lane that has finished the next target. Both make 
 import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
-from ikde.kernels.blocks import unpack_question
+from ikde.kernels.flat_arguments import unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
@@ -28,7 +28,7 @@ def judge_step(descent, steps, position, orientation):
 
 @inline_kernel
 def record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
-    """Enter a finished attempt; True if it reached the target. Kept is the best so far, as in `lanes.solve_lane`."""
+    """Enter a finished attempt; True if it reached the target. Kept is the best so far, as in `finish_attempt`."""
     out_counts[ATTEMPTS] += 1
     met = 0.0 if verdict == MET else 1.0
     badness = position + descent.rotation_length * orientation
@@ -50,8 +50,6 @@ def record(descent, verdict, pair, position, orientation, q, out_q, out_score, o
 
 @kernel
 def solve_target(
-    robot,
-    detector,
     kinds,
     T_world_tool,
     index,
@@ -70,13 +68,13 @@ def solve_target(
 ):
     """Attempts number `first` .. `last` - 1 on one target, up to the first that is reached.
 
-    The target is row `index` of `TargetArrays`; numbers, whole, pool, pool_T are those of `blocks.unpack_question`.
-    The outputs are those of `lanes.solve_lane`: out_q [N], out_score [2], out_counts [COUNTS], out_pairs [P], the pair
-    found first in each collision.
+    The target is row `index` of `TargetArrays`; numbers, whole, pool, pool_T are those of `unpack_search`. The outputs
+    are those of `attempt.finish_attempt`: out_q [N], out_score [2], out_counts [COUNTS], out_pairs [P], the pair found
+    first in each collision.
     """
     target = TargetArrays(kinds, T_world_tool)
-    ranges, descent, seeds = unpack_question(numbers, whole, pool, pool_T)
-    q, state, buffers = np.empty(out_q.size), np.empty(1, dtype=np.uint64), make_buffers(robot, detector, out_q.size)
+    robot, collision, ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
+    q, state, buffers = np.empty(out_q.size), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, out_q.size)
     for attempt in range(first, last):
         seed_stream(seed, stream, attempt, state)
         draw_seed(seeds, target, index, ranges, state, attempt, q)
@@ -86,7 +84,7 @@ def solve_target(
             steps += 1
             verdict = judge_step(descent, steps, position, orientation)
         out_counts[EVALUATIONS] += steps
-        pair = find_collision(robot, detector, q, buffers) if verdict == MET else -1
+        pair = find_collision(robot, collision, q, buffers) if verdict == MET else -1
         if record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
             return
 
@@ -114,7 +112,7 @@ def find_work(attempts, first, row, last):
 @kernel
 def solve_targets(
     robot,
-    detector,
+    collision,
     target,
     rows,
     ranges,
@@ -131,7 +129,7 @@ def solve_targets(
     """`solve_target` for rows[0] .. rows[1] - 1 at once: streams [T], attempts [rows, 2], outputs a row a target."""
     joints = out_q.shape[1]
     q, T, errors = np.empty(joints * LANES), np.empty(12 * LANES), np.empty(2 * LANES)
-    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, detector, joints)
+    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
     row, attempt, steps = (
         np.empty(LANES, dtype=np.int64),
         np.empty(LANES, dtype=np.int64),
@@ -154,7 +152,7 @@ def solve_targets(
                 for k in range(joints):
                     trial[k] = q[lane + k * LANES]
                 out_counts[index, EVALUATIONS] += steps[lane]
-                pair = find_collision(robot, detector, trial, buffers) if verdict == MET else -1
+                pair = find_collision(robot, collision, trial, buffers) if verdict == MET else -1
                 outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
                 done = record(descent, verdict, pair, position, orientation, trial, *outputs)
                 attempt[lane] += 1
@@ -175,12 +173,12 @@ def solve_targets(
 
 
 @kernel
-def fill_pool(robot, detector, lower, upper, out_q):
+def fill_pool(robot, collision, lower, upper, out_q):
     """Draw configurations within [lower, upper] [N] that are free of collision into `out_q` [K, N].
 
-    Returns how many were found before the draws were spent; the same for everybody, whatever the seed of a solve.
+    Returns how many were found before the draws were spent; the same whatever the seed of a solve.
     """
-    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(robot, detector, lower.size)
+    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(robot, collision, lower.size)
     seed_stream(POOL_STREAM, 0, 0, state)
     found = 0
     for _ in range(POOL_DRAWS * out_q.shape[0]):
@@ -188,5 +186,5 @@ def fill_pool(robot, detector, lower, upper, out_q):
             break
         for k in range(lower.size):
             out_q[found, k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
-        found += find_collision(robot, detector, out_q[found], buffers) < 0
+        found += find_collision(robot, collision, out_q[found], buffers) < 0
     return found

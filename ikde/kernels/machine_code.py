@@ -25,7 +25,7 @@ VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version_
 
 
 class MachineCode(NullCache):
-    """What numba asks for compiled code and tells of it: the methods of its own caches that a dispatcher calls."""
+    """What numba asks for compiled code and reports of it: the methods of its own caches that a dispatcher calls."""
 
     def __init__(self, function: Callable[..., Any], source: str, folder: Path) -> None:
         code = function.__code__

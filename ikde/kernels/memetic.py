@@ -2,10 +2,10 @@
 
 DE/current-to-pbest/1/bin with success-history adaptation, an archive and linear population reduction [Tanabe2014],
 jSO's rules as an option [Brest2017], Deb's rules on the penetration depth [Deb2000]. A share of the evaluations goes to
-damped steps from the best members, which push colliding pairs apart while the tool goes to its target. A member that
-was polished in vain gives its place to a stranger, a random one, since its basin is known: with the base of qiao2021
-frozen the 95th percentile is 1,640 evaluations, against 2,660 where the polished point stays. Bred members lie
-together, so a stranger is polished after each: that brings the 99th percentile from 10,500 to 3,300.
+damped steps from the best members, which move colliding pairs apart while the tool goes to its target. A member whose
+polishing does not converge is replaced by a random one, since its basin is known: with the base of qiao2021 frozen the
+95th percentile is 1,640 evaluations, against 2,660 where the polished point stays. Bred members lie together, so the
+random one is polished, too: that brings the 99th percentile from 10,500 to 3,300.
 """
 
 import math
@@ -13,16 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, OUTSIDE, REACHED, Floats, Ints
-from ikde.kernels.clearance import collides, count_colliding_pairs
-from ikde.kernels.clearing import MOST_CONTACTS, clear_step
+from ikde.kernels.arrays import EVALUATIONS, FEASIBILITY, Floats, Ints
+from ikde.kernels.attempt import finish_attempt, set_box
+from ikde.kernels.clearance import collides
+from ikde.kernels.contacts import MAX_CONTACTS, Contacts, make_contacts, take_clear_step
 from ikde.kernels.damped import DescentWorkspace, compute_error, make_descent_workspace
 from ikde.kernels.evolution import (
-    FEASIBILITY,
-    IGNORE,
     Workspace,
     compute_cost,
-    compute_depth,
     fill_start,
     is_better,
     keep,
@@ -30,32 +28,28 @@ from ikde.kernels.evolution import (
     score_point,
 )
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.lanes import is_inside, set_box
-from ikde.kernels.mutation import repair_bound
-from ikde.kernels.rng import next_index, next_uniform, seed_stream
+from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.kernels.success_history import (
-    ARCHIVED,
     HistoryWorkspace,
     add_success,
     add_to_archive,
     draw_crossover,
     draw_weight,
+    drop_worst,
+    fill_trial,
     make_history,
     plan_population,
-    pull_factor,
     reset_history,
     soften,
+    sort_members,
     trim_archive,
     update_memory,
 )
 
-NOBODY = np.int64(-1)  # in place of a member's number
-STRANGER = 1  # a number that `fill_start` draws at random
-FIRST_TURNS, LATER_TURNS = (
-    np.int64(1),
-    np.int64(2),
-)  # of polishing: bred members lie together, so that a stranger is polished after each
+NO_MEMBER = np.int64(-1)
+RANDOM_MEMBER = 1  # a number that `fill_start` draws at random
+FIRST_TURNS, LATER_TURNS = np.int64(1), np.int64(2)  # 2: the random member that replaces one is polished, too
 PROGRESS = 0.9  # a damped step must bring the squared error below this share of the smallest so far
 
 
@@ -64,6 +58,7 @@ class MemeticWorkspace(NamedTuple):
 
     members: Workspace
     descent: DescentWorkspace  # its poses are those of `members`
+    contacts: Contacts  # its spheres are those of `members`
     history: HistoryWorkspace
     order: Ints  # [NP] the members, best first
     fresh: Ints  # [NP] 1 if a member has changed since it was polished
@@ -72,11 +67,11 @@ class MemeticWorkspace(NamedTuple):
 
 
 @kernel
-def make_memetic_workspace(robot, detector, joints, memetic):
-    """Allocate the buffers for a robot, a detector and the settings."""
+def make_memetic_workspace(robot, collision, joints, memetic):
+    """Allocate the buffers for a robot, a collision model and the settings."""
     population = memetic.first_population
-    members = make_workspace(robot, detector, joints, population)
-    descent = make_descent_workspace(robot, joints, 6 + MOST_CONTACTS)
+    members = make_workspace(robot, collision, joints, population)
+    descent = make_descent_workspace(robot, joints, 6 + MAX_CONTACTS)
     return MemeticWorkspace(
         members,
         DescentWorkspace(
@@ -88,6 +83,7 @@ def make_memetic_workspace(robot, detector, joints, memetic):
             descent.solution,
             descent.step,
         ),
+        make_contacts(members.bounds, members.centres, descent.error.size),
         make_history(memetic.memory, population, np.int64(memetic.archive_share * population), joints),
         np.empty(population, dtype=np.int64),
         np.empty(population, dtype=np.int64),
@@ -96,66 +92,14 @@ def make_memetic_workspace(robot, detector, joints, memetic):
     )
 
 
-@inline_kernel
-def sort_members(score, order, count):
-    """Put the first `count` members of `order` into Deb's order, best first; quick where it is nearly sorted."""
-    for n in range(1, count):
-        member, m = order[n], n
-        while m > 0 and not is_better(score[order[m - 1], 0], score[order[m - 1], 1], score[member]):
-            order[m] = order[m - 1]
-            m -= 1
-        order[m] = member
-
-
-@inline_kernel
-def drop_worst(members, order, fresh, count, kept):
-    """Keep the `kept` best of `count` sorted members, renumbered so that they stand first; they stay sorted.
-
-    The last member moves into the place of each one that is dropped.
-    """
-    for size in range(count, kept, -1):
-        worst, last = order[size - 1], size - 1
-        if worst != last:
-            keep(members.x, members.score, worst, members.x[last], members.score[last, 0], members.score[last, 1])
-            fresh[worst] = fresh[last]
-            for n in range(size - 1):
-                if order[n] == last:
-                    order[n] = worst
-
-
-@inline_kernel
-def fill_trial(search, memetic, box, state, work, i, count, progress, weight, crossover):
-    """Current-to-pbest/1 with the archive, binomial crossover, bound repair: the trial for member `i` of `count`.
-
-    [Tanabe2014, eq. 3]; v = x_i + F' (x_pbest - x_i) + F (x_r1 - x_r2), with r2 from the population or the archive.
-    """
-    members, history, x = work.members, work.history, work.members.x
-    share = memetic.first_share + (memetic.last_share - memetic.first_share) * progress
-    best = work.order[next_index(state, max(np.int64(np.rint(share * count)), 2))]
-    r1, r2 = i, i
-    while r1 == i:
-        r1 = next_index(state, count)
-    while r2 in (i, r1):
-        r2 = next_index(state, count + history.counts[ARCHIVED])
-    pull = weight * pull_factor(progress) if memetic.is_weighted else weight
-    joints = members.trial.size
-    forced = next_index(state, joints)
-    for k in range(joints):
-        members.trial[k] = x[i, k]
-        if k == forced or next_uniform(state) < crossover:
-            other = x[r2, k] if r2 < count else history.archive[r2 - count, k]
-            donor = x[i, k] + pull * (x[best, k] - x[i, k]) + weight * (x[r1, k] - other)
-            members.trial[k] = repair_bound(search.repair, state, donor, x[i, k], box[0, k], box[1, k])
+@kernel
+def score(robot, collision, target, index, search, q, members, rival):
+    """`score_point`, compiled once for all its callers."""
+    return score_point(robot, collision, target, index, search, q, members, rival)
 
 
 @kernel
-def look(robot, detector, target, index, search, q, members, rival):
-    """`score_point`, compiled once for all who look at a point."""
-    return score_point(robot, detector, target, index, search, q, members, rival)
-
-
-@kernel
-def breed(robot, detector, target, index, search, memetic, box, state, work, count, spent):
+def breed(robot, collision, target, index, search, memetic, box, state, work, count, spent):
     """One generation: every member is challenged by a trial. Returns (member that meets the target, evaluations)."""
     members, history = work.members, work.history
     progress = spent / memetic.evaluations
@@ -170,7 +114,7 @@ def breed(robot, detector, target, index, search, memetic, box, state, work, cou
         if memetic.is_weighted:
             weight, crossover = soften(weight, crossover, progress)
         fill_trial(search, memetic, box, state, work, i, count, progress, weight, crossover)
-        cost, depth, meets = look(robot, detector, target, index, search, members.trial, members, rival)
+        cost, depth, meets = score(robot, collision, target, index, search, members.trial, members, rival)
         spent += 1
         if not is_better(cost, depth, rival):
             continue
@@ -186,31 +130,29 @@ def breed(robot, detector, target, index, search, memetic, box, state, work, cou
     for i in range(count):
         keep(members.x, members.score, i, members.next_x[i], members.next_score[i, 0], members.next_score[i, 1])
     update_memory(history, memetic.is_weighted)
-    return NOBODY, spent
+    return NO_MEMBER, spent
 
 
 @kernel
-def polish(robot, detector, target, index, search, memetic, descent, box, reach, steps, q, work, spent):
+def polish(robot, collision, target, index, search, memetic, descent, box, reach, steps, q, work, spent):
     """At most so many damped steps on `q` [N], in place, until it meets the target, stands still or spends the budget.
 
     `reach` in m as for `clear_step`; with -inf collisions are ignored. Returns (cost in m, meets, evaluations): 1 a
-    look, and N a step, as if each Jacobian had been taken by differences, which it is not.
+    point, and N a step, as if each Jacobian had been taken by differences, which it is not.
     """
     members, smallest, idle = work.members, math.inf, 0
     cost, meets = math.inf, False
     for step in range(steps + 1):
         cost, meets = compute_cost(robot, target, index, search, q, members)
         spent += 1
-        compute_bounds(detector, members.T_world_body, members.bounds)
-        compute_centres(detector, members.T_world_body, members.centres)
+        compute_bounds(collision, members.T_world_body, members.bounds)
+        compute_centres(collision, members.T_world_body, members.centres)
         if meets and reach > -math.inf:
-            meets = not collides(detector, members.bounds, members.centres)
+            meets = not collides(collision, members.bounds, members.centres)
         if meets or idle >= memetic.patience or step == steps or spent + q.size >= memetic.evaluations:
             break
         compute_error(target, index, descent.rotation_length, members.T_world_tool, work.descent.error)
-        square = clear_step(
-            robot, detector, target, index, box, descent, reach, members.bounds, members.centres, q, work.descent
-        )
+        square = take_clear_step(robot, collision, target, index, box, descent, reach, work.contacts, q, work.descent)
         spent += q.size
         idle = 0 if square < PROGRESS * smallest else idle + 1
         smallest = min(smallest, square)
@@ -219,15 +161,15 @@ def polish(robot, detector, target, index, search, memetic, descent, box, reach,
 
 @kernel
 def polish_best(
-    robot, detector, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
+    robot, collision, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
 ):
     """Polish the best members that have changed, up to the share of the evaluations that polishing may take.
 
-    One that meets the target stays as it then is, one in vain gives its place to a stranger, who with 2 `turns` is
-    polished at once. Returns (member that meets the target, evaluations, those of polishing).
+    One that meets the target stays as it then is; one that does not converge is replaced by a random one, which with 2
+    `turns` is polished at once. Returns (member that meets the target, evaluations, those of polishing).
     """
     members, q, before = work.members, work.members.trial, spent - polished
-    reach = detector.safe_distance + memetic.margin if search.collision_rule == FEASIBILITY else -math.inf
+    reach = collision.safe_distance + memetic.margin if search.collision_rule == FEASIBILITY else -math.inf
     for n in range(turns * count):
         i, turn = work.order[n // turns], n % turns
         if spent >= memetic.evaluations or (turn == 0 and spent - before >= memetic.polish_share * spent):
@@ -237,7 +179,7 @@ def polish_best(
         for k in range(q.size):
             q[k] = members.x[i, k]
         cost, meets, spent = polish(
-            robot, detector, target, index, search, memetic, descent, box, reach, memetic.polish_steps, q, work, spent
+            robot, collision, target, index, search, memetic, descent, box, reach, memetic.polish_steps, q, work, spent
         )
         depth, work.fresh[i] = 0.0, 0
         if not meets and cost < work.champion_cost[0]:
@@ -245,36 +187,36 @@ def polish_best(
             for k in range(q.size):
                 work.champion[k] = q[k]
         if not meets and spent < memetic.evaluations:
-            fill_start(search, box[0], box[1], state, members, STRANGER)
+            fill_start(search, box[0], box[1], state, members, RANDOM_MEMBER)
             members.score[i, 0], members.score[i, 1] = np.inf, np.inf
-            cost, depth, meets = look(robot, detector, target, index, search, q, members, members.score[i])
+            cost, depth, meets = score(robot, collision, target, index, search, q, members, members.score[i])
             keep(members.x, members.score, i, q, cost, depth)
             spent, work.fresh[i] = spent + 1, 1
         if meets:
             keep(members.x, members.score, i, q, cost, depth)
             return i, spent, spent - before
     sort_members(members.score, work.order, count)
-    return NOBODY, spent, spent - before
+    return NO_MEMBER, spent, spent - before
 
 
 @kernel
-def fill_population(robot, detector, target, index, search, memetic, box, state, work):
+def fill_population(robot, collision, target, index, search, memetic, box, state, work):
     """Draw and sort the first population. Returns (member that meets the target, members, evaluations)."""
     members, count = work.members, min(memetic.first_population, memetic.evaluations)
     for i in range(count):
         members.score[i, 0], members.score[i, 1] = np.inf, np.inf
         work.order[i], work.fresh[i] = i, 1
         fill_start(search, box[0], box[1], state, members, i)
-        cost, depth, meets = look(robot, detector, target, index, search, members.trial, members, members.score[i])
+        cost, depth, meets = score(robot, collision, target, index, search, members.trial, members, members.score[i])
         keep(members.x, members.score, i, members.trial, cost, depth)
         if meets:
             return i, count, i + 1
     sort_members(members.score, work.order, count)
-    return NOBODY, count, count
+    return NO_MEMBER, count, count
 
 
 @kernel
-def evolve_memetic(robot, detector, target, index, search, memetic, descent, box, state, work):
+def evolve_memetic(robot, collision, target, index, search, memetic, descent, box, state, work):
     """Evolve one population within `box` [2, N]. Returns (best member, meets the target, evaluations).
 
     The best member is `work.members.x[best]`; under `FEASIBILITY` meeting the target includes being free. At most
@@ -283,28 +225,28 @@ def evolve_memetic(robot, detector, target, index, search, memetic, descent, box
     turns, polished = FIRST_TURNS, np.int64(0)
     reset_history(work.history, memetic.first_weight, memetic.first_crossover, memetic.is_weighted)
     work.champion_cost[0] = np.inf
-    found, count, spent = fill_population(robot, detector, target, index, search, memetic, box, state, work)
-    while found == NOBODY and spent < memetic.evaluations:
+    found, count, spent = fill_population(robot, collision, target, index, search, memetic, box, state, work)
+    while found == NO_MEMBER and spent < memetic.evaluations:
         found, spent, polished = polish_best(
-            robot, detector, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
+            robot, collision, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
         )
-        if found != NOBODY or spent >= memetic.evaluations:
+        if found != NO_MEMBER or spent >= memetic.evaluations:
             break
-        found, spent = breed(robot, detector, target, index, search, memetic, box, state, work, count, spent)
+        found, spent = breed(robot, collision, target, index, search, memetic, box, state, work, count, spent)
         sort_members(work.members.score, work.order, count)
         planned = plan_population(memetic.first_population, memetic.last_population, spent / memetic.evaluations)
-        if found == NOBODY and planned < count:
+        if found == NO_MEMBER and planned < count:
             drop_worst(work.members, work.order, work.fresh, count, planned)
             count = planned
             trim_archive(state, work.history, np.int64(memetic.archive_share * count))
         turns = LATER_TURNS
-    if found != NOBODY:
+    if found != NO_MEMBER:
         return found, True, spent
     return work.order[0], False, spent
 
 
 @inline_kernel
-def show_closest(robot, detector, target, index, search, memetic, descent, box, q, work):
+def show_closest(robot, collision, target, index, search, memetic, descent, box, q, work):
     """Into `q` [N], after an attempt in vain: what its champion comes to when collisions are ignored.
 
     So that a target that is reached only by colliding is known by the pairs that collide. Without a champion `q` stays.
@@ -315,13 +257,15 @@ def show_closest(robot, detector, target, index, search, memetic, descent, box, 
         steps = memetic.polish_steps
         for k in range(q.size):
             q[k] = work.champion[k]
-    return polish(robot, detector, target, index, search, memetic, descent, box, -math.inf, steps, q, work, np.int64(0))
+    return polish(
+        robot, collision, target, index, search, memetic, descent, box, -math.inf, steps, q, work, np.int64(0)
+    )
 
 
 @kernel
 def solve_memetic_lane(
     robot,
-    detector,
+    collision,
     target,
     index,
     search,
@@ -337,36 +281,19 @@ def solve_memetic_lane(
 ):
     """Run attempts attempts[0] .. attempts[1]-1 on one target, up to the first that is reached.
 
-    Attempts are independent; the outputs are those of `lanes.solve_lane`. An attempt makes `memetic.evaluations`, and
+    Attempts are independent; the outputs are those of `finish_attempt`. An attempt makes `memetic.evaluations`, and
     after one in vain at most `memetic.polish_steps` damped steps more.
     """
     joints = out_q.size
-    work = make_memetic_workspace(robot, detector, joints, memetic)
+    work = make_memetic_workspace(robot, collision, joints, memetic)
     members, box, state = work.members, np.empty((2, joints)), np.empty(1, dtype=np.uint64)
     for attempt in range(attempts[0], attempts[1]):
         set_box(search.ranges, search.first_box, attempt, box[0], box[1])
         seed_stream(seed, stream, attempt, state)
-        best, meets, spent = evolve_memetic(robot, detector, target, index, search, memetic, descent, box, state, work)
+        best, meets, spent = evolve_memetic(robot, collision, target, index, search, memetic, descent, box, state, work)
         q, cost, more = members.x[best], 0.0, 0
         if not meets:
-            cost, meets, more = show_closest(robot, detector, target, index, search, memetic, descent, box, q, work)
-        out_counts[ATTEMPTS] += 1
-        out_counts[EVALUATIONS] += spent + more
-        depth = 0.0
-        if search.collision_rule != IGNORE:  # the poses in `members` are those of `q`, the last point looked at
-            depth = compute_depth(detector, members.T_world_body, members.bounds, members.centres)
-        inside = is_inside(search.ranges, q)
-        met = 0.0 if meets and inside else 1.0
-        badness = depth if meets and inside else cost
-        if met < out_score[0] or (met == out_score[0] and badness < out_score[1]):
-            out_score[0], out_score[1] = met, badness
-            for k in range(joints):
-                out_q[k] = q[k]
-        if meets and not inside:
-            out_counts[OUTSIDE] += 1
-        elif meets and depth > 0.0:
-            out_counts[COLLIDING] += 1
-            count_colliding_pairs(detector, members.centres, out_pairs)
-        elif meets:
-            out_counts[REACHED] = 1
+            cost, meets, more = show_closest(robot, collision, target, index, search, memetic, descent, box, q, work)
+        out_counts[EVALUATIONS] += spent + more  # the poses in `members` are those of `q`, the last point evaluated
+        if finish_attempt(collision, search, q, cost, meets, members, out_q, out_score, out_counts, out_pairs):
             return

@@ -21,17 +21,17 @@ STRATEGIES = (
     "current-to-best/2",
 )
 RAND_1, BEST_1, RAND_2, BEST_2, RAND_TO_BEST_1, RAND_TO_BEST_2, CURRENT_TO_BEST_1, CURRENT_TO_BEST_2 = range(8)
-LARGEST_DRAW = 5
+MAX_DRAWN = 5
 
 REPAIRS = ("redraw", "clip", "parent", "midpoint", "none")
 REDRAW, CLIP, PARENT, MIDPOINT, NONE = range(5)
-FARTHEST = 1e5  # m or rad: where nothing is repaired a population may run away, and sines end here
+MAX_VALUE = 1e5  # m or rad: where nothing is repaired a population may run away, and sines end here
 
 
 @inline_kernel
 def draw_members(state, population, current, out_r):
     """Draw distinct members of the population, none of them `current`, into `out_r` [5]."""
-    for n in range(LARGEST_DRAW):
+    for n in range(MAX_DRAWN):
         fresh = False
         while not fresh:
             out_r[n] = next_index(state, population)
@@ -68,7 +68,7 @@ def repair_bound(repair, state, value, parent, lower, upper):
     if lower <= value <= upper:
         return value
     if repair == NONE:
-        return min(max(value, -FARTHEST), FARTHEST)
+        return min(max(value, -MAX_VALUE), MAX_VALUE)
     if repair == REDRAW:
         return lower + next_uniform(state) * (upper - lower)
     bound = lower if value < lower else upper

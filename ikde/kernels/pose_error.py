@@ -2,10 +2,9 @@
 
 import math
 
+from ikde.kernels.arrays import AXIS, POSITION
 from ikde.kernels.jit import inline_kernel
 from ikde.kernels.trig import angle_from_sides
-
-POSITION, AXIS, POSE = 0, 1, 2
 
 
 @inline_kernel

@@ -10,14 +10,14 @@ import math
 
 import numpy as np
 
+from ikde.kernels.arrays import AXIS, POSE, POSITION
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.pose_error import AXIS, POSE, POSITION
 from ikde.kernels.rng import next_index, next_uniform
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
 X, Y, Z = 3, 7, 11  # rows of `SeedArrays.T_world_tool`, a transform [3, 4] row by row
-POOL_STREAM = np.uint64(2**64 - 2)  # in place of a user's seed: the pool is the same for everybody
+POOL_STREAM = np.uint64(2**64 - 2)  # in place of a user's seed: the pool is the same for all solves
 POOL_DRAWS = 50  # for each configuration of the pool, before there seem to be none that are free
 WINDOW = 32  # configurations around the target's cell that a seed is chosen from; doubled with every attempt
 COMPARED = 16  # of the window, by their poses

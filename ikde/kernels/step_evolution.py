@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Indices, Ints
+from ikde.kernels.attempt import is_inside
 from ikde.kernels.clearance import find_colliding_pair
 from ikde.kernels.drive import arc_is_inside, set_step_box, take_drive_step
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.lanes import is_inside
-from ikde.kernels.mutation import LARGEST_DRAW, REDRAW, draw_members, mutate, repair_bound
+from ikde.kernels.mutation import MAX_DRAWN, REDRAW, draw_members, mutate, repair_bound
 from ikde.kernels.pose_error import compute_orientation_error
 from ikde.kernels.rng import next_index, next_uniform, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
@@ -36,7 +36,7 @@ class StepWorkspace(NamedTuple):
     upper: Floats  # [D]
     drawn: Ints  # [5] members drawn for a mutation
     state: Indices  # [1] of the random numbers
-    q: Floats  # [N] the end of the step looked at last
+    q: Floats  # [N] the end of the step evaluated last
     T_world_body: Floats  # [B, 3, 4]
     T_world_tool: Floats  # [3, 4]
     centres: Floats  # [3, S] m
@@ -44,7 +44,7 @@ class StepWorkspace(NamedTuple):
 
 
 @kernel
-def make_step_workspace(robot, detector, joints, size, population):
+def make_step_workspace(robot, collision, joints, size, population):
     """Allocate the room for a robot, steps [size] and a population."""
     return StepWorkspace(
         np.empty((2 * population, size)),
@@ -54,13 +54,13 @@ def make_step_workspace(robot, detector, joints, size, population):
         np.empty(size),
         np.empty(size),
         np.empty(size),
-        np.empty(LARGEST_DRAW, dtype=np.int64),
+        np.empty(MAX_DRAWN, dtype=np.int64),
         np.empty(1, dtype=np.uint64),
         np.empty(joints),
         np.empty((robot.bodies.shape[0], 3, 4)),
         np.empty((3, 4)),
-        np.empty((3, detector.radius.size)),
-        np.empty((detector.components.shape[0], 3)),
+        np.empty((3, collision.radius.size)),
+        np.empty((collision.components.shape[0], 3)),
     )
 
 
@@ -93,11 +93,11 @@ def keeps_rest(drive, track, q, step, work):
         for j in range(3):
             centre += work.T_world_body[drive.centre_body, i, j] * drive.p_body_centre[j]
         square += (work.T_world_tool[i, 3] - centre) ** 2
-    return square <= drive.farthest * drive.farthest and is_inside(track.ranges, work.q)
+    return square <= drive.max_distance * drive.max_distance and is_inside(track.ranges, work.q)
 
 
 @kernel
-def judge_step(robot, detector, drive, track, target, index, search, q, step, work):
+def judge_step(robot, collision, drive, track, target, index, search, q, step, work):
     """The termination (35): whether a step meets the target, keeps all limits and is free. Returns verdict and pair."""
     compute_fitness(robot, drive, target, index, search, q, step, work)
     for i in range(3):
@@ -107,9 +107,9 @@ def judge_step(robot, detector, drive, track, target, index, search, q, step, wo
         return MISSED, NO_PAIR
     if not keeps_rest(drive, track, q, step, work):
         return LIMITED, NO_PAIR
-    compute_bounds(detector, work.T_world_body, work.bounds)
-    compute_centres(detector, work.T_world_body, work.centres)
-    pair = find_colliding_pair(detector, work.bounds, work.centres)
+    compute_bounds(collision, work.T_world_body, work.bounds)
+    compute_centres(collision, work.T_world_body, work.centres)
+    pair = find_colliding_pair(collision, work.bounds, work.centres)
     return SOLVED if pair < 0 else COLLIDES, pair
 
 
@@ -168,7 +168,7 @@ def breed_steps(robot, drive, target, index, search, strategy, best, q, work):
 
 
 @kernel
-def evolve_steps(robot, detector, drive, track, target, index, search, q, work):
+def evolve_steps(robot, collision, drive, track, target, index, search, q, work):
     """Evolve one population until its best is solved. Returns (best member, verdict, pair, evaluations)."""
     draw_population(robot, drive, target, index, search, q, work)
     best, evaluations, judged = np.int64(0), 2 * search.population, math.inf
@@ -176,7 +176,7 @@ def evolve_steps(robot, detector, drive, track, target, index, search, q, work):
     for generation in range(1, search.generations + 2):
         if work.fitness[best] < judged:
             judged = work.fitness[best]
-            verdict, pair = judge_step(robot, detector, drive, track, target, index, search, q, work.x[best], work)
+            verdict, pair = judge_step(robot, collision, drive, track, target, index, search, q, work.x[best], work)
         if verdict == SOLVED or generation > search.generations:
             break
         strategy = search.even if generation % 2 == 0 else search.odd
@@ -187,7 +187,7 @@ def evolve_steps(robot, detector, drive, track, target, index, search, q, work):
 
 @kernel
 def evolve_sample(
-    robot, detector, drive, track, target, index, search, seed, q, last, first_step, work, out_q, out_step
+    robot, collision, drive, track, target, index, search, seed, q, last, first_step, work, out_q, out_step
 ):
     """Population after population until one is solved: the success index. `out_q` [N], `out_step` [D]: the best.
 
@@ -199,7 +199,7 @@ def evolve_sample(
         return kept, kept_pair, 0, evaluations
     for attempt in range(search.attempts):
         seed_stream(seed, index, attempt, work.state)
-        best, verdict, pair, spent = evolve_steps(robot, detector, drive, track, target, index, search, q, work)
+        best, verdict, pair, spent = evolve_steps(robot, collision, drive, track, target, index, search, q, work)
         evaluations += spent
         if verdict < kept or (verdict == kept and work.fitness[best] < kept_fitness):
             kept, kept_pair, kept_fitness = verdict, pair, work.fitness[best]

@@ -1,4 +1,6 @@
-"""Success-history adaptation: what the weights F and crossover rates CR that won teach the next ones [Tanabe2014].
+"""Success-history adaptation: the weights F and crossover rates CR that won, and the population that they breed.
+
+A trial goes towards one of the best and along a difference with the archive; the population shrinks [Tanabe2014].
 
 Draws are built from uniform numbers with + - * /, a sine and a cosine of our own, so that the bits hang on nothing
 else: Cauchy by tan(pi (u - 1/2)), normal by the sum of twelve uniforms less 6 (mean 0, variance 1, within +-6).
@@ -10,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.evolution import is_better, keep
 from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.mutation import repair_bound
 from ikde.kernels.rng import next_index, next_uniform
 from ikde.kernels.trig import sin_cos
 
@@ -177,3 +181,55 @@ def trim_archive(state, history, capacity):
 def plan_population(first, last, progress):
     """Linear population size reduction [Tanabe2014, eq. 10]: from `first` at progress 0 to `last` at 1."""
     return np.int64(np.rint(first + (last - first) * progress))
+
+
+@inline_kernel
+def sort_members(score, order, count):
+    """Put the first `count` members of `order` into Deb's order, best first; quick where it is nearly sorted."""
+    for n in range(1, count):
+        member, m = order[n], n
+        while m > 0 and not is_better(score[order[m - 1], 0], score[order[m - 1], 1], score[member]):
+            order[m] = order[m - 1]
+            m -= 1
+        order[m] = member
+
+
+@inline_kernel
+def drop_worst(members, order, fresh, count, kept):
+    """Keep the `kept` best of `count` sorted members, renumbered so that they stand first; they stay sorted.
+
+    The last member moves into the place of each one that is dropped.
+    """
+    for size in range(count, kept, -1):
+        worst, last = order[size - 1], size - 1
+        if worst != last:
+            keep(members.x, members.score, worst, members.x[last], members.score[last, 0], members.score[last, 1])
+            fresh[worst] = fresh[last]
+            for n in range(size - 1):
+                if order[n] == last:
+                    order[n] = worst
+
+
+@inline_kernel
+def fill_trial(search, memetic, box, state, work, i, count, progress, weight, crossover):
+    """Current-to-pbest/1 with the archive, binomial crossover, bound repair: the trial for member `i` of `count`.
+
+    [Tanabe2014, eq. 3]; v = x_i + F' (x_pbest - x_i) + F (x_r1 - x_r2), with r2 from the population or the archive.
+    """
+    members, history, x = work.members, work.history, work.members.x
+    share = memetic.first_share + (memetic.last_share - memetic.first_share) * progress
+    best = work.order[next_index(state, max(np.int64(np.rint(share * count)), 2))]
+    r1, r2 = i, i
+    while r1 == i:
+        r1 = next_index(state, count)
+    while r2 in (i, r1):
+        r2 = next_index(state, count + history.counts[ARCHIVED])
+    pull = weight * pull_factor(progress) if memetic.is_weighted else weight
+    joints = members.trial.size
+    forced = next_index(state, joints)
+    for k in range(joints):
+        members.trial[k] = x[i, k]
+        if k == forced or next_uniform(state) < crossover:
+            other = x[r2, k] if r2 < count else history.archive[r2 - count, k]
+            donor = x[i, k] + pull * (x[best, k] - x[i, k]) + weight * (x[r1, k] - other)
+            members.trial[k] = repair_bound(search.repair, state, donor, x[i, k], box[0, k], box[1, k])

@@ -25,12 +25,12 @@ class Buffers(NamedTuple):
 
 
 @kernel
-def make_buffers(robot, detector, joints):
-    """Allocate the buffers for a robot and a detector."""
+def make_buffers(robot, collision, joints):
+    """Allocate the buffers for a robot and a collision model."""
     return Buffers(
         make_descent_workspace(robot, joints, TASK_ROWS),
-        np.empty((3, detector.radius.size)),
-        np.empty((detector.components.shape[0], 3)),
+        np.empty((3, collision.radius.size)),
+        np.empty((collision.components.shape[0], 3)),
     )
 
 
@@ -54,10 +54,10 @@ def take_steps(robot, target, row, ranges, descent, q, T, errors, trial, buffers
 
 
 @kernel
-def find_collision(robot, detector, q, buffers):
+def find_collision(robot, collision, q, buffers):
     """Index of the first pair within the safe distance at `q` [N], or -1."""
     T_world_body = buffers.step.T_world_body
     compute_bodies(robot, q, T_world_body)
-    compute_bounds(detector, T_world_body, buffers.bounds)
-    compute_centres(detector, T_world_body, buffers.centres)
-    return find_colliding_pair(detector, buffers.bounds, buffers.centres)
+    compute_bounds(collision, T_world_body, buffers.bounds)
+    compute_centres(collision, T_world_body, buffers.centres)
+    return find_colliding_pair(collision, buffers.bounds, buffers.centres)

@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, ClosedFormArrays, Floats, RobotArrays
+from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, ClosedFormArrays, Floats, RobotArrays
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
 from ikde.model.rotation import snap
@@ -99,7 +99,7 @@ def _last_six(arrays: RobotArrays) -> list[int] | None:
     body = int(arrays.frame_body[-1])
     chain: list[int] = []
     while body != 0 and len(chain) < 6:
-        if arrays.bodies[body, SLIDES]:
+        if arrays.bodies[body, PRISMATIC]:
             return None
         chain.append(body)
         body = int(arrays.bodies[body, PARENT])

@@ -7,7 +7,7 @@ from itertools import combinations
 from typing import Union
 
 from ikde.errors import InputError, nearest
-from ikde.kernels.arrays import DetectorArrays
+from ikde.kernels.arrays import CollisionArrays
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
@@ -84,7 +84,7 @@ class CollisionModel:
         )
 
     @cached_property
-    def arrays(self) -> DetectorArrays:
+    def arrays(self) -> CollisionArrays:
         """Packed for the kernels."""
         return pack_collision(self.robot, self.detector)
 

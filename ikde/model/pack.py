@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.kernels.arrays import DetectorArrays, Floats, Indices, Ints, RobotArrays, TargetArrays
+from ikde.kernels.arrays import CollisionArrays, Floats, Indices, Ints, RobotArrays, TargetArrays
 from ikde.model.robot import WORLD, Detector, Robot
 from ikde.model.rotation import rotation_with_z
 from ikde.model.spheres import bounding_sphere, expand_rows
@@ -35,7 +35,7 @@ def pack_robot(robot: Robot) -> RobotArrays:
 
 
 @lru_cache(maxsize=64)
-def pack_collision(robot: Robot, detector: Detector | None) -> DetectorArrays:
+def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
     """Pack a detector's spheres and pairs; None packs no pairs at all."""
     tree = build_tree(robot)
     pairs = robot.pair_lists[detector.pairs] if detector else ()
@@ -53,7 +53,7 @@ def pack_collision(robot: Robot, detector: Detector | None) -> DetectorArrays:
     centres = [_map(aligned[s.body], s.p_body_sphere) for s in spheres]
     bounds = [(g[0].body, *bounding_sphere(g)) for g in groups]
     indices = [sorted((components.index(a), components.index(b)), key=lambda c: -len(groups[c])) for a, b in pairs]
-    return DetectorArrays(
+    return CollisionArrays(
         safe_distance=float(detector.safe_distance_m if detector else 0.0),
         p_body_sphere=_floats(np.reshape(centres, (-1, 3)).T),
         radius=_floats([s.radius_m for s in spheres]),

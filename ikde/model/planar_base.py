@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Ints
+from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Ints
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.pairs import component_bodies
@@ -24,7 +24,7 @@ def find_planar_base(robot: Robot) -> Ints:
     """
     arrays = pack_robot(robot)
     bodies, T = arrays.bodies, arrays.T_parent_body
-    if len(bodies) < 4 or bodies[1:4, PARENT].tolist() != [0, 1, 2] or bodies[1:4, SLIDES].tolist() != [1, 1, 0]:
+    if len(bodies) < 4 or bodies[1:4, PARENT].tolist() != [0, 1, 2] or bodies[1:4, PRISMATIC].tolist() != [1, 1, 0]:
         return NO_BASE
     x, y, turn = bodies[1:4, COORDINATE].tolist()
     steps = np.eye(4)

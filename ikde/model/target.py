@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import AXIS, POSE, POSITION, Floats, Ints
 from ikde.model.numbers import read_numbers
 from ikde.model.rotation import are_rotations, check_rotation, length, rotation_with_z
 
@@ -17,7 +17,6 @@ LONGEST = 1e100  # of an axis, whose length says nothing
 SHORTEST = 1e-12
 TargetKind = Literal["position", "axis", "pose"]
 KINDS: tuple[TargetKind, ...] = ("position", "axis", "pose")  # in the order of their numbers in `Targets.kind`
-POSITION, AXIS, POSE = range(3)
 NO_DIRECTION = "an axis of length 0 has no direction"
 NOT_BOTH = "a target has a rotation (R_world_tool) or an axis (axis_world_tool), not both"
 

@@ -10,9 +10,9 @@ from functools import lru_cache
 import numpy as np
 
 from ikde.errors import VerificationError
-from ikde.kernels import figures as kernels
+from ikde.kernels import grade_many as kernels
 from ikde.kernels.arrays import Floats, Ints
-from ikde.kernels.blocks import Terms, flatten_grader
+from ikde.kernels.flat_arguments import Terms, flatten_grader
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.robot import Robot
@@ -71,7 +71,7 @@ def compute_figures(
     figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
     (numbers, whole), asked = pack_grader(collision, settings, limits), pack_targets(targets)
     out = (np.ascontiguousarray(Q), figures, pairs, accepted)
-    kernels.compute_figures(numbers, whole, asked.kind, asked.T_world_tool, *out)
+    kernels.grade_many(numbers, whole, asked.kind, asked.T_world_tool, *out)
     return Figures(
         position_error_m=figures[:, kernels.POSITION_ERROR],
         orientation_error_rad=figures[:, kernels.ORIENTATION_ERROR],

@@ -1,6 +1,6 @@
 """Grade and explain what the kernels found, on exactly the returned q.
 
-The figures and the verdict of every row are the kernels' grader's (`kernels/figures.py`); plain numpy grades again,
+The figures and the verdict of every row are the kernels' grader's (`kernels/grade_many.py`); plain numpy grades again,
 every row or a sample, and must agree to 1e-11. What each shares with the search stands in docs/design.md.
 """
 

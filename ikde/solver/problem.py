@@ -6,10 +6,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats, SearchArrays
-from ikde.kernels.evolution import FEASIBILITY, IGNORE, REJECT
+from ikde.kernels.arrays import (
+    FEASIBILITY,
+    IGNORE,
+    REJECT,
+    CollisionArrays,
+    Floats,
+    RobotArrays,
+    SearchArrays,
+)
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.settings import SolveSettings
@@ -92,6 +100,12 @@ def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[s
 def shrink(tolerance: float) -> float:
     """A tolerance a hair smaller, so that rounding cannot turn `verify`'s verdict."""
     return tolerance - min(ROUNDING, 0.5 * tolerance)
+
+
+def pack_searched(collision: CollisionModel) -> tuple[RobotArrays, CollisionArrays]:
+    """Robot and collision model as all searches take them: with the safe distance that leaves room for rounding."""
+    arrays = collision.arrays
+    return pack_robot(collision.robot), arrays._replace(safe_distance=arrays.safe_distance + ROUNDING)
 
 
 def pack_search(problem: Problem) -> SearchArrays:

@@ -10,7 +10,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from ikde.kernels.arrays import COUNTS, REACHED
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
@@ -20,7 +20,7 @@ from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds, runs_on_tables
 from ikde.solver.explain import count_blocking_pairs
 from ikde.solver.figures import pack_grader
-from ikde.solver.problem import make_problem
+from ikde.solver.problem import make_problem, pack_searched
 from ikde.solver.result import SolveResult, StopReason, reached_reason
 from ikde.solver.search import FEW, choose_engines
 from ikde.solver.settings import SolveSettings, choose_settings
@@ -32,12 +32,12 @@ class Quick:
 
     def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str) -> None:
         problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-        module, *tables = load_kernels(collision, kind)
-        question = flatten_question(make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
+        search = (make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
-        self._search, self._question = module.solve_target, (*tables, self._kind)
-        self._block, self._last = question, min(FEW["lm"], int(settings.budget("lm")))
+        self._search = load_kernels(collision, kind).solve_target
+        self._block = flatten_search(*pack_searched(collision), *search)
+        self._last = min(FEW["lm"], int(settings.budget("lm")))
         self._grader = pack_grader(collision, settings)
         self._joints, self._pairs = len(collision.robot.joints), collision.pairs
         self._no_score = np.full(2, np.inf)
@@ -77,7 +77,7 @@ class Quick:
         q, score = np.empty(self._joints), self._no_score.copy()
         counts, blocked = np.zeros(COUNTS, dtype=np.int64), np.zeros(len(self._pairs), dtype=np.int64)
         lane = (np.uint64(seed), stream, 0, self._last, q, score, counts, blocked)
-        self._search(*self._question, T_world_tool, 0, *self._block, *lane)
+        self._search(self._kind, T_world_tool, 0, *self._block, *lane)
         if not counts[REACHED]:
             return None
         seconds = time.perf_counter() - started

@@ -9,8 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
-from ikde.kernels.pose_error import POSE
+from ikde.kernels.arrays import ATTEMPTS, POSE, REACHED, Floats, Ints
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Robot

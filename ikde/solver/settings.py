@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from ikde.errors import InputError, nearest
-from ikde.kernels.mutation import LARGEST_DRAW, REPAIRS, STRATEGIES
+from ikde.kernels.mutation import MAX_DRAWN, REPAIRS, STRATEGIES
 from ikde.model.numbers import is_number
 
 Method = Literal["auto", "lm", "analytic", "memetic", "de"]
@@ -198,7 +198,7 @@ TOLERANCES: Mapping[str, tuple[Callable[[Any], bool], str]] = {
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "restarts": (is_count(1, MOST), describe_count(1, MOST)),
     "timeout_s": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
-    "population": (is_count(LARGEST_DRAW + 1, MOST_MEMBERS), describe_count(LARGEST_DRAW + 1, MOST_MEMBERS)),
+    "population": (is_count(MAX_DRAWN + 1, MOST_MEMBERS), describe_count(MAX_DRAWN + 1, MOST_MEMBERS)),
     "generations": (is_count(1, MOST), describe_count(1, MOST)),
     "weight": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
     "crossover": (lambda value: is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),

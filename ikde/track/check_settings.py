@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ikde.kernels.mutation import LARGEST_DRAW
+from ikde.kernels.mutation import MAX_DRAWN
 from ikde.model.numbers import is_number
 from ikde.solver.settings import MOST, MOST_MEMBERS, describe_count, is_count, require
 
-LEAST_POPULATION = LARGEST_DRAW + 1  # a mutation draws that many different members, and not the one it changes
+LEAST_POPULATION = MAX_DRAWN + 1  # a mutation draws that many different members, and not the one it changes
 
 
 def check_counts(settings: Any, least: Mapping[str, int]) -> None:

@@ -103,7 +103,7 @@ def pack_drive(
         wheel_travel=wheel_travel,
         centre_body=tree.frame_body[centre],
         p_body_centre=_to_packed(robot, centre),
-        farthest=np.inf if limits.farthest_m is None else float(limits.farthest_m),
+        max_distance=np.inf if limits.farthest_m is None else float(limits.farthest_m),
     )
 
 

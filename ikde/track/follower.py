@@ -35,7 +35,7 @@ class Course:
     steps: Floats
     """[K + 1, D] shares of the largest step; row 0 is 0."""
     weights: Floats
-    """[K + 1, 3 + D] clearance, limits, manipulability, drift (`kernels/wishes.py`)."""
+    """[K + 1, 3 + D] clearance, limits, manipulability, drift (`kernels/nullspace.py`)."""
     least: Floats
     """[K + 1] what the nearest pair keeps beyond the margin, m; inf beyond the reach."""
     last: int
@@ -176,5 +176,5 @@ def pack_track(collision: CollisionModel, limits: MotionLimits) -> TrackArrays:
         orientation_goal=min(GOAL_RAD, SHARE * limits.orientation_error_rad),
         position_tolerance=SHARE * limits.position_error_m,
         orientation_tolerance=SHARE * limits.orientation_error_rad,
-        most_rounds=MOST_ROUNDS,
+        max_rounds=MOST_ROUNDS,
     )

@@ -177,7 +177,11 @@ def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackSto
 
 
 def _without_distance(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    found = None if np.isinf(follower.drive.farthest) else _try(follower.with_drive(farthest=np.inf), course, sample)
+    found = (
+        None
+        if np.isinf(follower.drive.max_distance)
+        else _try(follower.with_drive(max_distance=np.inf), course, sample)
+    )
     if found is None or keeps_distance(follower, found[0][None])[0]:
         return None
     return tell_too_far(follower, sample, "the step")

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, SearchArrays
-from ikde.kernels.evolution import IGNORE, make_workspace
+from ikde.kernels.arrays import IGNORE, Floats, SearchArrays
+from ikde.kernels.evolution import make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_robot

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ikde.kernels.arrays import DetectorArrays
+from ikde.kernels.arrays import CollisionArrays
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.model.collision_model import CollisionModel
@@ -49,7 +49,7 @@ def freeze(values, dtype=np.float64):
 def two_spheres(distance, radii, safe_distance=0.0):
     """A detector with one pair of single spheres on the world's x axis, and its centres [3, 2] and bounds [2, 3]."""
     centres = np.array([[0.0, distance], [0.0, 0.0], [0.0, 0.0]])
-    detector = DetectorArrays(
+    detector = CollisionArrays(
         safe_distance=float(safe_distance),
         p_body_sphere=freeze(centres),
         radius=freeze(radii),

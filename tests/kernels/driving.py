@@ -20,8 +20,8 @@ def make_drive(robot, name="differential", **limits):
 
 
 def make_track(robot, **changes):
-    """What the kernels are told, with the robot's ranges."""
-    told = TrackArrays(
+    """Settings of the kernels, with the robot's ranges."""
+    track = TrackArrays(
         ranges=np.array([robot.lower, robot.upper]),
         reach=0.1,
         margin=1e-4,
@@ -30,9 +30,9 @@ def make_track(robot, **changes):
         orientation_goal=1e-8,
         position_tolerance=5e-7,
         orientation_tolerance=5e-5,
-        most_rounds=30,
+        max_rounds=30,
     )
-    return told._replace(**changes)
+    return track._replace(**changes)
 
 
 class Stand:

@@ -3,8 +3,8 @@
 import numpy as np
 
 import ikde
-from ikde.kernels.blocks import Terms, flatten_grader
-from ikde.kernels.figures import compute_figures
+from ikde.kernels.flat_arguments import Terms, flatten_grader
+from ikde.kernels.grade_many import grade_many
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from tests.kernels.arrays import freeze
@@ -17,7 +17,7 @@ def terms_of(robot, position=np.inf, orientation=np.inf):
     return Terms(freeze([robot.lower, robot.upper]), position, orientation)
 
 
-def grade(robot, detector, targets, Q, terms=None, grader=compute_figures):
+def grade(robot, detector, targets, Q, terms=None, grader=grade_many):
     """Figures [T, 3], pairs [T] and verdicts [T] by the grader."""
     figures, pairs = np.full((len(Q), 3), np.nan), np.full(len(Q), -9, dtype=np.int64)
     accepted = np.zeros(len(Q), dtype=np.bool_)

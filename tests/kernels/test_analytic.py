@@ -42,9 +42,7 @@ def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None,
     """The outputs of the kernel, by tables or by a module of the robot's own."""
     detector, arm, count = CollisionModel.of(robot).detector, find_ur_arm(robot), len(targets)
     packed, arrays = CollisionModel(robot=robot, detector=detector).arrays, pack_robot(robot)
-    tables = (arrays, packed._replace(safe_distance=packed.safe_distance + 1e-12))
-    safe_distance_m = detector.safe_distance_m if detector else 0.0
-    tables = tables if module is PLAIN else (0, safe_distance_m + 1e-12)
+    models = (arrays, packed._replace(safe_distance=packed.safe_distance + 1e-12))
     outputs = SimpleNamespace(
         q=np.zeros((count, len(robot.joints))),
         score=np.full((count, 2), np.inf),
@@ -58,7 +56,7 @@ def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None,
     streams = np.arange(count) if streams is None else streams
     with quietly():
         module.solve_branches(
-            *(arrays, *tables, pack_ur_arm(arm), arm.carrier, pack_targets(targets), np.array(rows), ranges, seeds),
+            *(*models, pack_ur_arm(arm), arm.carrier, pack_targets(targets), np.array(rows), ranges, seeds),
             *(np.uint64(4), streams, attempts, *vars(outputs).values()),
         )
     return outputs

@@ -15,7 +15,7 @@ CONTENT = bytes(range(256)) * 10
 @pytest.fixture(autouse=True)
 def nothing_told(monkeypatch):
     """No process has said anything yet."""
-    monkeypatch.setattr(module, "TOLD", set())
+    monkeypatch.setattr(module, "WARNED", set())
 
 
 @pytest.fixture

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from ikde.kernels.clearance import (
+    DEPTH_STEP,
     collides,
     compute_clearance,
-    compute_pair_clearance,
+    compute_depth,
     count_colliding_pairs,
+    find_closest_spheres,
     judge_centres,
 )
-from ikde.kernels.evolution import DEPTH_STEP, compute_depth
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests import reference
@@ -56,8 +57,11 @@ def test_pair_clearance_equals_brute_force(seed, rng):
     for robot, detector, q, packed, centres, _ in sample(seed, rng, 2):
         spheres = reference.list_spheres(robot, detector, q)
         expected = reference.compute_pair_clearances(spheres, robot.pair_lists[detector.pairs])
-        found = [compute_pair_clearance(packed, centres, a, b) for a, b in packed.pairs]
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
+        found = [find_closest_spheres(packed, centres, a, b) for a, b in packed.pairs]
+        np.testing.assert_allclose([gap for gap, _, _ in found], expected, rtol=0, atol=1e-14)
+        for gap, i, j in found:
+            apart = np.linalg.norm(centres[:, i] - centres[:, j])
+            assert gap == pytest.approx(apart - packed.radius[i] - packed.radius[j], abs=1e-14)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

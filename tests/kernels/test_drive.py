@@ -88,15 +88,15 @@ def test_a_step_stays_in_the_ranges(qiao):
 
 
 @pytest.mark.parametrize("change", [0.013, 0.1, 0.37])
-def test_who_brakes_in_time_can_always_stop(qiao, rng, change):
+def test_what_brakes_in_time_can_always_stop(qiao, rng, change):
     acceleration = change * make_drive(qiao, "omnidirectional").largest / 0.02**2
     drive, track = make_drive(qiao, acceleration=acceleration), make_track(qiao)
     out, lower, upper = np.empty(9), np.empty(8), np.empty(8)
-    for push in (0.0, 0.3):
+    for share in (0.0, 0.3):
         q, step = qiao.home.copy(), np.zeros(8)
         for k in range(400):
             assert set_step_box(drive, track.ranges, q, step, k == 0, lower, upper)
-            wanted = np.where(rng.random(8) < push, lower, upper)
+            wanted = np.where(rng.random(8) < share, lower, upper)
             if k:
                 assert np.abs(wanted - step).max() <= change + 1e-12
             step = wanted
@@ -107,7 +107,7 @@ def test_who_brakes_in_time_can_always_stop(qiao, rng, change):
             assert (q <= qiao.upper + 1e-12).all()
 
 
-def test_what_cannot_stop_is_told(qiao):
+def test_what_cannot_stop_is_recognised(qiao):
     drive, track = make_drive(qiao, acceleration=np.full(9, 0.1)), make_track(qiao)
     q, last = qiao.home.copy(), np.zeros(8)
     q[8], last[7] = qiao.upper[8] - 1e-4, 1.0

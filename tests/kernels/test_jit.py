@@ -91,8 +91,8 @@ def test_the_clock_stands_still_when_nothing_compiles(qiao):
 
 ONE_SIGNATURE = """
 import ikde
-from ikde.kernels.figures import compute_figures
-from ikde.kernels.lanes import solve_lanes
+from ikde.kernels.grade_many import grade_many
+from ikde.kernels.evolution import solve_lanes
 from tests.random_robots import random_robot
 
 settings = ikde.SolveSettings(population=8, generations=5, restarts=2)
@@ -106,7 +106,7 @@ for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
                 ikde.solve(robot, target, changed, collision=detector, near=robot.home)
                 ikde.solve(robot, target, settings, collision=detector, freeze=robot.joint_names[:1])
     ikde.solve_many(robot, [pose, pose], settings, threads=2)
-print(len(solve_lanes.signatures), len(compute_figures.signatures))
+print(len(solve_lanes.signatures), len(grade_many.signatures))
 """
 
 

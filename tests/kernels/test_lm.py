@@ -11,7 +11,7 @@ import pytest
 import ikde
 from ikde.kernels import lm
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, UNKNOWN_DEPTH, DescentArrays
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.kernels.tables import LANES
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
@@ -20,6 +20,7 @@ from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.reach import arm_length_m
 from ikde.model.target import KINDS, Targets
 from ikde.solver.plain import compute_frames
+from ikde.solver.problem import pack_searched
 from ikde.solver.verify import verify_many
 from tests.collision_robots import RANDOM, find_gaps
 from tests.conftest import random_q
@@ -86,27 +87,23 @@ def make_outputs(asked):
     )
 
 
-def tables_of(asked, module):
-    """What stands in place of robot and detector."""
-    detector = CollisionModel.of(asked.robot).detector
-    if module is by_tables:
-        packed = CollisionModel(robot=asked.robot, detector=detector).arrays
-        return pack_robot(asked.robot), packed._replace(safe_distance=packed.safe_distance + 1e-12)
-    return 0, detector.safe_distance_m + 1e-12
+def models_of(asked):
+    """Packed robot and collision model."""
+    return pack_searched(CollisionModel.of(asked.robot))
 
 
 def solve_singly(module, asked, rows=None, *, first=0, budgets=None, outputs=None):
     """Row after row, in the order given; outputs are added to."""
     outputs = make_outputs(asked) if outputs is None else outputs
     budgets = asked.budgets if budgets is None else budgets
-    robot, detector = tables_of(asked, module)
+    models = models_of(asked)
     with quietly():
         for row in range(len(asked.targets)) if rows is None else rows:
             if outputs[2][row, REACHED]:
                 continue
-            question = (*asked.packed, row, *flatten_question(asked.ranges, asked.descent, asked.seeds))
+            question = (*asked.packed, row, *flatten_search(*models, asked.ranges, asked.descent, asked.seeds))
             lane = (np.uint64(9), int(asked.streams[row]), first, int(budgets[row]), *(array[row] for array in outputs))
-            module.solve_target(robot, detector, *question, *lane)
+            module.solve_target(*question, *lane)
     return outputs
 
 
@@ -114,14 +111,14 @@ def solve_together(module, asked, cuts=(), *, first=0, budgets=None, outputs=Non
     """Side by side, in calls that begin at the rows of `cuts`; outputs are added to."""
     outputs = make_outputs(asked) if outputs is None else outputs
     budgets = asked.budgets if budgets is None else budgets
-    robot, detector = tables_of(asked, module)
+    models = models_of(asked)
     ends = [0, *cuts, len(asked.targets)]
     with quietly():
         for start, stop in pairwise(ends):
             attempts = np.column_stack([np.full(stop - start, first), budgets[start:stop]])
             attempts[outputs[2][start:stop, REACHED] == 1, 1] = first
             where = (asked.packed, np.array([start, stop]), asked.ranges, asked.descent, asked.seeds, np.uint64(9))
-            module.solve_targets(robot, detector, *where, asked.streams, attempts, *outputs)
+            module.solve_targets(*models, *where, asked.streams, attempts, *outputs)
     return outputs
 
 
@@ -258,29 +255,31 @@ def test_compiled_kernels_of_a_large_robot_give_the_same_bits(kind):
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
-def test_the_pool_is_free_and_the_same_for_everybody(robot):
-    module, told = generated(robot, "position"), CollisionModel.of(robot).detector.safe_distance_m + 1e-12
+def test_the_pool_is_free_and_the_same_every_time(robot):
+    module, models = generated(robot, "position"), pack_searched(CollisionModel.of(robot))
     pools = [np.full((40, len(robot.joints)), np.nan) for _ in range(2)]
     with quietly():
-        found = [module.fill_pool(0, told, robot.lower, robot.upper, pool) for pool in pools]
+        found = [module.fill_pool(*models, robot.lower, robot.upper, pool) for pool in pools]
     assert found == [40, 40]
     assert pools[0].tobytes() == pools[1].tobytes()
     assert np.all((robot.lower <= pools[0]) & (pools[0] <= robot.upper))
-    assert (find_gaps(robot, CollisionModel.of(robot).detector, pools[0]) > told).all()
+    assert (find_gaps(robot, CollisionModel.of(robot).detector, pools[0]) > models[1].safe_distance).all()
 
 
 def test_a_pool_that_cannot_be_filled_says_how_far_it_came(qiao):
     module = generated(qiao, "position")
     out_q = np.full((2, 9), np.nan)
     with quietly():
-        assert module.fill_pool(0, 0.0999, qiao.lower, qiao.upper, out_q) <= 2
+        assert module.fill_pool(*models_within(qiao, 0.0999), qiao.lower, qiao.upper, out_q) <= 2
         stuck = np.full(9, 0.0)
-        stuck[:] = next(q for q in random_q(qiao, np.random.default_rng(2), 50) if collides(module, q))
-        assert module.fill_pool(0, 0.0, stuck, stuck, out_q) == 0
+        draws = random_q(qiao, np.random.default_rng(2), 50)
+        stuck[:] = next(q for q in draws if module.find_collision(*models_within(qiao, 0.0), q, 0) >= 0)
+        assert module.fill_pool(*models_within(qiao, 0.0), stuck, stuck, out_q) == 0
 
 
-def collides(module, q):
-    return module.find_collision(0, 0.0, q, 0) >= 0
+def models_within(robot, safe_distance):
+    """Packed robot and collision model, with a safe distance in m."""
+    return pack_robot(robot), CollisionModel.of(robot).arrays._replace(safe_distance=safe_distance)
 
 
 # ---- the rules of an attempt

@@ -31,7 +31,7 @@ def folder(tmp_path, monkeypatch):
     """A cache of the test's own, in which nothing has been told."""
     monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path)
     monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", True)
-    monkeypatch.setattr(cache_files, "TOLD", set())
+    monkeypatch.setattr(cache_files, "WARNED", set())
     return tmp_path / cache_folder.MACHINE_CODE
 
 

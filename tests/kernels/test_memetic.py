@@ -14,11 +14,9 @@ import pytest
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED, DescentArrays, MemeticArrays
 from ikde.kernels.memetic import (
-    drop_worst,
     evolve_memetic,
     make_memetic_workspace,
     solve_memetic_lane,
-    sort_members,
 )
 from ikde.kernels.rng import seed_stream
 from ikde.model.collision_model import CollisionModel
@@ -109,23 +107,6 @@ def test_it_stops_like_the_twin_when_the_target_is_met(qiao, rng):
     target = make_target(qiao, random_q(qiao, rng), "position")
     problem = make_case(qiao, position_tolerance_m=0.4)
     assert assert_like_twin(problem, target, UNPOLISHED._replace(evaluations=600))
-
-
-def test_members_are_sorted_and_the_worst_dropped(qiao, rng):
-    detector = CollisionModel.of(qiao).arrays
-    work = make_memetic_workspace(pack_robot(qiao), detector, 9, MemeticArrays(first_population=30))
-    members = work.members
-    members.x[:], members.score[:, 0] = rng.uniform(size=(30, 9)), rng.uniform(size=30)
-    members.score[:, 1] = np.maximum(0.0, rng.uniform(-0.5, 0.5, 30))
-    work.order[:], work.fresh[:] = rng.permutation(30), rng.integers(2, size=30)
-    everyone = sorted(zip(members.score[:, ::-1].tolist(), members.x.tolist(), work.fresh.tolist(), strict=True))
-    sort_members(members.score, work.order, 30)
-    for kept in (30, 29, 11, 4):
-        drop_worst(members, work.order, work.fresh, 30 if kept == 29 else {30: 30, 11: 29, 4: 11}[kept], kept)
-        order = work.order[:kept]
-        assert sorted(order) == list(range(kept))
-        left = [(members.score[i, ::-1].tolist(), members.x[i].tolist(), int(work.fresh[i])) for i in order]
-        assert left == everyone[:kept]
 
 
 @pytest.mark.parametrize("polish_share", [0.0, 0.5, 2.0])

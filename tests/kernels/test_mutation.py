@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ikde.kernels.mutation import LARGEST_DRAW, REPAIRS, STRATEGIES, draw_members, mutate, repair_bound
+from ikde.kernels.mutation import MAX_DRAWN, REPAIRS, STRATEGIES, draw_members, mutate, repair_bound
 from tests import reference
 from tests.kernels.arrays import make_state
 
@@ -34,12 +34,12 @@ def test_an_unknown_strategy_gives_nan():
 
 
 @few
-@given(word=st.integers(0, 2**64 - 1), population=st.integers(LARGEST_DRAW + 1, 60), data=st.data())
+@given(word=st.integers(0, 2**64 - 1), population=st.integers(MAX_DRAWN + 1, 60), data=st.data())
 def test_drawn_members_are_distinct_and_never_the_current_one(word, population, data):
     current = data.draw(st.integers(0, population - 1))
-    drawn = np.zeros(LARGEST_DRAW, dtype=np.int64)
+    drawn = np.zeros(MAX_DRAWN, dtype=np.int64)
     draw_members(make_state(word), population, current, drawn)
-    assert len(set(drawn)) == LARGEST_DRAW
+    assert len(set(drawn)) == MAX_DRAWN
     assert current not in drawn
     assert drawn.min() >= 0
     assert drawn.max() < population
@@ -47,7 +47,7 @@ def test_drawn_members_are_distinct_and_never_the_current_one(word, population, 
 
 def test_members_are_drawn_in_the_order_of_the_stream():
     state, stream = make_state(7), reference.Stream(7)
-    drawn = np.zeros(LARGEST_DRAW, dtype=np.int64)
+    drawn = np.zeros(MAX_DRAWN, dtype=np.int64)
     for current in range(8):
         draw_members(state, 8, current, drawn)
         assert drawn.tolist() == reference.draw_members(stream, 8, current)
@@ -55,7 +55,7 @@ def test_members_are_drawn_in_the_order_of_the_stream():
 
 
 def test_every_other_member_is_drawn_equally_often():
-    state, drawn, counts = make_state(1), np.zeros(LARGEST_DRAW, dtype=np.int64), np.zeros(8)
+    state, drawn, counts = make_state(1), np.zeros(MAX_DRAWN, dtype=np.int64), np.zeros(8)
     for _ in range(2000):
         draw_members(state, 8, 3, drawn)
         counts[drawn] += 1

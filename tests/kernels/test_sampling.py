@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ikde
-from ikde.kernels.sampling import MOST_DRAWS, SAMPLING, sample_ball, sample_box, sample_poses
+from ikde.kernels.sampling import MAX_DRAWS, SAMPLING, sample_ball, sample_box, sample_poses
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests import reference
@@ -124,7 +124,7 @@ def test_a_robot_that_is_never_free_is_found_out():
     robot = random_robot(0)
     packed = pack_robot(robot), CollisionModel.of(robot).arrays
     found = sample_poses(*packed, robot.lower, robot.upper, np.uint64(0), np.int64(0), np.empty((2, 3, 4)))
-    assert (found, MOST_DRAWS) == (0, 100_000)
+    assert (found, MAX_DRAWS) == (0, 100_000)
 
 
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import MemeticArrays
+from ikde.kernels.memetic import make_memetic_workspace
 from ikde.kernels.success_history import (
     ARCHIVED,
     PLACE,
@@ -14,15 +15,19 @@ from ikde.kernels.success_history import (
     draw_crossover,
     draw_normal,
     draw_weight,
+    drop_worst,
     lehmer_mean,
     make_history,
     plan_population,
     pull_factor,
     reset_history,
     soften,
+    sort_members,
     trim_archive,
     update_memory,
 )
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
 from tests import reference, reference_memetic
 from tests.kernels.arrays import make_state
 
@@ -140,3 +145,20 @@ def test_jso_rules_by_progress():
         (0.9, 0.1),
     ]
     assert [pull_factor(progress) for progress in (0.0, 0.2, 0.39, 0.4, 1.0)] == [0.7, 0.8, 0.8, 1.2, 1.2]
+
+
+def test_members_are_sorted_and_the_worst_dropped(qiao, rng):
+    detector = CollisionModel.of(qiao).arrays
+    work = make_memetic_workspace(pack_robot(qiao), detector, 9, MemeticArrays(first_population=30))
+    members = work.members
+    members.x[:], members.score[:, 0] = rng.uniform(size=(30, 9)), rng.uniform(size=30)
+    members.score[:, 1] = np.maximum(0.0, rng.uniform(-0.5, 0.5, 30))
+    work.order[:], work.fresh[:] = rng.permutation(30), rng.integers(2, size=30)
+    everyone = sorted(zip(members.score[:, ::-1].tolist(), members.x.tolist(), work.fresh.tolist(), strict=True))
+    sort_members(members.score, work.order, 30)
+    for kept in (30, 29, 11, 4):
+        drop_worst(members, work.order, work.fresh, 30 if kept == 29 else {30: 30, 11: 29, 4: 11}[kept], kept)
+        order = work.order[:kept]
+        assert sorted(order) == list(range(kept))
+        left = [(members.score[i, ::-1].tolist(), members.x[i].tolist(), int(work.fresh[i])) for i in order]
+        assert left == everyone[:kept]

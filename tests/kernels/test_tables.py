@@ -32,9 +32,9 @@ def test_collisions_are_those_of_brute_force(case, rng):
     for safe_distance in (0.0, 0.05):
         Q = random_q(robot, rng, 8)
         gaps = find_gaps(robot, detector, Q)
-        told = packed._replace(safe_distance=safe_distance)
+        collision = packed._replace(safe_distance=safe_distance)
         for q, row, clear in zip(Q, gaps, away_from_contact(gaps, safe_distance), strict=True):
-            pair = PLAIN.find_collision(pack_robot(robot), told, q, buffers)
+            pair = PLAIN.find_collision(pack_robot(robot), collision, q, buffers)
             collides = row <= safe_distance
             assert not clear or pair == (int(collides.argmax()) if collides.any() else -1)
 

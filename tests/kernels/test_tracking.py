@@ -1,10 +1,10 @@
-"""One sample, and many: targets are met inside box and fences, or it is said how they are not."""
+"""One sample, and many: targets are met inside box and constraints, or it is said how they are not."""
 
 import numpy as np
 import pytest
 
 from ikde.kernels.arrays import CLEARANCE
-from ikde.kernels.tracking import NO_STEP, NO_WAY, REACHED, STUCK, make_sample, track_sample, track_span
+from ikde.kernels.tracking import INFEASIBLE, NO_STEP, REACHED, STUCK, make_sample, track_sample, track_span
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.target import Targets
@@ -64,7 +64,7 @@ def test_what_is_too_far_is_stuck(qiao):
 def test_pairs_that_are_kept_too_far_apart_leave_no_way(qiao):
     stand = Stand(qiao, qiao.home)
     (status, _, _), _, _ = take(stand, stand.target(), margin=0.3, reach=0.4)
-    assert status in (STUCK, NO_WAY)
+    assert status in (STUCK, INFEASIBLE)
 
 
 def test_who_cannot_brake_has_no_step(qiao):
@@ -94,8 +94,8 @@ def test_a_span_is_its_samples(qiao):
         q[0], last = stand.q, 0
         work = make_sample(stand.arrays, stand.spheres, 9, stand.size)
         for cut in cuts:
-            told = (stand.arrays, stand.spheres, stand.drive, stand.track, target, last, cut)
-            last, status = track_span(*told, weights, q, steps, work, rounds, least)
+            packed = (stand.arrays, stand.spheres, stand.drive, stand.track, target, last, cut)
+            last, status = track_span(*packed, weights, q, steps, work, rounds, least)
             if status != REACHED:
                 break
         assert (last, status) == (24, STUCK)

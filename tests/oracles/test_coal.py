@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.clearance import compute_clearance, compute_pair_clearance
+from ikde.kernels.clearance import compute_clearance, find_closest_spheres
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.model.collision_model import CollisionModel
 from tests.conftest import ROBOTS, random_q
@@ -109,7 +109,7 @@ def test_kernel_measures_every_pair_as_coal_does(case):
     robot, detector, configurations, gaps = case
     for q, expected in zip(configurations, gaps, strict=True):
         packed, _, centres = kernel_spheres(robot, detector, q)
-        measured = [compute_pair_clearance(packed, centres, a, b) for a, b in packed.pairs]
+        measured = [find_closest_spheres(packed, centres, a, b)[0] for a, b in packed.pairs]
         np.testing.assert_allclose(measured, expected, rtol=0, atol=EXACT)
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
-from ikde.kernels.evolution import FEASIBILITY, IGNORE, REJECT
+from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.problem import pack_search
 from tests.problems import problem_of

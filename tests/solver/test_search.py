@@ -9,7 +9,7 @@ import pytest
 
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
-from ikde.kernels.lanes import solve_lanes
+from ikde.kernels.evolution import solve_lanes
 from ikde.model.reach import reach_excess_m
 from ikde.solver import search as module
 from ikde.solver.engines import de

@@ -63,7 +63,7 @@ def test_what_is_packed(qiao):
     assert drive.others.tolist() == [3, 4, 5, 6, 7, 8]
     np.testing.assert_allclose(drive.largest, [0.01] + 6 * [0.01 * np.pi] + [0.0])
     np.testing.assert_allclose(drive.change, [0.4] + 6 * [0.004 / (0.01 * np.pi)] + [np.inf])
-    assert (drive.wheel_travel, drive.farthest, drive.centre_body) == (4.0 * 0.1 * 0.02, 1.2, 3)
+    assert (drive.wheel_travel, drive.max_distance, drive.centre_body) == (4.0 * 0.1 * 0.02, 1.2, 3)
     assert drive.half_track == 0.259
     np.testing.assert_allclose(drive.p_body_centre, [0.34, 0.0, 0.119])
 

@@ -17,7 +17,7 @@ from ikde.model.pack import pack_robot
 SWAPPED = re.compile(r"^from ikde\.kernels\.tables import .*\n", re.MULTILINE)
 OWN_IMPORTS = ("from ikde.kernels.jit import leaf_kernel", "from ikde.kernels.trig import sin_cos")
 NO_BUFFERS = '''@leaf_kernel
-def make_buffers(robot, detector, joints):
+def make_buffers(robot, collision, joints):
     """Straight-line code needs no buffers."""
     return 0
 '''

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import FIRST, LAST, PARENT, DetectorArrays, Floats, RobotArrays
+from ikde.kernels.arrays import FIRST, LAST, PARENT, CollisionArrays, Floats, RobotArrays
 from ikde.model.generate.kinematics import ORIGIN, Pose, Vector, snap, write_point
 from ikde.model.generate.lattice import Lattice, component_lattices
 from ikde.model.generate.writer import Value, Writer, text
@@ -31,11 +31,11 @@ class Test:
         return self.lattice.radius + self.sphere.radius
 
 
-def list_tests(detector: DetectorArrays) -> list[Test]:
+def list_tests(collision: CollisionArrays) -> list[Test]:
     """What has to be tested, pair by pair; of two components the one with the better lattices is the lattice."""
-    lattices = [component_lattices(detector, c) for c in range(len(detector.components))]
+    lattices = [component_lattices(collision, c) for c in range(len(collision.components))]
     tests = []
-    for pair, (a, b) in enumerate(detector.pairs):
+    for pair, (a, b) in enumerate(collision.pairs):
         sides = [(lattices[int(x)], lattices[int(y)]) for x, y in ((a, b), (b, a))]
         grids, others = min(sides, key=lambda side: len(side[0]) * _count(side[1]))
         for one in (single for other in others for single in _singles(other)):
@@ -43,10 +43,10 @@ def list_tests(detector: DetectorArrays) -> list[Test]:
     return tests
 
 
-def count_sphere_pairs(detector: DetectorArrays) -> int:
+def count_sphere_pairs(collision: CollisionArrays) -> int:
     """How many pairs of spheres the detector's pairs of components have."""
-    spheres = (detector.components[:, LAST] - detector.components[:, FIRST]).astype(int)
-    return int(sum(spheres[int(a)] * spheres[int(b)] for a, b in detector.pairs))
+    spheres = (collision.components[:, LAST] - collision.components[:, FIRST]).astype(int)
+    return int(sum(spheres[int(a)] * spheres[int(b)] for a, b in collision.pairs))
 
 
 def find_root(robot: RobotArrays, tests: list[Test]) -> int:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, SLIDES, Floats, RobotArrays
+from ikde.kernels.arrays import COORDINATE, PRISMATIC, Floats, RobotArrays
 from ikde.kernels.tables import LANES
 from ikde.model.generate.collision import Test, find_root, group_by_guard, reach_name, write_margin
 from ikde.model.generate.kinematics import write_bodies
@@ -74,7 +74,7 @@ def format_find(robot: RobotArrays, tests: list[Test], lower: Floats, upper: Flo
             body += [INDENT + line for line in inside]
     load = [f"q{k} = q[{k}]" for k in range(len(lower))]
     return _function(
-        "find_collision(robot, detector, q, buffers)",
+        "find_collision(robot, collision, q, buffers)",
         "Index of a pair within the safe distance at `q` [N], the likeliest looked at first, or -1.",
         [*_reaches(tests), *_used([*load, *_sines(robot)], body), *body, "return np.int64(-1)"],
     )
@@ -95,7 +95,7 @@ def format_judge(robot: RobotArrays, tests: list[Test]) -> str:
     body = [*lines, f"out_free[i] = {margins[0] if margins else '1.0'} > 0.0"]
     loop = [*_used([*load, *_sines(robot)], body), *body]
     return _function(
-        "judge_lanes(detector, q, out_free)",
+        "judge_lanes(collision, q, out_free)",
         "Whether each lane of `q` [N * LANES] is free of self-collision, into `out_free` [LANES].",
         [*_reaches(tests), "for i in range(LANES):", *(INDENT + line for line in loop)],
     )
@@ -132,7 +132,7 @@ def _settings(robot: RobotArrays) -> list[str]:
 
 
 def _sines(robot: RobotArrays) -> list[str]:
-    turning = robot.bodies[1:][robot.bodies[1:, SLIDES] == 0]
+    turning = robot.bodies[1:][robot.bodies[1:, PRISMATIC] == 0]
     return [f"s{k}, c{k} = sin_cos(q{k})" for k in sorted(set(turning[:, COORDINATE].tolist()))]
 
 
@@ -146,7 +146,7 @@ def _errors(step: Step) -> list[str]:
 
 
 def _reaches(tests: list[Test]) -> list[str]:
-    lines = ["safe_distance = detector"]
+    lines = ["safe_distance = collision.safe_distance"]
     for reach in sorted({test.reach for test in tests}):
         lines.append(f"{reach_name(reach)} = ({reach!r} + safe_distance) * ({reach!r} + safe_distance)")
     return lines

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PARENT, SLIDES, Floats, RobotArrays
+from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PARENT, PRISMATIC, Floats, RobotArrays
 from ikde.model.generate.writer import Value, Writer
 
 Vector = tuple[Value, Value, Value]
@@ -61,7 +61,7 @@ def write_jacobian(writer: Writer, robot: RobotArrays, poses: dict[int, Pose], t
         if body == 0 or not robot.bodies[body, MOVES_TOOL]:
             continue
         k, axis = int(robot.bodies[body, COORDINATE]), pose.column(2)
-        if robot.bodies[body, SLIDES]:
+        if robot.bodies[body, PRISMATIC]:
             columns[k] = [*axis, 0.0, 0.0, 0.0]
         else:
             arm = [writer.sum(f"a{k}_{'xyz'[i]}", (tool[i],), (-1.0, pose.p[i])) for i in range(3)]
@@ -85,7 +85,7 @@ def snap(values: Floats) -> Floats:
 def _move(writer: Writer, body: int, fixed: Pose, row: np.ndarray) -> Pose:
     """A frame moved by its joint about or along its own z axis."""
     k = int(row[COORDINATE])
-    if row[SLIDES]:
+    if row[PRISMATIC]:
         axis = fixed.column(2)
         x, y, z = (writer.sum(f"p{body}_{'xyz'[i]}", (axis[i], f"q{k}"), (fixed.p[i],)) for i in range(3))
         return Pose(R=fixed.R, p=(x, y, z))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import BODY, FIRST, LAST, DetectorArrays, Floats
+from ikde.kernels.arrays import BODY, FIRST, LAST, CollisionArrays, Floats
 
 SAME = 1e-12  # m
 
@@ -35,17 +35,19 @@ class Lattice:
         return float(np.linalg.norm(self.centres - self.middle, axis=1).max())
 
 
-def component_lattices(detector: DetectorArrays, component: int) -> list[Lattice]:
+def component_lattices(collision: CollisionArrays, component: int) -> list[Lattice]:
     """The spheres of one component as lattices; a sphere inside another of them is left out."""
-    body, first, last = (int(x) for x in detector.components[component, [BODY, FIRST, LAST]])
-    rows = [row for row in detector.rows if first <= row[2] < last]
-    found = [_as_row(body, detector, _outside(detector, first, last, range(int(row[2]), int(row[3])))) for row in rows]
+    body, first, last = (int(x) for x in collision.components[component, [BODY, FIRST, LAST]])
+    rows = [row for row in collision.rows if first <= row[2] < last]
+    found = [
+        _as_row(body, collision, _outside(collision, first, last, range(int(row[2]), int(row[3])))) for row in rows
+    ]
     return _pair_up([lattice for group in found for lattice in group])
 
 
-def _outside(detector: DetectorArrays, first: int, last: int, spheres: range) -> list[int]:
+def _outside(collision: CollisionArrays, first: int, last: int, spheres: range) -> list[int]:
     """Those that are not inside another sphere of their component."""
-    centres, radii = detector.p_body_sphere.T, detector.radius
+    centres, radii = collision.p_body_sphere.T, collision.radius
     kept = []
     for i in spheres:
         gaps = radii[first:last] - radii[i] - np.linalg.norm(centres[first:last] - centres[i], axis=1)
@@ -57,11 +59,11 @@ def _outside(detector: DetectorArrays, first: int, last: int, spheres: range) ->
     return kept
 
 
-def _as_row(body: int, detector: DetectorArrays, spheres: list[int]) -> list[Lattice]:
+def _as_row(body: int, collision: CollisionArrays, spheres: list[int]) -> list[Lattice]:
     """One row, or single spheres where a row has lost one from its middle."""
     if not spheres:
         return []
-    centres, radius = detector.p_body_sphere.T[spheres], float(detector.radius[spheres[0]])
+    centres, radius = collision.p_body_sphere.T[spheres], float(collision.radius[spheres[0]])
     if len(spheres) == 1:
         return [Lattice(body=body, middle=centres[0], radius=radius, axes=())]
     step = (centres[-1] - centres[0]) / (len(spheres) - 1)

@@ -7,7 +7,7 @@ half-widths can move the spheres is free of contact; other boxes are halved. Wha
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, PARENT, SLIDES, Floats, RobotArrays
+from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Floats, RobotArrays
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import Test
 from ikde.model.generate.lattice import Lattice
@@ -114,7 +114,7 @@ def _distances(robot: RobotArrays, bodies: list[int], near: Lattice, far: Lattic
         T = robot.T_parent_body[body]
         p = p + R @ T[:, 3]
         R = R @ T[:, :3]
-        if robot.bodies[body, SLIDES]:
+        if robot.bodies[body, PRISMATIC]:
             p = p + q[:, number, None] * R[:, :, 2]
         else:
             R = R @ _turns(q[:, number])
@@ -130,7 +130,7 @@ def _travel(robot: RobotArrays, bodies: list[int], far: Lattice, farthest: Float
     length = float(np.linalg.norm(far.centres, axis=1).max())
     travel = []
     for body, size in zip(reversed(bodies), reversed(farthest.tolist()), strict=True):
-        slides = bool(robot.bodies[body, SLIDES])
+        slides = bool(robot.bodies[body, PRISMATIC])
         travel.append(1.0 if slides else length)
         length += float(np.linalg.norm(robot.T_parent_body[body][:, 3])) + (size if slides else 0.0)
     return np.array(travel[::-1])

@@ -7,7 +7,7 @@ numbers of `DescentArrays` by their names.
 from dataclasses import dataclass
 
 from ikde.kernels.arrays import RobotArrays
-from ikde.kernels.damped import AT_BOUND, OPPOSITE, SMALLEST_SQUARE
+from ikde.kernels.damped import AT_BOUND, MIN_SQUARE, OPPOSITE
 from ikde.model.generate.kinematics import Pose, write_bodies, write_cross, write_fixed, write_jacobian
 from ikde.model.generate.writer import Value, Writer, text
 
@@ -48,7 +48,7 @@ def _write_turn(writer: Writer, tool: Pose) -> tuple[Value, list[Value]]:
     columns = [(tool.column(j), (f"m0{j}", f"m1{j}", f"m2{j}")) for j in range(3)]
     products = [product for a, b in columns for product in zip((0.25,) * 3, a, b, strict=True)]
     quarter = text(writer.sum("quarter", *products, (0.25,)))
-    half = writer.let("half", f"0.5 / math.sqrt(max({quarter}, {SMALLEST_SQUARE!r}))")
+    half = writer.let("half", f"0.5 / math.sqrt(max({quarter}, {MIN_SQUARE!r}))")
     turns = ((1, 2), (2, 0), (0, 1))
     twice = [
         writer.sum(f"twice_{'xyz'[i]}", *(p for a, b in columns for p in ((a[j], b[k]), (-1.0, a[k], b[j]))))
@@ -56,7 +56,7 @@ def _write_turn(writer: Writer, tool: Pose) -> tuple[Value, list[Value]]:
     ]
     turn = [writer.sum(f"u_{'xyz'[i]}", (twice[i], half)) for i in range(3)]
     size = text(writer.sum("turn", *((u, u) for u in turn)))
-    orientation = writer.let("orientation", f"{OPPOSITE!r} if {quarter} < {SMALLEST_SQUARE!r} else math.sqrt({size})")
+    orientation = writer.let("orientation", f"{OPPOSITE!r} if {quarter} < {MIN_SQUARE!r} else math.sqrt({size})")
     return orientation, turn
 
 

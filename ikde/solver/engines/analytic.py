@@ -3,13 +3,12 @@
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Ints
-from ikde.kernels.pose_error import POSE
+from ikde.kernels.arrays import POSE, Ints
 from ikde.model.closed_form import find_ur_arm, pack_ur_arm
-from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
 from ikde.solver.engines.engine import Question, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
+from ikde.solver.problem import pack_searched
 
 
 class Analytic:
@@ -25,7 +24,7 @@ class Analytic:
         if (question.targets.kind != POSE).any():
             raise InputError("the closed form needs a whole pose: a position and an orientation", ("method",))
         self._arm = find_ur_arm(problem.robot)
-        self._kernels = load_kernels(problem.collision, "pose")
+        self._kernels, self._models = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
         self._seeds = make_seeds(problem, "pose")
 
     def prepare(self) -> None:
@@ -37,12 +36,11 @@ class Analytic:
         asked, arm = self._question, self._arm
         if arm is None:
             return
-        module, robot, detector = self._kernels
         attempts = asked.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))
         where = (asked.targets, np.array([rows.start, rows.stop]), make_ranges(asked.problem), self._seeds)
         with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-            module.solve_branches(
-                *(pack_robot(asked.problem.robot), robot, detector, pack_ur_arm(arm), arm.carrier, *where),
+            self._kernels.solve_branches(
+                *(*self._models, pack_ur_arm(arm), arm.carrier, *where),
                 *(asked.seed, asked.streams, attempts, *asked.outputs),
             )
 

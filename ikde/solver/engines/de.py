@@ -3,10 +3,9 @@
 import numpy as np
 
 from ikde.kernels.arrays import Ints
-from ikde.kernels.lanes import solve_lanes
-from ikde.model.pack import pack_robot
+from ikde.kernels.evolution import solve_lanes
 from ikde.solver.engines.engine import Question
-from ikde.solver.problem import ROUNDING, Problem, pack_search
+from ikde.solver.problem import Problem, pack_search, pack_searched
 
 EVALUATIONS_PER_CALL = 20_000  # some 20 ms: searches that are shorter share a call, up to
 LANES_PER_CALL = 64
@@ -20,9 +19,7 @@ class DifferentialEvolution:
 
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
-        detector = problem.collision.arrays
-        self._detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)
-        self._robot, self._search = pack_robot(problem.robot), pack_search(problem)
+        self._models, self._search = pack_searched(problem.collision), pack_search(problem)
         self.rows_per_call = _lanes_per_call(problem)
 
     def prepare(self) -> None:
@@ -33,7 +30,7 @@ class DifferentialEvolution:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._question
         where, block = np.array([rows.start, rows.stop]), np.array([first, first + self.attempts_per_call])
-        arrays = (self._robot, self._detector, asked.targets, where, self._search)
+        arrays = (*self._models, asked.targets, where, self._search)
         with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
             solve_lanes(*arrays, asked.seed, asked.streams, block, last, *asked.outputs)
 

@@ -3,10 +3,11 @@
 import numpy as np
 
 from ikde.kernels.arrays import Ints
-from ikde.kernels.blocks import flatten_question
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engines.engine import Question, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
+from ikde.solver.problem import pack_searched
 
 FEW = 4  # targets: so few are solved one after the other, more side by side
 
@@ -22,6 +23,7 @@ class DampedLeastSquares:
         self._question, problem = question, question.problem
         names = {kind: KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
         self._kernels = {kind: load_kernels(problem.collision, name) for kind, name in names.items()}
+        self._models = pack_searched(problem.collision)
         self._settings = {
             kind: (make_ranges(problem), make_descent(problem, name), make_seeds(problem, name))
             for kind, name in names.items()
@@ -36,16 +38,16 @@ class DampedLeastSquares:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._question
         stop = np.minimum(last, first + self.attempts_per_call)
-        for kind, (module, robot, detector) in self._kernels.items():
+        for kind, module in self._kernels.items():
             attempts = asked.attempts(rows, first, stop, kind)
             settings = self._settings[kind]
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
                 if len(asked.streams) > FEW:
                     where = (asked.targets, np.array([rows.start, rows.stop]))
                     which = (asked.seed, asked.streams, attempts)
-                    module.solve_targets(robot, detector, *where, *settings, *which, *asked.outputs)
+                    module.solve_targets(*self._models, *where, *settings, *which, *asked.outputs)
                     continue
-                block = flatten_question(*settings)
+                block = flatten_search(*self._models, *settings)
                 for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
                     lane = (asked.seed, int(asked.streams[row]), begin, end, *(array[row] for array in asked.outputs))
-                    module.solve_target(robot, detector, *asked.targets, row, *block, *lane)
+                    module.solve_target(*asked.targets, row, *block, *lane)

@@ -4,9 +4,8 @@ import numpy as np
 
 from ikde.kernels.arrays import Ints, MemeticArrays
 from ikde.kernels.memetic import solve_memetic_lane
-from ikde.model.pack import pack_robot
 from ikde.solver.engines.engine import Question, make_descent
-from ikde.solver.problem import ROUNDING, pack_search
+from ikde.solver.problem import pack_search, pack_searched
 
 
 class Memetic:
@@ -18,11 +17,7 @@ class Memetic:
 
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
-        detector = problem.collision.arrays
-        self._arrays = (
-            pack_robot(problem.robot),
-            detector._replace(safe_distance=detector.safe_distance + ROUNDING),
-        )
+        self._models = pack_searched(problem.collision)
         search = pack_search(problem)
         self._settings = (search, MemeticArrays(), make_descent(problem, "pose"))  # no step of it looks at a tolerance
 
@@ -37,4 +32,4 @@ class Memetic:
         with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
             for row, block in zip(rows, attempts, strict=True):
                 lane = (asked.seed, asked.streams[row], block, *(array[row] for array in asked.outputs))
-                solve_memetic_lane(*self._arrays, asked.targets, row, *self._settings, *lane)
+                solve_memetic_lane(*self._models, asked.targets, row, *self._settings, *lane)

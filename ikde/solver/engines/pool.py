@@ -18,7 +18,7 @@ from ikde.model.planar_base import NO_BASE, find_planar_base
 from ikde.model.reach import arm_length_m
 from ikde.model.robot import Robot
 from ikde.solver.engines import pool_file
-from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem
+from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem, pack_searched
 
 DRAWN, DRAWN_NARROW = 2**16, 2**13  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
@@ -39,19 +39,9 @@ FULL_TURN_RAD = 2.0 * np.pi - 0.01
 SHORTEST_M = 1e-3
 
 
-Kernels = tuple[Any, Any, Any]
-
-
-def load_kernels(collision: CollisionModel, kind: str) -> Kernels:
-    """The module written for a robot, and what it takes in place of tables: nothing, and the safe distance in m.
-
-    With `$IKDE_KERNELS` set to `tables`, the data-driven kernels and the tables.
-    """
-    packed = collision.arrays
-    safe_distance = packed.safe_distance + ROUNDING
-    if runs_on_tables():
-        return _load_tables(), pack_robot(collision.robot), packed._replace(safe_distance=safe_distance)
-    return load_module(collision, kind), 0, safe_distance
+def load_kernels(collision: CollisionModel, kind: str) -> Any:
+    """The module of kernels written for a robot, or with `$IKDE_KERNELS` set to `tables` the data-driven ones."""
+    return _load_tables() if runs_on_tables() else load_module(collision, kind)
 
 
 def runs_on_tables() -> bool:
@@ -94,8 +84,8 @@ def _find_pool(collision: CollisionModel, kind: str, ranges: tuple[tuple[float, 
 def digest_pool(collision: CollisionModel, kind: str) -> str:
     """SHA-256, hex, of all that the pool within the joint limits depends on; no name is."""
     robot = collision.robot
-    base, (_, _, distance) = find_base(robot, robot.lower, robot.upper), load_kernels(collision, kind)
-    words = (digest_inputs(collision, kind), distance, base.tolist(), rotation_length_m(robot))
+    base, (_, searched) = find_base(robot, robot.lower, robot.upper), pack_searched(collision)
+    words = (digest_inputs(collision, kind), searched.safe_distance, base.tolist(), rotation_length_m(robot))
     return hashlib.sha256(repr(words).encode() + _own_source()).hexdigest()
 
 
@@ -112,10 +102,10 @@ def draw_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats
     if base[0] >= 0:
         lower, upper = lower.copy(), upper.copy()
         lower[base] = upper[base] = 0.0
-    module, *tables = load_kernels(collision, kind)
+    module, models = load_kernels(collision, kind), pack_searched(collision)
     q = np.empty((count, len(lower)))
     with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-        found = module.fill_pool(*tables, lower, upper, q)
+        found = module.fill_pool(*models, lower, upper, q)
     return sort_pool(robot, kind, q[: found if found >= COMPARED else 0], base, 1.0)
 
 

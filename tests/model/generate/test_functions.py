@@ -1,6 +1,7 @@
 """The functions of a module, run as plain Python: verdicts against brute force, lanes against one at a time."""
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -33,6 +34,12 @@ fewer_cases = pytest.mark.parametrize("case", FEWER, ids=name_case)
 MARGIN = 0.1  # what proofs allow for here
 
 
+class Limit(NamedTuple):
+    """All that a written check reads of a collision model."""
+
+    safe_distance: float  # m
+
+
 @cache
 def make_checks(robot, detector, margin=MARGIN):
     """`find_collision` and `judge_lanes`, with the tests that a module has."""
@@ -46,8 +53,8 @@ def make_checks(robot, detector, margin=MARGIN):
 
 def find_pairs(robot, detector, Q, safe_distance, margin=MARGIN):
     """The generated answer for each row of `Q`."""
-    find, told = make_checks(robot, detector, margin).find_collision, safe_distance
-    return np.array([find(0, told, q, 0) for q in Q.tolist()])
+    find, collision = make_checks(robot, detector, margin).find_collision, Limit(safe_distance)
+    return np.array([find(None, collision, q, None) for q in Q.tolist()])
 
 
 def assert_verdicts(robot, detector, Q, safe_distance, margin=MARGIN):
@@ -87,7 +94,7 @@ def test_lanes_judge_as_one_at_a_time(case, rng):
     robot, detector = case
     Q, free = random_q(robot, rng, LANES), np.zeros(LANES, dtype=bool)
     for safe_distance in (0.0, 0.02):
-        make_checks(robot, detector).judge_lanes(safe_distance, Q.T.ravel().tolist(), free)
+        make_checks(robot, detector).judge_lanes(Limit(safe_distance), Q.T.ravel().tolist(), free)
         clear = away_from_contact(find_gaps(robot, detector, Q), safe_distance)
         found = find_pairs(robot, detector, Q, safe_distance)
         np.testing.assert_array_equal(free[clear], found[clear] < 0)
@@ -146,9 +153,9 @@ def test_reaches_that_almost_agree_are_kept_apart():
 def test_without_tests_nothing_collides(qiao):
     arrays = pack_robot(qiao)
     checks = run_text(format_find(arrays, [], qiao.lower, qiao.upper) + format_judge(arrays, []))
-    assert checks.find_collision(0, 0.1, qiao.home, 0) == -1
+    assert checks.find_collision(None, Limit(0.1), qiao.home, None) == -1
     free = np.zeros(LANES, dtype=bool)
-    checks.judge_lanes(0.1, np.zeros(9 * LANES), free)
+    checks.judge_lanes(Limit(0.1), np.zeros(9 * LANES), free)
     assert free.all()
 
 

@@ -34,7 +34,7 @@ def empty_cache(tmp_path, monkeypatch):
     """Modules and their machine code go into a folder of the test's own."""
     monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path)
     monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", True)
-    monkeypatch.setattr(cache_files, "TOLD", set())
+    monkeypatch.setattr(cache_files, "WARNED", set())
     forget()
     yield tmp_path
     forget()
@@ -265,7 +265,7 @@ import json, pathlib, sys, time
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
-from ikde.model.collision_model import CollisionModel
+from ikde.solver.problem import pack_searched
 from tests.tiny_robot import tiny_robot
 import numpy as np
 robot = tiny_robot()
@@ -274,7 +274,8 @@ while not pathlib.Path(sys.argv[1]).exists():
 with compile_clock() as clock:
     module = load_module(CollisionModel.of(robot), "position")
     q = np.linspace(-2.0, 2.0, 9)
-    found = [int(module.find_collision(0, 0.0, q[k : k + 1], 0)) for k in range(9)]
+    models = pack_searched(CollisionModel.of(robot))
+    found = [int(module.find_collision(*models, q[k : k + 1], 0)) for k in range(9)]
 print(json.dumps({"found": found, "seconds": clock.seconds, "file": module.__file__}))
 """
 

@@ -36,7 +36,7 @@ def test_what_was_saved_comes_back(qiao, tmp_path):
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.999])
 def test_a_file_that_was_cut_is_none(qiao, tmp_path, share, monkeypatch):
-    monkeypatch.setattr(cache_files, "TOLD", set())
+    monkeypatch.setattr(cache_files, "WARNED", set())
     path = tmp_path / "pool.npz"
     save_pool(path, make_pool(qiao))
     content = path.read_bytes()
@@ -49,7 +49,7 @@ def test_a_full_disk_is_no_error(qiao, tmp_path, monkeypatch):
     def fail(handle):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cache_files, "TOLD", set())
+    monkeypatch.setattr(cache_files, "WARNED", set())
     monkeypatch.setattr(os, "fsync", fail)
     with pytest.warns(CacheWarning, match="No space left on device"):
         save_pool(tmp_path / "pool.npz", make_pool(qiao))

@@ -1,4 +1,4 @@
-"""Steps that mind collisions: contacts and their gradients against naive twins, and the laws of the step."""
+"""Contacts and their gradients against naive twins, and the laws of a damped step with them."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import DescentArrays
-from ikde.kernels.clearing import MOST_CONTACTS, add_contacts, clear_step, find_contact
+from ikde.kernels.contacts import MAX_CONTACTS, add_contacts, find_contacts, make_contacts, take_clear_step
 from ikde.kernels.damped import compute_error, make_descent_workspace, take_step
 from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.spheres import compute_bounds, compute_centres
@@ -23,31 +23,31 @@ FAR = 10.0  # m: every pair is nearer
 class Placed:
     """A robot at `q`: packed, with all buffers filled."""
 
-    def __init__(self, robot, q, target=None, rows=6 + MOST_CONTACTS):
+    def __init__(self, robot, q, target=None, rows=6 + MAX_CONTACTS):
         self.robot, self.q = robot, np.array(q)
         self.detector = CollisionModel.of(robot).detector
         self.arrays, self.spheres = pack_robot(robot), CollisionModel(robot=robot, detector=self.detector).arrays
         self.work = make_descent_workspace(self.arrays, len(q), rows)
-        self.bounds = np.empty((self.spheres.components.shape[0], 3))
-        self.centres = np.empty((3, self.spheres.radius.size))
+        bounds = np.empty((self.spheres.components.shape[0], 3))
+        self.contacts = make_contacts(bounds, np.empty((3, self.spheres.radius.size)), rows)
         self.target = pack_targets([target or Target((0.0, 0.0, 0.0))])
         self.place()
 
     def place(self):
         compute_bodies(self.arrays, self.q, self.work.T_world_body)
         compute_tool(self.arrays, self.work.T_world_body, self.work.T_world_tool)
-        compute_bounds(self.spheres, self.work.T_world_body, self.bounds)
-        compute_centres(self.spheres, self.work.T_world_body, self.centres)
+        compute_bounds(self.spheres, self.work.T_world_body, self.contacts.bounds)
+        compute_centres(self.spheres, self.work.T_world_body, self.contacts.centres)
         return compute_error(self.target, 0, 0.5, self.work.T_world_tool, self.work.error)
 
     def add_contacts(self, reach):
-        rows = add_contacts(self.arrays, self.spheres, reach, 3, self.bounds, self.centres, self.work)
+        rows = add_contacts(self.arrays, self.spheres, reach, 3, self.contacts, self.work)
         return self.work.error[3:rows], self.work.jacobian[3:rows]
 
     def step(self, reach):
         ranges = np.array([self.robot.lower, self.robot.upper])
         arguments = (self.arrays, self.spheres, self.target, 0, ranges, DescentArrays(), reach)
-        square = clear_step(*arguments, self.bounds, self.centres, self.q, self.work)
+        square = take_clear_step(*arguments, self.contacts, self.q, self.work)
         return square, self.place()
 
 
@@ -65,12 +65,20 @@ def differentiate(robot, q, pair, step=1e-6):
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_contacts_are_the_clearances_of_the_pairs(seed, rng):
+@pytest.mark.parametrize("room", [1, 3, 60])
+def test_contacts_are_the_nearest_pairs_with_their_spheres(seed, room, rng):
     robot = random_robot(seed)
-    q = random_q(robot, rng)
-    placed = Placed(robot, q)
-    found = [find_contact(placed.spheres, placed.centres, a, b)[0] for a, b in placed.spheres.pairs]
-    np.testing.assert_allclose(found, clearances(robot, q), rtol=0, atol=1e-13)
+    placed = Placed(robot, random_q(robot, rng), rows=60)
+    gaps = clearances(robot, placed.q)
+    for reach in (gaps.mean(), FAR):
+        count = find_contacts(placed.spheres, reach, room, placed.contacts)
+        found, (pairs, i, j) = placed.contacts.gap[:count], placed.contacts.spheres[:count].T
+        near = np.argsort(gaps)[: min(room, (gaps < reach).sum())]
+        assert sorted(pairs.tolist()) == sorted(near.tolist())
+        np.testing.assert_allclose(found, gaps[pairs], rtol=0, atol=1e-13)
+        centres, radius = placed.contacts.centres, placed.spheres.radius
+        apart = np.linalg.norm(centres[:, i] - centres[:, j], axis=0)
+        np.testing.assert_allclose(found, apart - radius[i] - radius[j], rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -90,7 +98,7 @@ def test_only_pairs_within_reach_and_the_deepest_of_many_are_kept(qiao, rng):
         gaps = clearances(qiao, q)
         for reach in (0.0, 0.05, FAR):
             errors, _ = Placed(qiao, q).add_contacts(reach)
-            room = 3 + MOST_CONTACTS  # rows that a position target leaves to contacts
+            room = 3 + MAX_CONTACTS  # rows that a position target leaves to contacts
             deepest = np.sort(reach - gaps[gaps < reach])[::-1][:room]
             np.testing.assert_allclose(np.sort(errors)[::-1], deepest, rtol=0, atol=1e-12)
 
@@ -130,5 +138,5 @@ def test_it_returns_the_squared_error_before_the_step(qiao, rng):
     gaps = clearances(qiao, q)
     away = reference.compute_frames(qiao, q)[qiao.tool][:3, 3] - 0.5
     expected = away @ away + np.sum(np.maximum(0.0, 0.05 - gaps) ** 2)
-    assert np.sum(gaps < 0.05) <= MOST_CONTACTS + 3
+    assert np.sum(gaps < 0.05) <= MAX_CONTACTS + 3
     assert placed.step(0.05)[0] == pytest.approx(expected, rel=1e-12)

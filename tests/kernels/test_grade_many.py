@@ -6,10 +6,10 @@ import numba
 import numpy as np
 import pytest
 
-from ikde.kernels import figures as module
-from ikde.kernels.blocks import flatten_grader
+from ikde.kernels import grade_many as module
 from ikde.kernels.clearance import compute_clearance
-from ikde.kernels.figures import LANES, compute_figures
+from ikde.kernels.flat_arguments import flatten_grader
+from ikde.kernels.grade_many import LANES, grade_many
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
 from ikde.model.collision_model import CollisionModel
@@ -88,7 +88,7 @@ def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
         block = flatten_grader(pack_robot(qiao), nearest, terms_of(qiao, float(tolerance)))
         accepted = np.zeros(1, dtype=np.bool_)
         out = (np.empty((1, 3)), np.empty(1, dtype=np.int64), accepted)
-        compute_figures(*block, *pack_targets(targets), q, *out)
+        grade_many(*block, *pack_targets(targets), q, *out)
         assert accepted[0] == expected
         assert grade_one(*block, *pack_targets(targets), q[0])[4] == expected
 
@@ -96,14 +96,14 @@ def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
 def test_it_shares_no_code_with_the_search():
     names = {getattr(value, "__module__", "") for value in vars(module).values()}
     assert {name for name in names if name.startswith("ikde.")} <= {
-        *(f"ikde.kernels.{own}" for own in ("figures", "jit", "trig", "arrays", "blocks")),
+        *(f"ikde.kernels.{own}" for own in ("grade_many", "jit", "trig", "arrays", "flat_arguments")),
     }
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 def test_it_is_vectorised(qiao):
-    fresh = numba.njit(error_model="numpy", nogil=True)(compute_figures.py_func)  # of cached code there is no text
+    fresh = numba.njit(error_model="numpy", nogil=True)(grade_many.py_func)  # of cached code there is no text
     grade(qiao, CollisionModel.of(qiao).detector, Targets(np.zeros((1, 3))), qiao.home[None], grader=fresh)
     text = next(iter(fresh.inspect_asm().values()))
     if "vsubpd" not in text:

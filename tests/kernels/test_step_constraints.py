@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from ikde.kernels import fences as kernels
+from ikde.kernels import step_constraints as kernels
 from ikde.kernels.drive import take_drive_step
-from ikde.kernels.fences import MOST_PAIRS, make_fences
-from ikde.kernels.tracking import pose
+from ikde.kernels.step_constraints import MAX_PAIRS, make_step_constraints
+from ikde.kernels.tracking import compute_poses
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.track.drive import step_base
@@ -14,7 +14,7 @@ from tests.conftest import random_q
 from tests.kernels.driving import Stand
 from tests.uncompiled import plain
 
-fence, fence_pairs = plain(kernels.fence), plain(kernels.fence_pairs)
+constrain_step = plain(kernels.constrain_step)
 DIFFERENCE = 1e-6
 
 
@@ -27,11 +27,12 @@ def end_of(stand, step):
 def rows_at(stand, step):
     """All rows at a step: slack, slope and pair, and where it ends."""
     q_end = end_of(stand, step)
-    plain(pose)(stand.arrays, q_end, stand.work)
-    fences = make_fences(stand.spheres, len(q_end), stand.size)
+    found = make_step_constraints(stand.spheres, len(q_end), stand.size)
     T_body, T_tool = stand.work.T_world_body, stand.work.T_world_tool
-    count = fence(stand.arrays, stand.spheres, stand.drive, stand.track, T_body, T_tool, stand.q, q_end, step, fences)
-    return fences.slack[:count].copy(), fences.slope[:count].copy(), fences.pair[:count].copy()
+    plain(compute_poses)(stand.arrays, q_end, T_body, T_tool)
+    packed = (stand.arrays, stand.spheres, stand.drive, stand.track)
+    count = constrain_step(*packed, T_body, T_tool, stand.q, q_end, step, found)
+    return found.slack[:count].copy(), found.slope[:count].copy(), found.pair[:count].copy()
 
 
 @pytest.mark.parametrize("name", ["differential", "omnidirectional"])
@@ -44,7 +45,7 @@ def test_pairs_are_the_nearest_with_their_gaps_and_slopes(qiao, rng, name):
         step = rng.uniform(-1, 1, stand.size)
         slack, slope, pair = rows_at(stand, step)
         gaps = compute_gaps(CollisionModel(robot=qiao, detector=detector), end_of(stand, step))
-        near = np.sort(gaps[gaps < 0.3])[:MOST_PAIRS]
+        near = np.sort(gaps[gaps < 0.3])[:MAX_PAIRS]
         np.testing.assert_allclose(np.sort(slack), near - stand.track.margin, atol=1e-12)
         for k in range(stand.size):
             move = DIFFERENCE * np.eye(stand.size)[k]
@@ -55,7 +56,7 @@ def test_pairs_are_the_nearest_with_their_gaps_and_slopes(qiao, rng, name):
             np.testing.assert_allclose(slope[:, k], (ends[0] - ends[1]) / (2 * DIFFERENCE), atol=1e-6)
 
 
-def test_nobody_is_looked_at_without_reach(qiao):
+def test_no_pair_is_constrained_without_reach(qiao):
     stand = Stand(qiao, qiao.home)
     stand.track = stand.track._replace(reach=-np.inf)
     assert len(rows_at(stand, np.zeros(8))[0]) == 0

@@ -1,8 +1,9 @@
-"""One step of Gauss and Newton behind fences: the tool's error first, the wished step second, never a bound broken.
+"""One constrained Gauss-Newton step: the tool's error first, the preferred step second, no constraint violated.
 
-It minimises |step - wish|^2 + stiffness |error - J change|^2 over the steps inside the box and behind the fences. The
-stiffness makes the tool's error a million times as dear as the wish; where the Jacobian fades, the wish is what damps.
-With H = I + stiffness J^T J = L L^T and y = L^T step this is the nearest point of a polytope (`kernels/nearest.py`).
+It minimises |step - preferred|^2 + stiffness |error - J change|^2 over the steps in the box that meet all constraints.
+The stiffness makes the tool's error a million times as dear as the preferred step, which damps where J fades.
+With H = I + stiffness J^T J = L L^T and y = L^T step this is the nearest point of a polytope
+(`kernels/dual_active_set.py`).
 """
 
 import math
@@ -11,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.kernels.fences import MOST_FENCES
+from ikde.kernels.dual_active_set import HalfSpaces, find_nearest_point, make_half_spaces
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
-from ikde.kernels.nearest import Walls, find_nearest, make_walls
+from ikde.kernels.step_constraints import MAX_CONSTRAINTS
 
-SMALLEST_SLOPE = 1e-12  # a fence that no step moves
+MIN_SLOPE = 1e-12  # below it no step changes a constraint
 
 
 class System(NamedTuple):
@@ -28,7 +29,7 @@ class System(NamedTuple):
     right: Floats  # [D]
     residual: Floats  # [6]
     y: Floats  # [D]
-    walls: Walls
+    spaces: HalfSpaces
 
 
 @kernel
@@ -42,13 +43,13 @@ def make_system(size):
         np.empty(size),
         np.empty(6),
         np.empty(size),
-        make_walls(2 * size + MOST_FENCES, size),
+        make_half_spaces(2 * size + MAX_CONSTRAINTS, size),
     )
 
 
 @inline_kernel
 def measure_travel(jacobian, rows):
-    """Mean square of how far the largest steps move the tool, m^2 (and what a turn counts); never 0."""
+    """Mean square of how far the largest steps move the tool, m^2 (and what a rotation counts); never 0."""
     square = 0.0
     for i in range(rows):
         for k in range(jacobian.shape[1]):
@@ -97,8 +98,8 @@ def weigh(jacobian, rows, inverse, out_weighted):
 
 
 @inline_kernel
-def set_free_point(jacobian, error, rows, stiffness, wish, step, system):
-    """The minimum without box and fences, as y = L^-1 (wish + stiffness J^T (error + J step))."""
+def set_free_point(jacobian, error, rows, stiffness, preferred, step, system):
+    """The minimum without box and constraints, as y = L^-1 (preferred + stiffness J^T (error + J step))."""
     size = step.size
     for i in range(rows):
         system.residual[i] = error[i]
@@ -108,7 +109,7 @@ def set_free_point(jacobian, error, rows, stiffness, wish, step, system):
         total = 0.0
         for i in range(rows):
             total += jacobian[i, k] * system.residual[i]
-        system.right[k] = wish[k] + stiffness * total
+        system.right[k] = preferred[k] + stiffness * total
     for a in range(size):
         system.y[a] = 0.0
         for k in range(a + 1):
@@ -118,53 +119,54 @@ def set_free_point(jacobian, error, rows, stiffness, wish, step, system):
 @inline_kernel
 def add_normal(system, slope, offset, at):
     """Write the half space slope . step >= offset as number `at`; returns how many there are then."""
-    walls, size, square = system.walls, slope.size, 0.0
+    spaces, size, square = system.spaces, slope.size, 0.0
     for a in range(size):
         total = 0.0
         for k in range(a + 1):
             total += system.inverse[a, k] * slope[k]
-        walls.normals[at, a] = total
+        spaces.normals[at, a] = total
         square += total * total
     length = math.sqrt(square)
-    if length < SMALLEST_SLOPE:
+    if length < MIN_SLOPE:
         return at
     for a in range(size):
-        walls.normals[at, a] /= length
-    walls.offsets[at] = offset / length
+        spaces.normals[at, a] /= length
+    spaces.offsets[at] = offset / length
     return at + 1
 
 
 @inline_kernel
-def set_walls(fences, count, step, system):
-    """Box and fences as half spaces of y; returns how many."""
-    walls, at = system.walls, 0
+def set_half_spaces(slack, slope, count, step, system):
+    """Box and constraints as half spaces of y; returns how many."""
+    spaces, at = system.spaces, 0
     for k in range(step.size):
         square = 0.0
         for a in range(k, step.size):
             square += system.inverse[a, k] * system.inverse[a, k]
         scale = 1.0 / math.sqrt(square)
         for a in range(step.size):
-            walls.normals[at, a] = scale * system.inverse[a, k]
-            walls.normals[at + 1, a] = -walls.normals[at, a]
-        walls.offsets[at], walls.offsets[at + 1] = scale * system.lower[k], -scale * system.upper[k]
+            spaces.normals[at, a] = scale * system.inverse[a, k]
+            spaces.normals[at + 1, a] = -spaces.normals[at, a]
+        spaces.offsets[at], spaces.offsets[at + 1] = scale * system.lower[k], -scale * system.upper[k]
         at += 2
     for i in range(count):
-        offset = -fences.slack[i]
+        offset = -slack[i]
         for k in range(step.size):
-            offset += fences.slope[i, k] * step[k]
-        at = add_normal(system, fences.slope[i], offset, at)
+            offset += slope[i, k] * step[k]
+        at = add_normal(system, slope[i], offset, at)
     return at
 
 
 @leaf_kernel
-def solve_step(jacobian, error, rows, stiffness, wish, fences, count, system, step):
-    """Improve `step` [D] in place; False if no step is behind all fences: the step is then inside the box alone.
+def solve_step(jacobian, error, rows, stiffness, preferred, slack, slope, count, system, step):
+    """Improve `step` [D] in place; False if no step meets all constraints: the step is then inside the box alone.
 
-    `jacobian` [6, D] and `error` [6] of the tool, and the fences, are those at the step that is given.
+    `jacobian` [6, D] and `error` [6] of the tool, and `slack` and `slope` of the constraints, are those at the
+    step that is given.
     """
     factor(jacobian, rows, stiffness, system.matrix, system.inverse)
-    set_free_point(jacobian, error, rows, stiffness, wish, step, system)
-    is_possible = find_nearest(system.walls, set_walls(fences, count, step, system), system.y)
+    set_free_point(jacobian, error, rows, stiffness, preferred, step, system)
+    is_possible = find_nearest_point(system.spaces, set_half_spaces(slack, slope, count, step, system), system.y)
     for k in range(step.size):
         total = 0.0
         for a in range(k, step.size):

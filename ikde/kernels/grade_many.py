@@ -1,9 +1,9 @@
-"""The grader: figures and verdict of finished configurations, in lanes.
+"""The grader of many: metrics and verdict of finished configurations, in lanes.
 
-It shares nothing with what searches but the tables of robot, detector and targets and the functions of `trig`: it walks
-the tree itself, places every sphere and measures every pair, with no bounds and no early exit. Up to 32 configurations
-stand side by side in each row of its buffers, so that every inner loop runs over lanes and the compiler vectorises it.
-Sums stand in the order of the scalar kernels, so the bits are theirs; `tests/kernels/test_figures.py` holds it.
+It shares nothing with what searches but the tables of robot, collision model and targets, and the functions of `trig`:
+it walks the tree itself, places every sphere and measures every pair, without bounds or early exit. Up to 32
+configurations stand side by side in each row of its buffers, so that the compiler vectorises every inner loop.
+Sums stand in the order of the scalar kernels, so the bits are theirs; `tests/kernels/test_grade_many.py` holds it.
 """
 
 import math
@@ -11,21 +11,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import BODY, COORDINATE, FIRST, LAST, PARENT, SLIDES, Floats, Ints
-from ikde.kernels.blocks import unpack_grader
+from ikde.kernels.arrays import AXIS, BODY, COORDINATE, FIRST, LAST, PARENT, POSITION, PRISMATIC, Floats, Ints
+from ikde.kernels.flat_arguments import unpack_grader
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
 POSITION_ERROR, ORIENTATION_ERROR, CLEARANCE = range(3)
 LANES = 32  # shorter loops are unrolled instead, and roots are then taken one by one
-POSITION, AXIS = 0, 1  # kinds of target; the third is a pose
 
 
 class Lanes(NamedTuple):
     """Buffers, a column a lane. A transform is twelve rows: 4 i + j for entry (i, j) of its upper three rows."""
 
     q: Floats  # [N, L] m or rad
-    turn: Floats  # [3, L] sine, cosine and slide of one joint
+    turn: Floats  # [3, L] sine, cosine and travel of one joint
     product: Floats  # [4, L] one row of a transform, before the joint moves
     bodies: Floats  # [12 B, L] T_world_body
     tool: Floats  # [12, L] T_world_tool
@@ -48,7 +47,7 @@ def load(q, first, count, out_q):
 def place_body(robot, body, count, lanes):
     """T_world_body = T_world_parent @ T_parent_body @ (Rz(q) or Tz(q)) of one body, by its parent's."""
     T, product, turn, L = lanes.bodies, lanes.product, lanes.turn, robot.T_parent_body[body]
-    joint, slides = np.uint64(robot.bodies[body, COORDINATE]), robot.bodies[body, SLIDES] == 1
+    joint, slides = np.uint64(robot.bodies[body, COORDINATE]), robot.bodies[body, PRISMATIC] == 1
     for lane in range(count):
         s, c = sin_cos(lanes.q[joint, lane])
         turn[0, lane], turn[1, lane], turn[2, lane] = s, c, 0.0
@@ -92,12 +91,12 @@ def place_tool(robot, count, lanes):
 
 
 @inline_kernel
-def place_spheres(detector, count, lanes):
+def place_spheres(collision, count, lanes):
     """Centres of all spheres in the world."""
-    T, p = lanes.bodies, detector.p_body_sphere
-    for component in range(detector.components.shape[0]):
-        body = detector.components[component, BODY]
-        for sphere in range(detector.components[component, FIRST], detector.components[component, LAST]):
+    T, p = lanes.bodies, collision.p_body_sphere
+    for component in range(collision.components.shape[0]):
+        body = collision.components[component, BODY]
+        for sphere in range(collision.components[component, FIRST], collision.components[component, LAST]):
             x, y, z = p[0, sphere], p[1, sphere], p[2, sphere]
             for i in range(3):
                 row, own = np.uint64(12) * body + np.uint64(4 * i), np.uint64(3) * sphere + np.uint64(i)
@@ -140,18 +139,18 @@ def approach(first_i, last_i, first_j, last_j, count, lanes):
 
 
 @inline_kernel
-def measure_pair(detector, pair, count, lanes):
+def measure_pair(collision, pair, count, lanes):
     """Smallest distance - R_i - R_j between two components into `lanes.gap`.
 
     Between spheres of equal radii the nearest centres decide: rounding keeps order, so one root is enough.
     """
-    a, b, radius = detector.pairs[pair, 0], detector.pairs[pair, 1], detector.radius
+    a, b, radius = collision.pairs[pair, 0], collision.pairs[pair, 1], collision.radius
     for lane in range(count):
         lanes.gap[lane] = np.inf
-    i, last_i = detector.components[a, FIRST], detector.components[a, LAST]
+    i, last_i = collision.components[a, FIRST], collision.components[a, LAST]
     while i < last_i:
         end_i = end_of_run(radius, i, last_i)
-        j, last_j = detector.components[b, FIRST], detector.components[b, LAST]
+        j, last_j = collision.components[b, FIRST], collision.components[b, LAST]
         while j < last_j:
             end_j = end_of_run(radius, j, last_j)
             approach(i, end_i, j, end_j, count, lanes)
@@ -164,12 +163,12 @@ def measure_pair(detector, pair, count, lanes):
 
 
 @inline_kernel
-def measure_pairs(detector, count, lanes):
+def measure_pairs(collision, count, lanes):
     """Smallest clearance over all pairs and the first pair that has it (inf and -1 without pairs)."""
     for lane in range(count):
         lanes.clearance[lane], lanes.closest[lane] = np.inf, -1
-    for pair in range(detector.pairs.shape[0]):
-        measure_pair(detector, pair, count, lanes)
+    for pair in range(collision.pairs.shape[0]):
+        measure_pair(collision, pair, count, lanes)
         for lane in range(count):
             closer = lanes.gap[lane] < lanes.clearance[lane]
             lanes.closest[lane] = pair if closer else lanes.closest[lane]
@@ -215,22 +214,22 @@ def is_inside(limits, q):
 
 
 @kernel
-def compute_figures(numbers, whole, kinds, T_world_tool, q, out_figures, out_pairs, out_accepted):
-    """Figures of configurations `q` [T, N], a target each.
+def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, out_accepted):
+    """Metrics of configurations `q` [T, N], a target each.
 
-    numbers, whole are those of `blocks.unpack_grader`; kinds and T_world_tool those of `TargetArrays`.
-    `out_figures` [T, 3]: position error in m, orientation error in rad, clearance in m (inf without pairs);
+    numbers, whole are those of `flat_arguments.unpack_grader`; kinds and T_world_tool those of `TargetArrays`.
+    `out_metrics` [T, 3]: position error in m, orientation error in rad, clearance in m (inf without pairs);
     `out_pairs` [T]: index of the closest pair (-1 without pairs); `out_accepted` [T]: within tolerances and limits of
     `terms`, and farther apart than the safe distance.
     """
-    robot, detector, terms = unpack_grader(numbers, whole)
+    robot, collision, terms = unpack_grader(numbers, whole)
     lanes = Lanes(
         np.empty((q.shape[1], LANES)),
         np.empty((3, LANES)),
         np.empty((4, LANES)),
         np.empty((12 * robot.bodies.shape[0], LANES)),
         np.empty((12, LANES)),
-        np.empty((3 * detector.radius.size, LANES)),
+        np.empty((3 * collision.radius.size, LANES)),
         np.empty(LANES),
         np.empty(LANES),
         np.empty(LANES),
@@ -244,15 +243,15 @@ def compute_figures(numbers, whole, kinds, T_world_tool, q, out_figures, out_pai
         for body in range(1, robot.bodies.shape[0]):
             place_body(robot, body, count, lanes)
         place_tool(robot, count, lanes)
-        place_spheres(detector, count, lanes)
-        measure_pairs(detector, count, lanes)
+        place_spheres(collision, count, lanes)
+        measure_pairs(collision, count, lanes)
         for lane in range(count):
             index = first + lane
             asked = T_world_tool[index]
             position = measure_position(asked, lanes.tool, lane)
             orientation = measure_orientation(kinds[index], asked, lanes.tool, lane)
             clearance = lanes.clearance[lane]
-            out_figures[index, POSITION_ERROR], out_figures[index, ORIENTATION_ERROR] = position, orientation
-            out_figures[index, CLEARANCE], out_pairs[index] = clearance, lanes.closest[lane]
+            out_metrics[index, POSITION_ERROR], out_metrics[index, ORIENTATION_ERROR] = position, orientation
+            out_metrics[index, CLEARANCE], out_pairs[index] = clearance, lanes.closest[lane]
             meets = position <= terms.position_tolerance and orientation <= terms.orientation_tolerance
-            out_accepted[index] = meets and clearance > detector.safe_distance and is_inside(terms.limits, q[index])
+            out_accepted[index] = meets and clearance > collision.safe_distance and is_inside(terms.limits, q[index])

@@ -1,0 +1,118 @@
+"""What stays from target to target, in flat arrays: numba unpacks every array that it hands over.
+
+A named tuple is unpacked field by field, in Python, on every call: the 27 arrays and numbers of a search took 12 us,
+five times as long as the search. The two `flatten_` functions lay named tuples end to end; kernels unpack them free.
+"""
+
+from collections.abc import Iterator
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from ikde.kernels.arrays import CollisionArrays, DescentArrays, Floats, Indices, Ints, RobotArrays, SeedArrays
+from ikde.kernels.jit import kernel
+
+Value = Floats | Ints | Indices | float
+
+
+class Terms(NamedTuple):
+    """What the grader asks of every configuration beside its target."""
+
+    limits: Floats  # [2, N] lower and upper, m or rad
+    position_tolerance: float  # m
+    orientation_tolerance: float  # rad
+
+
+def flatten_search(
+    robot: RobotArrays, collision: CollisionArrays, ranges: Floats, descent: DescentArrays, seeds: SeedArrays
+) -> tuple[Floats, Ints, Floats, Floats]:
+    """What `unpack_search` takes; the pool, which is large, stays as it is."""
+    q, T_world_tool, *others = seeds
+    sizes = np.array([ranges.shape[1], len(seeds.grid)])
+    return *_flatten(*_list_models(robot, collision), sizes, ranges, *descent, *others), q, T_world_tool
+
+
+def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms) -> tuple[Floats, Ints]:
+    """What `unpack_grader` takes."""
+    return _flatten(*_list_models(robot, collision), *terms)
+
+
+def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
+    """What `unpack_models` takes: six sizes, then all values."""
+    tables = (robot.bodies, robot.frame_body, collision.components, collision.pairs, collision.rows, collision.radius)
+    return chain([np.array([len(table) for table in tables])], robot, collision)
+
+
+def _flatten(*values: Value) -> tuple[Floats, Ints]:
+    """All numbers and all whole numbers, each in the order of the values; read-only."""
+    arrays = [np.asarray(value) for value in values]
+    assert all(array.dtype.kind in "fiu" for array in arrays)
+    numbers = np.concatenate([array.ravel() for array in arrays if array.dtype.kind == "f"])
+    whole = np.concatenate([array.ravel().astype(np.int64) for array in arrays if array.dtype.kind in "iu"])
+    for block in (numbers, whole):
+        block.setflags(write=False)
+    return numbers, whole
+
+
+@kernel
+def unpack_models(numbers, whole):
+    """`RobotArrays` and `CollisionArrays` as views, and what follows them: numbers and whole numbers.
+
+    Views that are handed on are counted, so this is no `leaf_kernel`: numba would free what it never took.
+    """
+    bodies, frames, components, pairs, rows, spheres = whole[0], whole[1], whole[2], whole[3], whole[4], whole[5]
+    w, u = whole[6:], whole[6 + 4 * bodies :].view(np.uint64)
+    T_body_frame = 12 * bodies
+    safe_distance = T_body_frame + 12 * frames
+    radius = safe_distance + 1 + 3 * spheres
+    bounds = radius + spheres
+    offset = bounds + 4 * components
+    robot = RobotArrays(
+        w[: 4 * bodies].reshape((bodies, 4)),
+        numbers[:T_body_frame].reshape((bodies, 3, 4)),
+        u[:frames],
+        numbers[T_body_frame:safe_distance].reshape((frames, 3, 4)),
+    )
+    first_pair = frames + 3 * components
+    first_row = first_pair + 2 * pairs
+    end = first_row + 4 * rows
+    collision = CollisionArrays(
+        numbers[safe_distance],
+        numbers[safe_distance + 1 : radius].reshape((3, spheres)),
+        numbers[radius:bounds],
+        u[frames:first_pair].reshape((components, 3)),
+        numbers[bounds:offset].reshape((components, 4)),
+        u[first_pair:first_row].reshape((pairs, 2)),
+        u[first_row:end].reshape((rows, 4)),
+        numbers[offset : offset + spheres],
+    )
+    return robot, collision, numbers[offset + spheres :], w[4 * bodies + end :]
+
+
+@kernel
+def unpack_search(numbers, whole, q, T_world_tool):
+    """`RobotArrays`, `CollisionArrays`, ranges [3, N], `DescentArrays` and `SeedArrays`, as views."""
+    robot, collision, numbers, whole = unpack_models(numbers, whole)
+    joints, directions = whole[0], whole[1]
+    n, w, scale = numbers[3 * joints :], whole[2:], 2 * directions
+    descent = DescentArrays(n[0], n[1], n[2], n[3], n[4], n[5], w[0], w[1], n[6])
+    seeds = SeedArrays(
+        q,
+        T_world_tool,
+        w[2:5],
+        w[5 : 5 + scale].reshape((directions, 2)),
+        n[7 : 7 + scale].reshape((directions, 2)),
+        w[5 + scale :],
+        n[7 + scale],
+        n[8 + scale],
+    )
+    return robot, collision, numbers[: 3 * joints].reshape((3, joints)), descent, seeds
+
+
+@kernel
+def unpack_grader(numbers, whole):
+    """`RobotArrays`, `CollisionArrays` and `Terms`, as views."""
+    robot, collision, n, _ = unpack_models(numbers, whole)
+    limits = n[: n.size - 2].reshape((2, n.size // 2 - 1))
+    return robot, collision, Terms(limits, n[n.size - 2], n[n.size - 1])
