@@ -134,7 +134,7 @@ class Figure:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Animation:
-    """A motion that the page plays: `data` is what `plot.animation` makes, as JSON."""
+    """A motion that the page plays: `data` is what `plot.animation` makes of a drawn motion, as JSON."""
 
     data: str = field(repr=False)
     alt: str
