@@ -85,7 +85,8 @@ def test_a_pickle_is_never_loaded(tmp_path):
 
 
 def test_an_archive_inside_an_archive_is_no_array():
-    assert complaint(archive(p=archive(p=npy(np.zeros(3))))) == "a.npz: p: not an array of numpy, or its header is damaged"
+    inner = archive(p=npy(np.zeros(3)))
+    assert complaint(archive(p=inner)) == "a.npz: p: not an array of numpy, or its header is damaged"
 
 
 def test_what_unpacks_to_more_than_the_limit_is_refused_by_what_it_says(monkeypatch):
