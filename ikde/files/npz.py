@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ikde.errors import FileError, quoted
-from ikde.files.reading import errors_of, expect_at_most, most_bytes
+from ikde.files.reading import errors_of, expect_at_most, max_bytes
 
 ENDING = ".npy"
 PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
@@ -46,7 +46,7 @@ class NpzTable:
     def read(self, names: Sequence[str]) -> dict[str, np.ndarray]:
         """Arrays as they are."""
         chosen = {name: self._members[self.names.index(name)] for name in names}
-        size, most = sum(member.file_size for member in chosen.values()), most_bytes()
+        size, most = sum(member.file_size for member in chosen.values()), max_bytes()
         if size > most:
             raise FileError(self._path, f"its arrays would take up {size / 1e6:,.0f} MB; {expect_at_most(most)}")
         return {name: np.atleast_1d(self._read(name, member)) for name, member in chosen.items()}

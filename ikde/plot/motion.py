@@ -6,17 +6,16 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.plot.charts import Line
+from ikde.plot.charts import Line, Panel, plot_panels
 from ikde.plot.images import INK
-from ikde.plot.panels import Panel, plot_panels
 from ikde.plot.style import COLORS, Axis, drawing_space
 from ikde.track.summary import TrackSummary
 
 MM, DEG = 1e3, 180.0 / np.pi
-LEAST_MM, LEAST_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
-MOST_STAIRS = 200  # more cannot be seen
-LEAST_PLACE_MM, LEAST_TURN_DEG, LEAST_RATE = 1.0, 1.0, 0.1  # what an axis spans at least; rates in mm/s and deg/s
-LONGEST_NAME = 26  # letters of a joint's name for which there is room above half a figure
+MIN_MM, MIN_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
+MAX_STAIRS = 200  # more cannot be seen
+MIN_PLACE_MM, MIN_ROTATION_DEG, MIN_RATE = 1.0, 1.0, 0.1  # what an axis spans at least; rates in mm/s and deg/s
+MAX_NAME_LENGTH = 26  # letters of a joint's name for which there is room above half a figure
 ARM_IN = 1.55  # height of a joint's chart
 TIME = Axis(label="t", unit="s")
 
@@ -48,12 +47,12 @@ def plot_path(motion: TrackSummary) -> Any:
 def plot_errors(motion: TrackSummary) -> Any:
     """How far the tool is from its path: along each axis at the samples, its orientation, and half-way between them."""
     graded, times = motion.verification, motion.trajectory.times_s
-    sizes = np.maximum(MM * np.abs(graded.error_m), LEAST_MM)
+    sizes = np.maximum(MM * np.abs(graded.error_m), MIN_MM)
     lines = [Line(label=axis, x=times, y=sizes[:, k]) for k, axis in enumerate("xyz")]
     limit = MM * motion.limits.position_error_m
     panels = [Panel(y=Axis(label="error", unit="mm", log=True), lines=lines, bounds=[limit], bound="tolerance")]
     if motion.trajectory.path.orientation != "free":
-        turn = np.maximum(DEG * graded.orientation_error_rad, LEAST_DEG)
+        turn = np.maximum(DEG * graded.orientation_error_rad, MIN_DEG)
         limit = DEG * motion.limits.orientation_error_rad
         y = Axis(label="turned by", unit="deg", log=True)
         panels.append(Panel(y=y, lines=[Line(label="", x=times, y=turn)], bounds=[limit], bound="tolerance"))
@@ -65,13 +64,13 @@ def plot_errors(motion: TrackSummary) -> Any:
 def plot_joints(motion: TrackSummary) -> Any:
     """Joint values of the arm with the ends of their ranges; None without an arm."""
     values = motion.trajectory.times_s, motion.trajectory.q
-    return _plot_arm(motion, *values, _ranges(motion), ("deg", LEAST_TURN_DEG), ("mm", LEAST_PLACE_MM))
+    return _plot_arm(motion, *values, _ranges(motion), ("deg", MIN_ROTATION_DEG), ("mm", MIN_PLACE_MM))
 
 
 def plot_joint_speeds(motion: TrackSummary) -> Any:
     """Joint speeds of the arm with their limits; None without an arm."""
     values = _in_steps(motion, motion.verification.speeds)
-    return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", LEAST_RATE), ("mm/s", LEAST_RATE))
+    return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", MIN_RATE), ("mm/s", MIN_RATE))
 
 
 def plot_base(motion: TrackSummary) -> Any:
@@ -85,8 +84,8 @@ def plot_base(motion: TrackSummary) -> Any:
     turned = Line(label="", x=times, y=DEG * q[:, heading])
     ends = _scaled(DEG, _ranges(motion)[heading])
     panels = [
-        Panel(y=Axis(label="place", unit="m"), lines=place, least=LEAST_PLACE_MM / MM),
-        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, least=LEAST_TURN_DEG),
+        Panel(y=Axis(label="place", unit="m"), lines=place, min_span=MIN_PLACE_MM / MM),
+        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, min_span=MIN_ROTATION_DEG),
     ]
     return plot_panels([*panels, *_speed_panels(motion, x, heading)], x=TIME)
 
@@ -100,7 +99,9 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     turning = Line(label="", x=times, y=DEG * omega[:, 0])
     panels = [
         Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
-        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading]), least=LEAST_RATE),
+        Panel(
+            y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading]), min_span=MIN_RATE
+        ),
     ]
     if trajectory.wheel_speeds is not None:
         _, speeds = _in_steps(motion, trajectory.wheel_speeds)
@@ -128,29 +129,34 @@ def plot_clearance(motion: TrackSummary) -> Any:
 
 
 def _plot_arm(
-    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Sequence[float]], turns: Shown, slides: Shown
+    motion: TrackSummary,
+    times: Floats,
+    values: Floats,
+    bounds: Sequence[Sequence[float]],
+    revolute: Shown,
+    prismatic: Shown,
 ) -> Any:
     """One small chart a joint of the arm, two side by side if their names are short; None for a base alone."""
     panels = []
     for joint in motion.arm:
-        slide = motion.robot.joints[joint].kind == "prismatic"
-        scale, (unit, least) = (MM, slides) if slide else (DEG, turns)
+        is_prismatic = motion.robot.joints[joint].kind == "prismatic"
+        scale, (unit, span) = (MM, prismatic) if is_prismatic else (DEG, revolute)
         line = Line(label="", x=times, y=scale * values[:, joint])
         ends = _scaled(scale, bounds[joint])
         name = motion.robot.joint_names[joint]
-        panels.append(Panel(y=Axis(label=unit), lines=[line], bounds=ends, title=name, least=least))
+        panels.append(Panel(y=Axis(label=unit), lines=[line], bounds=ends, title=name, min_span=span))
     if not panels:
         return None
-    columns = 2 if len(panels) > 1 and all(len(panel.title) <= LONGEST_NAME for panel in panels) else 1
+    columns = 2 if len(panels) > 1 and all(len(panel.title) <= MAX_NAME_LENGTH for panel in panels) else 1
     return plot_panels(panels, x=TIME, columns=columns, height_in=ARM_IN)
 
 
 def _ranges(motion: TrackSummary) -> list[list[float]]:
-    """Ends of each joint's range; of a turn not those beyond a full one: its curve would be pressed flat."""
+    """Ends of each joint's range; of a rotation not those beyond a full turn: its curve would be pressed flat."""
     robot = motion.robot
     ends = np.column_stack([robot.lower, robot.upper])
-    farthest = np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)
-    return [row[np.abs(row) <= most].tolist() for row, most in zip(ends, farthest, strict=True)]
+    shown = np.abs(ends) <= np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)[:, None]
+    return [row[kept].tolist() for row, kept in zip(ends, shown, strict=True)]
 
 
 def _speed_bounds(motion: TrackSummary) -> list[list[float]]:
@@ -176,7 +182,7 @@ def _middles(motion: TrackSummary) -> Floats:
 def _in_steps(motion: TrackSummary, values: Floats) -> tuple[Floats, Floats]:
     """What holds from a sample to the next [M, n] as points of a staircase, or amid its steps if there are many."""
     times = motion.trajectory.times_s
-    if len(values) > MOST_STAIRS:
+    if len(values) > MAX_STAIRS:
         return _middles(motion), values
     return np.repeat(times, 2)[1:-1], np.repeat(values, 2, axis=0)
 

@@ -11,7 +11,7 @@ from typing import Literal
 Align = Literal["left", "right"]
 Mark = Literal["", "published", "ours", "off"]
 
-MOST_ROOMY_COLUMNS = 12
+MAX_ROOMY_COLUMNS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class Table:
     @property
     def is_dense(self) -> bool:
         """True if it is shown in small print, to fit."""
-        return len(self.columns) > MOST_ROOMY_COLUMNS
+        return len(self.columns) > MAX_ROOMY_COLUMNS
 
     def cells(self) -> list[list[Cell]]:
         """All cells, each with the mark it is shown with."""

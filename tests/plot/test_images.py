@@ -9,9 +9,8 @@ import pytest
 
 from ikde.errors import printable
 from ikde.model.collision_model import CollisionModel
-from ikde.plot.charts import Bars, Line, plot_bars, plot_lines
+from ikde.plot.charts import Bars, Line, Panel, plot_bars, plot_lines, plot_panels
 from ikde.plot.images import INK, to_png, to_svg
-from ikde.plot.panels import Panel, plot_panels
 from ikde.plot.pose import plot_pose, save_figure
 from ikde.plot.style import Axis, drawing_space
 from ikde.scene.drawn_pose import draw_pose
