@@ -17,7 +17,6 @@ MAX_NAMED = 20  # unreached targets of an arm
 MAX_TARGETS = 5  # that have rows of their own
 MAX_ARMS = 10  # that are named in a line
 TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
-BYTES = ("B", "kB", "MB", "GB", "TB")
 
 
 def preview_json(preview: Preview) -> dict[str, Any]:
@@ -27,6 +26,8 @@ def preview_json(preview: Preview) -> dict[str, Any]:
 
 def format_preview(preview: Preview, *, color: bool = False) -> str:
     """What would run, for the terminal."""
+    from rich.filesize import decimal
+
     head = (
         f"[bold]{plain(preview.name)}[/]: robot {plain(preview.robot)}, {_count(preview.targets, 'target')}, "
         f"{_count(preview.repeats, 'repeat')}, seed {preview.seed}"
@@ -44,7 +45,7 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
     lines = [
         f"in all     {preview.solves:,} solves in {_count(preview.parts, 'part')}, about "
         f"{format_seconds(preview.seconds)} on {_count(preview.threads, 'thread')}",
-        f"on disk    about {format_bytes(preview.bytes)}",
+        f"on disk    about {decimal(preview.bytes)}",
         f"columns    {', '.join(preview.columns)}",
         "nothing was written",
     ]
@@ -208,15 +209,6 @@ def format_seconds(seconds: float) -> str:
             whole, left = divmod(round(seconds / small), large // small)
             return f"{whole} {unit} {left} {rest}"
     return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
-
-
-def format_bytes(count: float) -> str:
-    """`1.2 GB`."""
-    for unit in BYTES[:-1]:
-        if count < 1000:
-            return f"{count:.3g} {unit}"
-        count /= 1000
-    return f"{count:.3g} {BYTES[-1]}"
 
 
 def _count(number: int, thing: str) -> str:

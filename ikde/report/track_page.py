@@ -80,7 +80,7 @@ def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | N
 def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
     """The robot at eight moments, as a picture."""
     image = to_png(plot_moments(draw_motion(motion, choose_moments(motion, MOMENTS))), dpi=dpi)
-    caption = f"Arm red, base blue; the path grey, what was followed of it orange. {_explain_black(motion)}"
+    caption = f"Arm red, base blue; the path grey, what was followed of it orange. {_tell_black(motion)}"
     return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
 
 
@@ -122,9 +122,9 @@ def _warn(motion: TrackSummary) -> list[Block]:
     stop = motion.trajectory.stop
     if stop is None:
         return []
-    below = "Everything below is about what was followed." if motion.started else "Nothing was followed."
-    head = f"**The path was not followed to its end**: {verbatim(stop.text)}."
-    return [Notice(f"{head} {motion.met_points} points reached. {below}")]
+    told = "Everything below is about what was followed." if motion.started else "Nothing was followed."
+    told = f"{motion.met_points} points reached. {told}"
+    return [Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {told}")]
 
 
 def _headline(motion: TrackSummary) -> list[Block]:
@@ -155,12 +155,12 @@ def _make_clearance(motion: TrackSummary) -> Number:
     return Number(f"{gap_mm(clearance_m, 1)} mm", "least clearance at samples", certain)
 
 
-def _explain_black(motion: TrackSummary) -> str:
+def _tell_black(motion: TrackSummary) -> str:
     return "What collides is black." if motion.collision.pairs else "Self-collision was not checked."
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:
-    moving = animate(motion, caption=f"Play it, or drag the slider. {_explain_black(motion)}")
+    moving = animate(motion, caption=f"Play it, or drag the slider. {_tell_black(motion)}")
     path = PATH if motion.trajectory.base_joints else PATH_ALONE
     groups = [
         ("Motion", [moving, draw_moments(motion)]),
