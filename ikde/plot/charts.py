@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import printable
+from ikde.kernels.arrays import Floats
 from ikde.plot.images import INK
 from ikde.plot.style import COLORS, DASHES, HATCHES, MARKERS, Axis, drawing, drawing_panels, legend_name, pick
 
@@ -72,7 +73,7 @@ class Panel:
 
     y: Axis
     lines: Sequence[Line]
-    bounds: Sequence[float] = ()
+    bounds: Sequence[float] | Floats = ()
     bound: str = "limit"
     """What the legend calls the bounds."""
     marks: Sequence[float] = ()

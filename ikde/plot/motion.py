@@ -8,7 +8,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.plot.charts import Line, Panel, plot_panels
 from ikde.plot.images import INK
-from ikde.plot.style import COLORS, Axis, drawing_space
+from ikde.plot.style import COLORS, Axis, drawing_space, set_box
 from ikde.track.summary import TrackSummary
 
 MM, DEG = 1e3, 180.0 / np.pi
@@ -40,7 +40,10 @@ def plot_path(motion: TrackSummary) -> Any:
             points.append(floor)
         if len(tool):
             axes.plot(*tool[0], marker="o", markersize=4, color=COLORS[0])
-        _set_box(axes, np.concatenate(points))
+        box = np.concatenate(points)
+        low, high = box.min(axis=0), box.max(axis=0)
+        middle, half = 0.5 * (low + high), 0.55 * np.maximum(high - low, 0.15 * float((high - low).max()) + 1e-3)
+        set_box(axes, middle - half, middle + half, zoom=0.88)
     return figure
 
 
@@ -82,7 +85,7 @@ def plot_base(motion: TrackSummary) -> Any:
     times, q = trajectory.times_s, trajectory.q
     place = [Line(label=name, x=times, y=q[:, joint]) for name, joint in (("x", x), ("y", y))]
     turned = Line(label="", x=times, y=DEG * q[:, heading])
-    ends = _scaled(DEG, _ranges(motion)[heading])
+    ends = DEG * _ranges(motion)[heading]
     panels = [
         Panel(y=Axis(label="place", unit="m"), lines=place, min_span=MIN_PLACE_MM / MM),
         Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, min_span=MIN_ROTATION_DEG),
@@ -99,9 +102,7 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     turning = Line(label="", x=times, y=DEG * omega[:, 0])
     panels = [
         Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
-        Panel(
-            y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading]), min_span=MIN_RATE
-        ),
+        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=DEG * bounds[heading], min_span=MIN_RATE),
     ]
     if trajectory.wheel_speeds is not None:
         _, speeds = _in_steps(motion, trajectory.wheel_speeds)
@@ -129,20 +130,15 @@ def plot_clearance(motion: TrackSummary) -> Any:
 
 
 def _plot_arm(
-    motion: TrackSummary,
-    times: Floats,
-    values: Floats,
-    bounds: Sequence[Sequence[float]],
-    revolute: Shown,
-    prismatic: Shown,
+    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Floats], angle: Shown, length: Shown
 ) -> Any:
     """One small chart a joint of the arm, two side by side if their names are short; None for a base alone."""
     panels = []
     for joint in motion.arm:
         is_prismatic = motion.robot.joints[joint].kind == "prismatic"
-        scale, (unit, span) = (MM, prismatic) if is_prismatic else (DEG, revolute)
+        scale, (unit, span) = (MM, length) if is_prismatic else (DEG, angle)
         line = Line(label="", x=times, y=scale * values[:, joint])
-        ends = _scaled(scale, bounds[joint])
+        ends = scale * bounds[joint]
         name = motion.robot.joint_names[joint]
         panels.append(Panel(y=Axis(label=unit), lines=[line], bounds=ends, title=name, min_span=span))
     if not panels:
@@ -151,26 +147,22 @@ def _plot_arm(
     return plot_panels(panels, x=TIME, columns=columns, height_in=ARM_IN)
 
 
-def _ranges(motion: TrackSummary) -> list[list[float]]:
+def _ranges(motion: TrackSummary) -> list[Floats]:
     """Ends of each joint's range; of a rotation not those beyond a full turn: its curve would be pressed flat."""
     robot = motion.robot
     ends = np.column_stack([robot.lower, robot.upper])
     shown = np.abs(ends) <= np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)[:, None]
-    return [row[kept].tolist() for row, kept in zip(ends, shown, strict=True)]
+    return [row[kept] for row, kept in zip(ends, shown, strict=True)]
 
 
-def _speed_bounds(motion: TrackSummary) -> list[list[float]]:
+def _speed_bounds(motion: TrackSummary) -> list[Floats]:
     """Speed limits of each joint, both ways; none where there is none."""
     limits = motion.limits.speed
     return [_both(np.inf if limits is None else float(limits[k])) for k in range(len(motion.robot.joints))]
 
 
-def _scaled(scale: float, bounds: Sequence[float]) -> list[float]:
-    return [scale * bound for bound in bounds]
-
-
-def _both(limit: float) -> list[float]:
-    return [-limit, limit] if np.isfinite(limit) else []
+def _both(limit: float) -> Floats:
+    return np.array([-limit, limit] if np.isfinite(limit) else [])
 
 
 def _middles(motion: TrackSummary) -> Floats:
@@ -185,12 +177,3 @@ def _in_steps(motion: TrackSummary, values: Floats) -> tuple[Floats, Floats]:
     if len(values) > MAX_STAIRS:
         return _middles(motion), values
     return np.repeat(times, 2)[1:-1], np.repeat(values, 2, axis=0)
-
-
-def _set_box(axes: Any, points: Any) -> None:
-    """One scale for all three axes, around all points."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    middle, half = 0.5 * (low + high), 0.55 * np.maximum(high - low, 0.15 * float((high - low).max()) + 1e-3)
-    axes.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
-    axes.set_zlim(middle[2] - half[2], middle[2] + half[2])
-    axes.set_box_aspect(half, zoom=0.88)

@@ -9,6 +9,7 @@ import numpy as np
 from ikde.errors import FileError
 from ikde.kernels.arrays import Floats
 from ikde.plot.images import any_letters, show_as_text
+from ikde.plot.style import set_box
 from ikde.scene.drawn_pose import AXIS_COLORS, COLORS, DrawnPose, DrawnRobot, Mark, Role
 
 MESH = 24  # facets around a sphere
@@ -36,9 +37,9 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0)) -> 
     for mark in pose.marks:
         _draw_mark(axes, mark)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=pose.title)
-    low, high = pose.compute_box()
-    half = 0.5 * float((high - low).max()) * 1.02
-    _set_box(axes, np.array([low, high]), half, 2 * half)
+    box_m = pose.compute_box()
+    half_m = 0.51 * float(np.ptp(box_m, axis=0).max())
+    _set_box(axes, box_m, half_m, 2.0 * half_m)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
     return show_as_text(figure)
@@ -54,9 +55,9 @@ def plot_frames(pose: DrawnPose) -> Any:
     _draw_axes(axes, pose.Ts_world_frame, length_m=0.12, dashes=DASHES, width=2.0)
     for label, point in pose.labels:
         axes.text(*(point + LABEL_OFFSET_M), label, fontsize=10)
-    low, high = pose.compute_box() + np.array([[-FRAMES_MARGIN_M], [FRAMES_MARGIN_M]])
-    height = float((high - low)[2])
-    _set_box(axes, np.array([low, high]), max(0.25 * height, 0.5 * float((high - low)[:2].max())), height)
+    box_m = pose.compute_box() + np.array([[-FRAMES_MARGIN_M], [FRAMES_MARGIN_M]])
+    width_m, depth_m, height_m = np.ptp(box_m, axis=0)
+    _set_box(axes, box_m, max(0.5 * width_m, 0.5 * depth_m, 0.25 * height_m), height_m)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=pose.title)
     axes.locator_params(axis="x", nbins=3)
     axes.locator_params(axis="y", nbins=3)
@@ -110,8 +111,6 @@ def find_eye(elevation_deg: float, azimuth_deg: float) -> Floats:
 
 
 def _set_box(axes: Any, box_m: Floats, half_m: float, height_m: float) -> None:
-    """One scale for all three axes: `half_m` to each side of the box's middle, and `height_m` from its floor."""
-    x, y, _ = box_m.mean(axis=0)
-    axes.set(xlim=(x - half_m, x + half_m), ylim=(y - half_m, y + half_m))
-    axes.set_zlim(box_m[0, 2], box_m[0, 2] + height_m)
-    axes.set_box_aspect((2 * half_m, 2 * half_m, height_m))
+    """Show `half_m` to each side of the box's middle, and `height_m` from its floor."""
+    (x, y, _), floor_m = box_m.mean(axis=0), box_m[0, 2]
+    set_box(axes, np.array([x - half_m, y - half_m, floor_m]), np.array([x + half_m, y + half_m, floor_m + height_m]))
