@@ -103,16 +103,8 @@ def plot_lines(
 def _draw_event(axes: Any, event: Event, color: str, marker: str) -> None:
     """A thin line with a mark on its top, by which the legend tells it from the others."""
     axes.axvline(event.x, color=color, linewidth=1.1)
-    head = {"marker": marker, "markersize": 6.5, "clip_on": False, "zorder": 5}
-    axes.plot(
-        [event.x],
-        [1.0],
-        transform=axes.get_xaxis_transform(),
-        color=color,
-        label=legend_name(event.label),
-        ls="none",
-        **head,
-    )
+    head = {"color": color, "marker": marker, "markersize": 6.5, "linestyle": "none", "clip_on": False, "zorder": 5}
+    axes.plot([event.x], [1.0], transform=axes.get_xaxis_transform(), label=legend_name(event.label), **head)
 
 
 def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, y: Axis) -> Any:

@@ -123,10 +123,8 @@ def plot_clearance(motion: TrackSummary) -> Any:
         lines.append(Line(label="certified between them", x=times, y=MM * between[:, 0]))
     wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
     y = Axis(label="clearance", unit="mm")
-    safe = [MM * collision.limit_m]
-    return plot_panels(
-        [Panel(y=y, lines=lines, bounds=safe, bound="safe distance", marks=wrong)], x=TIME, height_in=2.6
-    )
+    panel = Panel(y=y, lines=lines, bounds=[MM * collision.limit_m], bound="safe distance", marks=wrong)
+    return plot_panels([panel], x=TIME, height_in=2.6)
 
 
 def _plot_arm(
