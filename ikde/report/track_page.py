@@ -57,9 +57,7 @@ ERRORS = Drawing(
 )
 JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
 SPEEDS = Drawing(
-    plot_joint_speeds,
-    "joint speeds of the arm over time",
-    "Their speeds from sample to sample, and their limits.",
+    plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample, and their limits."
 )
 BASE = Drawing(plot_base, "the base over time", "The base: its place, all its speeds, and their limits.")
 CLEARANCE = Drawing(
