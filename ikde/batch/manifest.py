@@ -16,7 +16,7 @@ from ikde.batch.machine import describe_machine, describe_versions
 from ikde.batch.parts import MOST_PARTS, PLAIN_NAME, SOLUTIONS, TIMING, Part, list_parts
 from ikde.batch.plan import Batch
 from ikde.errors import FileError, format_path, quoted
-from ikde.files.atomic import write_atomically
+from ikde.files.atomic import replace_all
 from ikde.files.reading import read_json
 
 MANIFEST = "manifest.json"
@@ -114,12 +114,8 @@ def make_manifest(batch: Batch) -> Manifest:
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write it whole or not at all; raises `FileError`."""
-    path = folder / MANIFEST
     text = json.dumps(asdict(manifest), indent=1, ensure_ascii=False, allow_nan=False)
-    try:
-        write_atomically(path, text.encode())
-    except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror}") from None
+    replace_all(folder, {MANIFEST: text.encode()})
 
 
 def refuse_links(folder: Path, *names: str) -> None:

@@ -45,7 +45,7 @@ def check(
     """
     from ikde.io.robots import load_robot
     from ikde.report.geometry import check_json, format_check
-    from ikde.report.units import Units
+    from ikde.report.numbers import Units
     from ikde.solver.check import check as check_configuration
 
     model = load_robot(robot)

@@ -35,7 +35,7 @@ def fk(
     from ikde.io.robots import load_robot
     from ikde.model.collision_model import CollisionModel
     from ikde.report.geometry import format_forward, forward_json
-    from ikde.report.units import Units
+    from ikde.report.numbers import Units
     from ikde.solver.forward import forward
     from ikde.solver.joints import joints_outside
 

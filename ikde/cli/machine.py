@@ -7,7 +7,7 @@ from collections.abc import Callable
 from importlib.metadata import version
 from typing import Any
 
-PACKAGES = ("numpy", "scipy", "numba", "pydantic", "pyarrow", "matplotlib", "typer", "rich")
+PACKAGES = ("numpy", "numba", "pydantic", "pyarrow", "matplotlib", "typer", "rich")
 
 
 def describe_machine(announce: Callable[[], None]) -> dict[str, Any]:

@@ -154,8 +154,9 @@ def check_positive(value: float | None, option: str, most: float | None = None) 
 def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None) -> None:
     """Draw a configuration if a path is given."""
     from ikde.plot.pose import plot_pose, save_figure
+    from ikde.scene.drawn_pose import draw_pose
 
     if path is None:
         return
-    figure = plot_pose(collision, q, target=target)  # type: ignore[arg-type]
-    save_figure(figure, path)
+    pose = draw_pose(collision, q, target=target)  # type: ignore[arg-type]
+    save_figure(plot_pose(pose), path)

@@ -50,8 +50,8 @@ def show(
     """
     from ikde.io.robots import load_robot
     from ikde.model.collision_model import CollisionModel
+    from ikde.report.numbers import Units
     from ikde.report.robot import format_robot, robot_json
-    from ikde.report.units import Units
 
     model = load_robot(name)
     chosen = CollisionModel.of(model, detector)
@@ -91,8 +91,8 @@ def validate(
     """
     from ikde.io.robots import load_robot
     from ikde.model.collision_model import CollisionModel
+    from ikde.report.numbers import Units
     from ikde.report.pairs import format_pairs, pairs_json
-    from ikde.report.units import Units
 
     model = load_robot(file)
     chosen = CollisionModel.of(model, detector)

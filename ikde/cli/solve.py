@@ -131,8 +131,8 @@ def solve(
     from ikde.io.target import make_target
     from ikde.io.units import ANGLES_RAD, LENGTHS_M
     from ikde.model.convention import convention_offsets
+    from ikde.report.numbers import Units
     from ikde.report.solve import format_solve, solve_json
-    from ikde.report.units import Units
     from ikde.solver.distinct import solve_distinct
     from ikde.solver.settings import SolveSettings
 

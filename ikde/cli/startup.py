@@ -29,7 +29,7 @@ def leave_garbage_at_exit() -> None:
 
 
 def skip_blas_probe() -> None:
-    """Keep numba from importing `scipy.linalg` just to learn whether BLAS is there: 0.2 s of every `ikde solve`.
+    """Keep numba from importing `scipy.linalg`, if it is installed, to look for BLAS: 0.2 s of every `ikde solve`.
 
     No kernel of ikde calls BLAS. Only the command line does this, in its own process; the library leaves numba alone.
     """

@@ -58,7 +58,7 @@ def track(
     """
     from ikde.io.report_folder import open_folder
     from ikde.io.track_file import load_track
-    from ikde.io.track_folder import write_track
+    from ikde.io.trajectory_files import write_track
     from ikde.report.track import format_track, track_json
 
     gc.enable()

@@ -10,20 +10,13 @@ from typing import Any
 from ikde.errors import FileError
 
 
-def write_atomically(path: Path, data: Any) -> None:
-    """Write bytes (anything with a buffer) to `path`, on the disk when this returns; raises `OSError`.
-
-    Whoever is killed in between leaves at most a hidden file behind, which the next call writes over.
-    """
-    write_together({path: data})
-    sync_folder(path.parent)
-
-
 def write_together(files: Mapping[Path, Any]) -> None:
-    """Write bytes to several files and give them their names in this order, when all contents are on the disk.
+    """Write bytes (anything with a buffer) to files and give them their names in this order, when all are on the disk.
+
+    A process that is killed in between leaves at most hidden files behind, which the next call writes over.
 
     Raises:
-        OSError: with the path that is to blame; then no name is new, or only those before it.
+        OSError: with the path that it is about; then no name is new, or only those before it.
     """
     opened: dict[Path, int] = {}
     try:
@@ -45,7 +38,7 @@ def write_together(files: Mapping[Path, Any]) -> None:
             os.close(descriptor)
 
 
-def replace_all(folder: Path, files: Mapping[str, Any], names: Iterable[str]) -> tuple[Path, ...]:
+def replace_all(folder: Path, files: Mapping[str, Any], names: Iterable[str] = ()) -> tuple[Path, ...]:
     """Write bytes by name into a folder, and remove those of `names` that are not among them; returns the files.
 
     Raises:

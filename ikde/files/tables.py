@@ -1,6 +1,6 @@
 """Tables: CSV, Parquet and NPZ files as columns by name. What is wrong with a file is a `FileError` in one line.
 
-A table is read whole, within the limit of `reading.most_bytes`, and what it claims to hold is checked against that
+A table is read whole, within the limit of `reading.max_bytes`, and what it claims to hold is checked against that
 limit before room is made for it. Nothing in it is executed: arrays of objects, which are pickles, are refused.
 """
 
@@ -18,14 +18,14 @@ import pyarrow.parquet as pq
 
 from ikde.errors import FileError, InputError, quoted
 from ikde.files.npz import NpzTable
-from ikde.files.reading import errors_of, expect_at_most, most_bytes, read_bytes
+from ikde.files.reading import errors_of, expect_at_most, max_bytes, read_bytes
 
 Column = pa.ChunkedArray | np.ndarray
 """[T], from arrow or numpy; of an NPZ file also [T, 3] or [T, 4]."""
 
-MOST_COLUMNS = 10_000
-LONGEST_HEADER = 10**6  # characters
-LONGEST_NAME = 1000  # characters of a target's name
+MAX_COLUMNS = 10_000
+MAX_HEADER = 10**6  # characters
+MAX_NAME_LENGTH = 1000  # characters of a target's name
 FLOAT_BYTES = 8
 
 
@@ -70,9 +70,9 @@ class CsvTable:
     def _header_lines(self) -> Iterator[str]:
         """Lines from the top, none of them endless."""
         with TextIOWrapper(BytesIO(self._data), encoding="utf-8-sig", newline="") as file:
-            while line := file.readline(LONGEST_HEADER):
-                if len(line) == LONGEST_HEADER:
-                    raise FileError(self._path, f"the first line is too long; expected at most {LONGEST_HEADER:,}")
+            while line := file.readline(MAX_HEADER):
+                if len(line) == MAX_HEADER:
+                    raise FileError(self._path, f"the first line is too long; expected at most {MAX_HEADER:,}")
                 yield line
 
     def _refuse(self, row: Any) -> str:
@@ -154,15 +154,15 @@ def open_table(path: Path) -> Table:
     except FileError as error:
         raise InputError(f"{error.message}: {path}", ("path",)) from None
     table = reader(path, data)
-    if len(table.names) > MOST_COLUMNS:
-        raise FileError(path, f"expected at most {MOST_COLUMNS:,} columns, got {len(table.names):,}")
+    if len(table.names) > MAX_COLUMNS:
+        raise FileError(path, f"expected at most {MAX_COLUMNS:,} columns, got {len(table.names):,}")
     return table
 
 
 def check_room(path: Path, size: int) -> None:
     """Refuse numbers that would not fit in memory before there are any."""
-    if size > most_bytes():
-        raise FileError(path, f"its columns would take up {size / 1e6:,.0f} MB; {expect_at_most(most_bytes())}")
+    if size > max_bytes():
+        raise FileError(path, f"its columns would take up {size / 1e6:,.0f} MB; {expect_at_most(max_bytes())}")
 
 
 def row_error(path: Path, row: int, message: str) -> FileError:
@@ -193,8 +193,8 @@ def as_names(path: Path, name: str, column: Column) -> tuple[str, ...]:
         words = column.tolist() if isinstance(column, np.ndarray) else column.to_pylist()
         names = tuple("" if word is None else str(word) for word in words)
     for row, word in enumerate(names):
-        if not 0 < len(word) <= LONGEST_NAME:
-            got = f"expected at most {LONGEST_NAME:,} characters, got {len(word):,}" if word else "no value"
+        if not 0 < len(word) <= MAX_NAME_LENGTH:
+            got = f"expected at most {MAX_NAME_LENGTH:,} characters, got {len(word):,}" if word else "no value"
             raise row_error(path, row, f"{name}: {got}")
     return names
 

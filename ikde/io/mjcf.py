@@ -1,4 +1,4 @@
-"""A robot as MJCF, MuJoCo's own format: the same frames, joints, limits and spheres; contacts where ikde looks."""
+"""A robot as MJCF, MuJoCo's own format: the same frames, joints, limits, spheres, and contacts of compared pairs."""
 
 import xml.etree.ElementTree as ET
 from itertools import combinations, product
@@ -29,7 +29,7 @@ def format_mjcf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     Every frame is a body of its name and every joint keeps its name; the key frame `home` is the robot's home. Each
     component is a body `component_<name>`, fixed to the body that its joint moves, with its spheres as the geoms
     `<name>_0`, `<name>_1` and so on; a name that is taken gets an underscore. Pairs of components that the detector
-    does not look at are excluded, so that MuJoCo has a contact where ikde sees a clearance below 0. The safe distance
+    does not compare are excluded, so that MuJoCo has a contact where ikde sees a clearance below 0. The safe distance
     is not in the file, since MuJoCo's versions differ in what a margin is. Gravity is off.
 
     Args:
@@ -95,6 +95,6 @@ def _add_components(root: ET.Element, collision: CollisionModel, bodies: dict[st
         if frozenset((a, b)) not in compared:
             ET.SubElement(contact, "exclude", body1=names[a], body2=names[b])
     for a, b in collision.pairs:
-        if components[a][0].body == components[b][0].body:  # rigidly joined: MuJoCo compares only what it is told to
+        if components[a][0].body == components[b][0].body:  # rigidly joined: MuJoCo compares only listed pairs
             for i, j in product(range(len(components[a])), range(len(components[b]))):
                 ET.SubElement(contact, "pair", geom1=f"{a}_{i}", geom2=f"{b}_{j}")

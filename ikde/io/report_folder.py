@@ -10,7 +10,7 @@ from typing import Any
 
 from ikde.bench.budget import Budget
 from ikde.errors import FileError, quoted
-from ikde.files.atomic import write_atomically
+from ikde.files.atomic import replace_all
 from ikde.files.reading import read_json
 
 RESULTS = "results.json"
@@ -42,12 +42,8 @@ def open_folder(folder: Path) -> Iterator[None]:
 
 
 def write_report(folder: Path, files: Mapping[str, str]) -> None:
-    """Write files by name, replacing those of an earlier report; nothing else in the folder is touched."""
-    for name, text in files.items():
-        try:
-            write_atomically(folder / name, text.encode())
-        except OSError as error:
-            raise FileError(folder / name, f"cannot be written: {error.strerror or error}") from None
+    """Write files by name in place of an earlier report's, all or none; raises `FileError` as `replace_all`."""
+    replace_all(folder, {name: text.encode() for name, text in files.items()})
 
 
 def format_results(results: Mapping[str, Any]) -> str:

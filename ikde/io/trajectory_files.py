@@ -27,6 +27,7 @@ MOTION = (
     *("base.yaml", "base.json"),
 )
 """All that a motion can leave in a folder."""
+SUMMARY, PAGE = "summary.json", "report.html"  # of a followed track
 
 
 def write_trajectory(
@@ -57,6 +58,30 @@ def write_trajectory(
     files = format_trajectory(trajectory, formats, velocities=velocities)
     prepare_folder(Path(folder))
     return replace_all(Path(folder), files, [name for name in MOTION if name.rpartition(".")[2] in formats])
+
+
+def write_track(
+    folder: Path, trajectory: Trajectory, summary: Mapping[str, Any], page: str | None = None
+) -> tuple[Path, ...]:
+    """Write what came of a track; what an earlier one left under these names is replaced or removed.
+
+    Args:
+        folder: where to; it is there.
+        trajectory: the motion; without a sample it has no files.
+        summary: plain data.
+        page: the page's text; None for no page.
+
+    Returns:
+        The files, the page first.
+
+    Raises:
+        FileError: if they cannot be written; then none of them is new, or only those that were named before.
+    """
+    files: dict[str, bytes] = {} if page is None else {PAGE: page.encode()}
+    files[SUMMARY] = (json.dumps(summary, indent=2, allow_nan=False, ensure_ascii=False) + "\n").encode()
+    if len(trajectory.q):
+        files |= format_trajectory(trajectory)
+    return replace_all(folder, files, (PAGE, SUMMARY, *MOTION))
 
 
 def format_trajectory(

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ikde.errors import FileError, InputError
-from ikde.files.atomic import write_atomically
+from ikde.files.atomic import replace_all
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Robot
 from ikde.model.spheres import Sphere, expand_rows
@@ -81,7 +81,4 @@ def write_xml(path: Path, text: str) -> None:
         raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
     if not path.parent.is_dir():
         raise FileError(path, "cannot be written: its folder does not exist")
-    try:
-        write_atomically(path, text.encode())
-    except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror or error}") from None
+    replace_all(path.parent, {path.name: text.encode()})

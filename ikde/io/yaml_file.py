@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import yaml
 
 from ikde.errors import FileError, InputError, quoted
-from ikde.files.reading import MOST_DEPTH, read_text
+from ikde.files.reading import MAX_DEPTH, read_text
 
 Where = tuple[str | int, ...]
 
-MOST_VALUES = 10**6  # of a file, those that aliases repeat included
+MAX_VALUES = 10**6  # of a file, those that aliases repeat included
 _NUMBER = re.compile(
     r"^[-+]?(\.[0-9]+|[0-9][0-9_]*(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
 )
@@ -141,10 +141,10 @@ class _Reader:
         """Note so many values, so many levels deep."""
         self._values += values
         self._deepest = max(self._deepest, len(where) + levels)
-        if self._values > MOST_VALUES:
-            raise self._document.error(f"too many values, aliases counted; expected at most {MOST_VALUES:,}", where[:3])
-        if len(where) + levels > MOST_DEPTH:
-            raise self._document.error(f"nested too deeply; expected at most {MOST_DEPTH} levels", where[:3])
+        if self._values > MAX_VALUES:
+            raise self._document.error(f"too many values, aliases counted; expected at most {MAX_VALUES:,}", where[:3])
+        if len(where) + levels > MAX_DEPTH:
+            raise self._document.error(f"nested too deeply; expected at most {MAX_DEPTH} levels", where[:3])
 
     def _read_list(self, where: Where) -> list[Any]:
         items: list[Any] = []

@@ -1,49 +1,40 @@
-"""A motion as plain data that a page can play: spheres, bones and path, in whole millimetres."""
+"""A drawn motion as the plain data that `report/templates/motion.js` plays: lengths in whole millimetres."""
 
 from typing import Any
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.plot.pose import base_components, compute_bones
-from ikde.solver.plain import compute_components
-from ikde.track.summary import TrackSummary
+from ikde.scene.drawn_motion import DrawnMotion
+from ikde.scene.drawn_pose import COLORS
 
-MOST_FRAMES = 251
-MOST_PATH_POINTS = 501
+MAX_PATH_POINTS = 501
 
 
-def make_animation(motion: TrackSummary, most_frames: int = MOST_FRAMES) -> dict[str, Any]:
-    """Every so-manieth sample, the last one among them.
+def make_animation(motion: DrawnMotion) -> dict[str, Any]:
+    """The motion for JSON.
 
     Returns:
-        `times` [F] s; `path` [P, 3]; `bones` [F, n, 3]; `centres` [F, S, 3], `radii` [S] and `parts` [S], a sphere's
-        component; `names` of components, and which of them are the `base`; `black` [F], components that collide.
-        Lengths in mm.
+        `times_s` [F] and `duration_s`; `path_mm` [P, 3], and how many of its points are `done` [F]; `links_mm`
+        [F, n, 3]; `centres_mm` [F, S, 3], `radii_mm` [S] and `parts` [S], a sphere's component; `components` [C] by
+        name, and their `roles` [F, C], each the place of a role in `colors`.
     """
-    trajectory = motion.trajectory
-    frames = np.unique(np.linspace(0, len(trajectory.q) - 1, most_frames).round().astype(int))
-    q = trajectory.q[frames]
-    components = compute_components(motion.collision, q)
-    names, base = list(components), base_components(motion.collision)
-    centres = [centres for centres, _ in components.values()]
-    radii = [radii for _, radii in components.values()]
-    path = trajectory.path.p_world_tool
-    shown = np.unique(np.linspace(0, len(path) - 1, MOST_PATH_POINTS).round().astype(int))
+    robot, path = motion.robot, motion.path_m
+    shown = np.unique(np.linspace(0, len(path) - 1, MAX_PATH_POINTS).round().astype(int))
     return {
-        "times": [round(float(time), 4) for time in trajectory.times_s[frames]],
-        "end": round(trajectory.path.duration_s, 4),
-        "path": _whole_mm(path[shown]),
-        "done": [int(np.searchsorted(shown, sample, side="right")) for sample in frames],
-        "bones": _whole_mm(compute_bones(motion.robot, q)),
-        "centres": _whole_mm(np.concatenate(centres, axis=1)) if centres else [[] for _ in frames],
-        "radii": _whole_mm(np.concatenate(radii)) if radii else [],
-        "parts": [part for part, row in enumerate(radii) for _ in row],
-        "names": names,
-        "base": [part for part, name in enumerate(names) if name in base],
-        "black": [[names.index(name) for name in sorted(motion.colliding[sample])] for sample in frames],
+        "times_s": motion.times_s.round(4).tolist(),
+        "duration_s": round(motion.duration_s, 4),
+        "path_mm": _to_whole_mm(path[shown]),
+        "done": np.searchsorted(shown, motion.samples, side="right").tolist(),
+        "links_mm": _to_whole_mm(robot.links_m),
+        "centres_mm": _to_whole_mm(robot.centres_m),
+        "radii_mm": _to_whole_mm(robot.radii_m),
+        "parts": robot.parts.tolist(),
+        "components": list(robot.components),
+        "roles": [[list(COLORS).index(role) for role in roles] for roles in robot.roles],
+        "colors": dict(COLORS),
     }
 
 
-def _whole_mm(lengths_m: Floats) -> Any:
+def _to_whole_mm(lengths_m: Floats) -> Any:
     return np.rint(1e3 * lengths_m).astype(int).tolist()

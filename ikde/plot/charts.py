@@ -8,11 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import printable
+from ikde.kernels.arrays import Floats
 from ikde.plot.images import INK
-from ikde.plot.style import COLORS, DASHES, HATCHES, MARKERS, Axis, drawing, legend_name, pick
+from ikde.plot.style import COLORS, DASHES, HATCHES, MARKERS, Axis, drawing, drawing_panels, legend_name, pick
 
-MOST_POINTS = 500  # of a curve: more cannot be seen
+MAX_POINTS = 500  # of a curve: more cannot be seen
 SHARE = "%"
+PANEL_IN = 1.75  # height of a row of panels
+TITLE_PT = 9.5
+BOUND = (0, (6, 2))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -63,6 +67,24 @@ class Sample:
     total: int | None = None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Panel:
+    """One chart: curves, and horizontal lines that they should stay between."""
+
+    y: Axis
+    lines: Sequence[Line]
+    bounds: Sequence[float] | Floats = ()
+    bound: str = "limit"
+    """What the legend calls the bounds."""
+    marks: Sequence[float] = ()
+    """Places on x where something is wrong: small triangles on the lower edge."""
+    mark: str = "collision"
+    title: str = ""
+    """What stands above the chart, where its y axis has no room for it."""
+    min_span: float = 0.0
+    """The smallest span of the y axis, so that rounding is no mountain."""
+
+
 def plot_lines(
     lines: Sequence[Line], *, x: Axis, y: Axis, events: Sequence[Event] = (), level: tuple[float, str] | None = None
 ) -> Any:
@@ -81,16 +103,8 @@ def plot_lines(
 def _draw_event(axes: Any, event: Event, color: str, marker: str) -> None:
     """A thin line with a mark on its top, by which the legend tells it from the others."""
     axes.axvline(event.x, color=color, linewidth=1.1)
-    head = {"marker": marker, "markersize": 6.5, "clip_on": False, "zorder": 5}
-    axes.plot(
-        [event.x],
-        [1.0],
-        transform=axes.get_xaxis_transform(),
-        color=color,
-        label=legend_name(event.label),
-        ls="none",
-        **head,
-    )
+    head = {"color": color, "marker": marker, "markersize": 6.5, "linestyle": "none", "clip_on": False, "zorder": 5}
+    axes.plot([event.x], [1.0], transform=axes.get_xaxis_transform(), label=legend_name(event.label), **head)
 
 
 def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, y: Axis) -> Any:
@@ -161,7 +175,7 @@ def _climb(values: Any, total: int, end: float) -> tuple[Any, Any]:
     """Places and percentages of a curve: up from 0 at the least of the sorted values, and level from the last on."""
     if not len(values):
         return [], []
-    shown = np.unique(np.linspace(0, len(values) - 1, MOST_POINTS).astype(int))
+    shown = np.unique(np.linspace(0, len(values) - 1, MAX_POINTS).astype(int))
     shares = 100.0 * (shown + 1) / total
     return np.r_[values[0], values[shown], end], np.r_[0.0, shares, shares[-1]]
 
@@ -189,3 +203,38 @@ def _edges(values: Sequence[Any], bins: int, *, log: bool) -> Any:
     if not len(joined):
         return np.array([1.0, 10.0]) if log else np.array([0.0, 1.0])
     return 10 ** np.histogram_bin_edges(np.log10(joined), bins) if log else np.histogram_bin_edges(joined, bins)
+
+
+def plot_panels(panels: Sequence[Panel], *, x: Axis, columns: int = 1, height_in: float = PANEL_IN) -> Any:
+    """Charts row by row; curves of one label share their look and one entry in the legend, one without has none."""
+    labels = list(dict.fromkeys(line.label for panel in panels for line in panel.lines if line.label))
+    with drawing_panels(x, [panel.y for panel in panels], columns=columns, height_in=height_in) as (figure, charts):
+        for axes, panel in zip(charts, panels, strict=True):
+            for line in panel.lines:
+                k = labels.index(line.label) if line.label else 0
+                look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "linewidth": 1.6}
+                axes.plot(line.x, line.y, label=line.label or "_nolegend_", **look)
+            for number, value in enumerate(panel.bounds):
+                label = "_nolegend_" if number else panel.bound
+                axes.axhline(value, color=INK, linewidth=0.9, linestyle=BOUND, label=label)
+            if len(panel.marks):
+                _draw_marks(axes, panel)
+            if panel.title:
+                axes.set_title(panel.title, loc="left", fontsize=TITLE_PT, color=INK)
+            _widen(axes, panel.min_span)
+        figure.align_ylabels()
+    return figure
+
+
+def _widen(axes: Any, min_span: float) -> None:
+    """Let the y axis span at least so much, with what it shows in its middle."""
+    low, high = axes.get_ylim()
+    if high - low < min_span:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * min_span, middle + 0.5 * min_span)
+
+
+def _draw_marks(axes: Any, panel: Panel) -> None:
+    look = {"marker": "^", "markersize": 5, "color": INK, "linestyle": "none", "clip_on": False, "zorder": 5}
+    edge = axes.get_xaxis_transform()
+    axes.plot(panel.marks, [0.0] * len(panel.marks), transform=edge, label=panel.mark, **look)

@@ -1,4 +1,4 @@
-"""Figures of a motion over time: path and errors, joints and base with their limits, clearance."""
+"""Figures of a motion: its path in space; over time its errors, joints and base with their limits, clearance."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.plot.charts import Line
-from ikde.plot.panels import Panel, plot_panels
-from ikde.plot.style import Axis
+from ikde.plot.charts import Line, Panel, plot_panels
+from ikde.plot.images import INK
+from ikde.plot.style import COLORS, Axis, drawing_space, set_box
 from ikde.track.summary import TrackSummary
 
 MM, DEG = 1e3, 180.0 / np.pi
-LEAST_MM, LEAST_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
-MOST_STAIRS = 200  # more cannot be seen
-LEAST_PLACE_MM, LEAST_TURN_DEG, LEAST_RATE = 1.0, 1.0, 0.1  # what an axis spans at least; rates in mm/s and deg/s
-LONGEST_NAME = 26  # letters of a joint's name for which there is room above half a figure
+MIN_MM, MIN_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
+MAX_STAIRS = 200  # more cannot be seen
+MIN_PLACE_MM, MIN_ROTATION_DEG, MIN_RATE = 1.0, 1.0, 0.1  # what an axis spans at least; rates in mm/s and deg/s
+MAX_NAME_LENGTH = 26  # letters of a joint's name for which there is room above half a figure
 ARM_IN = 1.55  # height of a joint's chart
 TIME = Axis(label="t", unit="s")
 
@@ -23,15 +23,39 @@ Shown = tuple[str, float]
 """Unit of an axis, and what it spans at least."""
 
 
+def plot_path(motion: TrackSummary) -> Any:
+    """The path asked for, where the tool went, and where the base drove if it can, in the world, m."""
+    trajectory = motion.trajectory
+    asked, reached = trajectory.path.p_world_tool, trajectory.path.p_world_tool[: len(trajectory.q)]
+    tool = reached + trajectory.error_m
+    with drawing_space() as (figure, axes):
+        axes.plot(*asked.T, color=INK, linewidth=0.9, linestyle=(0, (4, 2)), label="path")
+        axes.plot(*tool.T, color=COLORS[0], linewidth=1.8, label="tool")
+        points = [asked, tool]
+        if trajectory.base_joints and len(tool):
+            place = [motion.robot.joint_names.index(name) for name in trajectory.base_joints[:2]]
+            floor = np.column_stack([trajectory.q[:, place], np.zeros(len(tool))])
+            axes.plot(*floor.T, color=COLORS[1], linewidth=1.8, label="base, on the floor")
+            axes.plot(*floor[0], marker="o", markersize=4, color=COLORS[1])
+            points.append(floor)
+        if len(tool):
+            axes.plot(*tool[0], marker="o", markersize=4, color=COLORS[0])
+        box = np.concatenate(points)
+        low, high = box.min(axis=0), box.max(axis=0)
+        middle, half = 0.5 * (low + high), 0.55 * np.maximum(high - low, 0.15 * float((high - low).max()) + 1e-3)
+        set_box(axes, middle - half, middle + half, zoom=0.88)
+    return figure
+
+
 def plot_errors(motion: TrackSummary) -> Any:
     """How far the tool is from its path: along each axis at the samples, its orientation, and half-way between them."""
     graded, times = motion.verification, motion.trajectory.times_s
-    sizes = np.maximum(MM * np.abs(graded.error_m), LEAST_MM)
+    sizes = np.maximum(MM * np.abs(graded.error_m), MIN_MM)
     lines = [Line(label=axis, x=times, y=sizes[:, k]) for k, axis in enumerate("xyz")]
     limit = MM * motion.limits.position_error_m
     panels = [Panel(y=Axis(label="error", unit="mm", log=True), lines=lines, bounds=[limit], bound="tolerance")]
     if motion.trajectory.path.orientation != "free":
-        turn = np.maximum(DEG * graded.orientation_error_rad, LEAST_DEG)
+        turn = np.maximum(DEG * graded.orientation_error_rad, MIN_DEG)
         limit = DEG * motion.limits.orientation_error_rad
         y = Axis(label="turned by", unit="deg", log=True)
         panels.append(Panel(y=y, lines=[Line(label="", x=times, y=turn)], bounds=[limit], bound="tolerance"))
@@ -43,13 +67,13 @@ def plot_errors(motion: TrackSummary) -> Any:
 def plot_joints(motion: TrackSummary) -> Any:
     """Joint values of the arm with the ends of their ranges; None without an arm."""
     values = motion.trajectory.times_s, motion.trajectory.q
-    return _plot_arm(motion, *values, _ranges(motion), ("deg", LEAST_TURN_DEG), ("mm", LEAST_PLACE_MM))
+    return _plot_arm(motion, *values, _ranges(motion), ("deg", MIN_ROTATION_DEG), ("mm", MIN_PLACE_MM))
 
 
 def plot_joint_speeds(motion: TrackSummary) -> Any:
     """Joint speeds of the arm with their limits; None without an arm."""
     values = _in_steps(motion, motion.verification.speeds)
-    return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", LEAST_RATE), ("mm/s", LEAST_RATE))
+    return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", MIN_RATE), ("mm/s", MIN_RATE))
 
 
 def plot_base(motion: TrackSummary) -> Any:
@@ -61,10 +85,10 @@ def plot_base(motion: TrackSummary) -> Any:
     times, q = trajectory.times_s, trajectory.q
     place = [Line(label=name, x=times, y=q[:, joint]) for name, joint in (("x", x), ("y", y))]
     turned = Line(label="", x=times, y=DEG * q[:, heading])
-    ends = _scaled(DEG, _ranges(motion)[heading])
+    ends = DEG * _ranges(motion)[heading]
     panels = [
-        Panel(y=Axis(label="place", unit="m"), lines=place, least=LEAST_PLACE_MM / MM),
-        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, least=LEAST_TURN_DEG),
+        Panel(y=Axis(label="place", unit="m"), lines=place, min_span=MIN_PLACE_MM / MM),
+        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, min_span=MIN_ROTATION_DEG),
     ]
     return plot_panels([*panels, *_speed_panels(motion, x, heading)], x=TIME)
 
@@ -78,7 +102,7 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     turning = Line(label="", x=times, y=DEG * omega[:, 0])
     panels = [
         Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
-        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=_scaled(DEG, bounds[heading]), least=LEAST_RATE),
+        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=DEG * bounds[heading], min_span=MIN_RATE),
     ]
     if trajectory.wheel_speeds is not None:
         _, speeds = _in_steps(motion, trajectory.wheel_speeds)
@@ -99,50 +123,44 @@ def plot_clearance(motion: TrackSummary) -> Any:
         lines.append(Line(label="certified between them", x=times, y=MM * between[:, 0]))
     wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
     y = Axis(label="clearance", unit="mm")
-    safe = [MM * collision.limit_m]
-    return plot_panels(
-        [Panel(y=y, lines=lines, bounds=safe, bound="safe distance", marks=wrong)], x=TIME, height_in=2.6
-    )
+    panel = Panel(y=y, lines=lines, bounds=[MM * collision.limit_m], bound="safe distance", marks=wrong)
+    return plot_panels([panel], x=TIME, height_in=2.6)
 
 
 def _plot_arm(
-    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Sequence[float]], turns: Shown, slides: Shown
+    motion: TrackSummary, times: Floats, values: Floats, bounds: Sequence[Floats], angle: Shown, length: Shown
 ) -> Any:
     """One small chart a joint of the arm, two side by side if their names are short; None for a base alone."""
     panels = []
     for joint in motion.arm:
-        slide = motion.robot.joints[joint].kind == "prismatic"
-        scale, (unit, least) = (MM, slides) if slide else (DEG, turns)
+        is_prismatic = motion.robot.joints[joint].kind == "prismatic"
+        scale, (unit, span) = (MM, length) if is_prismatic else (DEG, angle)
         line = Line(label="", x=times, y=scale * values[:, joint])
-        ends = _scaled(scale, bounds[joint])
+        ends = scale * bounds[joint]
         name = motion.robot.joint_names[joint]
-        panels.append(Panel(y=Axis(label=unit), lines=[line], bounds=ends, title=name, least=least))
+        panels.append(Panel(y=Axis(label=unit), lines=[line], bounds=ends, title=name, min_span=span))
     if not panels:
         return None
-    columns = 2 if len(panels) > 1 and all(len(panel.title) <= LONGEST_NAME for panel in panels) else 1
+    columns = 2 if len(panels) > 1 and all(len(panel.title) <= MAX_NAME_LENGTH for panel in panels) else 1
     return plot_panels(panels, x=TIME, columns=columns, height_in=ARM_IN)
 
 
-def _ranges(motion: TrackSummary) -> list[list[float]]:
-    """Ends of each joint's range; of a turn not those beyond a full one: its curve would be pressed flat."""
+def _ranges(motion: TrackSummary) -> list[Floats]:
+    """Ends of each joint's range; of a rotation not those beyond a full turn: its curve would be pressed flat."""
     robot = motion.robot
     ends = np.column_stack([robot.lower, robot.upper])
-    farthest = np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)
-    return [row[np.abs(row) <= most].tolist() for row, most in zip(ends, farthest, strict=True)]
+    shown = np.abs(ends) <= np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)[:, None]
+    return [row[kept] for row, kept in zip(ends, shown, strict=True)]
 
 
-def _speed_bounds(motion: TrackSummary) -> list[list[float]]:
+def _speed_bounds(motion: TrackSummary) -> list[Floats]:
     """Speed limits of each joint, both ways; none where there is none."""
     limits = motion.limits.speed
     return [_both(np.inf if limits is None else float(limits[k])) for k in range(len(motion.robot.joints))]
 
 
-def _scaled(scale: float, bounds: Sequence[float]) -> list[float]:
-    return [scale * bound for bound in bounds]
-
-
-def _both(limit: float) -> list[float]:
-    return [-limit, limit] if np.isfinite(limit) else []
+def _both(limit: float) -> Floats:
+    return np.array([-limit, limit] if np.isfinite(limit) else [])
 
 
 def _middles(motion: TrackSummary) -> Floats:
@@ -154,6 +172,6 @@ def _middles(motion: TrackSummary) -> Floats:
 def _in_steps(motion: TrackSummary, values: Floats) -> tuple[Floats, Floats]:
     """What holds from a sample to the next [M, n] as points of a staircase, or amid its steps if there are many."""
     times = motion.trajectory.times_s
-    if len(values) > MOST_STAIRS:
+    if len(values) > MAX_STAIRS:
         return _middles(motion), values
     return np.repeat(times, 2)[1:-1], np.repeat(values, 2, axis=0)

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from ikde.kernels.arrays import Floats
 from ikde.plot.images import INK, show_as_text
 
 # Okabe and Ito's colours in the order of their contrast with both papers; their black is INK, their yellow too pale.
@@ -105,6 +106,13 @@ def drawing_space() -> Iterator[tuple[Any, Any]]:
             axis.get_major_locator().set_params(nbins=4)
         _set_legend(figure, [axes])
         show_as_text(figure)
+
+
+def set_box(axes: Any, low: Floats, high: Floats, *, zoom: float = 1.0) -> None:
+    """Show a box of space from corner `low` to `high` [3], at one scale for all three axes."""
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    axes.set_zlim(low[2], high[2])
+    axes.set_box_aspect(high - low, zoom=zoom)
 
 
 def legend_name(name: str) -> str:

@@ -13,11 +13,10 @@ from ikde.report.numbers import significant
 from ikde.report.render import make_table, plain, render
 
 WIDTH = 160
-MOST_NAMED = 20  # unreached targets of an arm
-MOST_TARGETS = 5  # that have rows of their own
-MOST_ARMS = 10  # that are named in a line
+MAX_NAMED = 20  # unreached targets of an arm
+MAX_TARGETS = 5  # that have rows of their own
+MAX_ARMS = 10  # that are named in a line
 TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
-BYTES = ("B", "kB", "MB", "GB", "TB")
 
 
 def preview_json(preview: Preview) -> dict[str, Any]:
@@ -27,6 +26,8 @@ def preview_json(preview: Preview) -> dict[str, Any]:
 
 def format_preview(preview: Preview, *, color: bool = False) -> str:
     """What would run, for the terminal."""
+    from rich.filesize import decimal
+
     head = (
         f"[bold]{plain(preview.name)}[/]: robot {plain(preview.robot)}, {_count(preview.targets, 'target')}, "
         f"{_count(preview.repeats, 'repeat')}, seed {preview.seed}"
@@ -44,7 +45,7 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
     lines = [
         f"in all     {preview.solves:,} solves in {_count(preview.parts, 'part')}, about "
         f"{format_seconds(preview.seconds)} on {_count(preview.threads, 'thread')}",
-        f"on disk    about {format_bytes(preview.bytes)}",
+        f"on disk    about {decimal(preview.bytes)}",
         f"columns    {', '.join(preview.columns)}",
         "nothing was written",
     ]
@@ -99,7 +100,7 @@ def _rate_json(rate: Rate) -> dict[str, Any]:
 
 
 def format_run(summary: RunSummary, *, color: bool = False) -> str:
-    """What came of a run, for the terminal: the verdict, a line an arm, who was not reached and why, what is next."""
+    """What came of a run, for the terminal: the verdict, a line an arm, unreached targets and reasons, what is next."""
     solves = sum(arm.reached.total for arm in summary.arms)
     if summary.unreached:
         verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/]"
@@ -114,7 +115,7 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
     few = max(len(arm.by_target) for arm in summary.arms)
     if few:
         tables.append(f"these are the rates and intervals of just these {few} targets, not of targets in general\n")
-    if 0 < few <= MOST_TARGETS:
+    if 0 < few <= MAX_TARGETS:
         tables.append(_target_table(summary.arms))
     path = plain(str(summary.folder))
     tail = [f"answers    {path}", f"next       ikde report {path}"]
@@ -122,8 +123,8 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
 
 
 def _name_arms(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MOST_ARMS} more" if len(names) > MOST_ARMS else ""
-    return f"arm{'s' if len(names) > 1 else ''} {', '.join(names[:MOST_ARMS])}{more}"
+    more = f" and {len(names) - MAX_ARMS} more" if len(names) > MAX_ARMS else ""
+    return f"arm{'s' if len(names) > 1 else ''} {', '.join(names[:MAX_ARMS])}{more}"
 
 
 def _arm_table(arms: Iterable[ArmSummary]) -> Any:
@@ -175,7 +176,7 @@ def _list_unreached(summary: RunSummary) -> list[str]:
     ]
     lines = [f"[bold]not reached[/]: {', '.join(reasons)}"]
     for arm in summary.arms:
-        named = arm.listed[:MOST_NAMED]
+        named = arm.listed[:MAX_NAMED]
         more = arm.unreached_targets - len(named)
         lines += (f"  {plain(_format_unreached(row, summary.repeats))}" for row in named)
         lines += [f"  {plain(arm.name)}, and {_count(more, 'more target')}"] if more else []
@@ -208,15 +209,6 @@ def format_seconds(seconds: float) -> str:
             whole, left = divmod(round(seconds / small), large // small)
             return f"{whole} {unit} {left} {rest}"
     return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
-
-
-def format_bytes(count: float) -> str:
-    """`1.2 GB`."""
-    for unit in BYTES[:-1]:
-        if count < 1000:
-            return f"{count:.3g} {unit}"
-        count /= 1000
-    return f"{count:.3g} {BYTES[-1]}"
 
 
 def _count(number: int, thing: str) -> str:

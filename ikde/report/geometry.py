@@ -7,8 +7,8 @@ from ikde.io.units import LENGTHS_M
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
+from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
-from ikde.report.units import Units, format_fixed
 from ikde.solver.check import CheckResult
 
 

@@ -41,14 +41,8 @@ def _environment() -> Any:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     loader = PackageLoader("ikde.report", "templates")
-    environment = Environment(
-        loader=loader,
-        autoescape=True,
-        undefined=StrictUndefined,
-        finalize=_finalize,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, finalize=_finalize)
+    environment.trim_blocks = environment.lstrip_blocks = True
     environment.filters.update(line=_line, paragraphs=parse_text)
     return environment
 

@@ -11,7 +11,7 @@ from typing import Literal
 Align = Literal["left", "right"]
 Mark = Literal["", "published", "ours", "off"]
 
-MOST_ROOMY_COLUMNS = 12
+MAX_ROOMY_COLUMNS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class Table:
     @property
     def is_dense(self) -> bool:
         """True if it is shown in small print, to fit."""
-        return len(self.columns) > MOST_ROOMY_COLUMNS
+        return len(self.columns) > MAX_ROOMY_COLUMNS
 
     def cells(self) -> list[list[Cell]]:
         """All cells, each with the mark it is shown with."""
@@ -134,7 +134,7 @@ class Figure:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Animation:
-    """A motion that the page plays: `data` is what `plot.animation` makes, as JSON."""
+    """A motion that the page plays: `data` is what `plot.animation` makes of a drawn motion, as JSON."""
 
     data: str = field(repr=False)
     alt: str

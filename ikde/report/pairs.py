@@ -6,8 +6,8 @@ from ikde.io.units import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import explain_no_detector
 from ikde.model.robot import NO_DETECTOR
+from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
-from ikde.report.units import Units, format_fixed
 from ikde.solver.check import compute_pairs
 from ikde.solver.touching import find_always_touching
 

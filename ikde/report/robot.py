@@ -8,9 +8,9 @@ from typing import Any
 from ikde.io.units import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot, Wheels
+from ikde.report.numbers import Units
 from ikde.report.pairs import format_pairs, pairs_json
 from ikde.report.render import make_table, plain, render
-from ikde.report.units import Units
 
 
 def robots_json(robots: Iterable[Robot]) -> list[dict[str, Any]]:

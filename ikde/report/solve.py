@@ -7,9 +7,8 @@ import numpy as np
 
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
-from ikde.report.numbers import seconds
+from ikde.report.numbers import Units, format_fixed, seconds
 from ikde.report.render import make_table, plain, render
-from ikde.report.units import Units, format_fixed
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from ikde import __version__
-from ikde.plot.animation import MOST_FRAMES, make_animation
+from ikde.plot.animation import make_animation
 from ikde.plot.images import to_png, to_svg
 from ikde.plot.moments import plot_moments
-from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints
-from ikde.plot.path import plot_path
+from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints, plot_path
 from ikde.report.markup import code, verbatim
 from ikde.report.numbers import significant
 from ikde.report.page import (
@@ -31,10 +30,12 @@ from ikde.report.page import (
     Table,
 )
 from ikde.report.track import FIXED, gap_mm, list_figures, name_joints
+from ikde.scene.drawn_motion import choose_moments, draw_motion, spread_samples
 from ikde.track.plan import TrackPlan
 from ikde.track.summary import TrackSummary
 
-MOMENTS_DPI = 110
+MOMENTS, MOMENTS_DPI = 8, 110
+MAX_FRAMES = 251
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +57,7 @@ ERRORS = Drawing(
 )
 JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
 SPEEDS = Drawing(
-    plot_joint_speeds,
-    "joint speeds of the arm over time",
-    "Their speeds from sample to sample, and their limits.",
+    plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample, and their limits."
 )
 BASE = Drawing(plot_base, "the base over time", "The base: its place, all its speeds, and their limits.")
 CLEARANCE = Drawing(
@@ -78,14 +77,15 @@ def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | N
 
 def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
     """The robot at eight moments, as a picture."""
-    image = to_png(plot_moments(motion), dpi=dpi)
-    caption = f"Arm red, base blue; the path grey, what was run of it orange. {_tell_black(motion)}"
+    image = to_png(plot_moments(draw_motion(motion, choose_moments(motion, MOMENTS))), dpi=dpi)
+    caption = f"Arm red, base blue; the path grey, what was followed of it orange. {_tell_black(motion)}"
     return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
 
 
-def animate(motion: TrackSummary, frames: int = MOST_FRAMES, prefix: str = "", caption: str = "") -> Animation:
+def animate(motion: TrackSummary, frames: int = MAX_FRAMES, prefix: str = "", caption: str = "") -> Animation:
     """The motion itself."""
-    data = json.dumps(make_animation(motion, frames), separators=(",", ":"), allow_nan=False)
+    moving = make_animation(draw_motion(motion, spread_samples(motion, frames)))
+    data = json.dumps(moving, separators=(",", ":"), allow_nan=False)
     return Animation(
         data=data, alt=f"{prefix}the robot moving, from the side, from the front and from above", caption=caption
     )

@@ -6,13 +6,13 @@ import threading
 import pytest
 
 from ikde.errors import FileError
-from ikde.files.atomic import remove_temporaries, replace_all, temporary_path, write_atomically, write_together
+from ikde.files.atomic import remove_temporaries, replace_all, temporary_path, write_together
 
 
 def test_a_file_is_written_and_written_over(tmp_path):
     path = tmp_path / "a.json"
     for data in (b"first", b"second, longer", b""):
-        write_atomically(path, data)
+        replace_all(tmp_path, {path.name: data})
         assert path.read_bytes() == data
         assert list(tmp_path.iterdir()) == [path]
 
@@ -25,8 +25,8 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(OSError, match="No space left"):
-        write_atomically(path, b"new")
+    with pytest.raises(FileError, match=r"a\.json: cannot be written: No space left"):
+        replace_all(tmp_path, {path.name: b"new"})
     assert [(p, p.read_bytes()) for p in tmp_path.iterdir()] == [(path, b"old")]
 
 
@@ -93,7 +93,7 @@ def test_the_file_that_fails_is_named_and_none_is_new(tmp_path, monkeypatch, cal
 def test_a_disk_that_takes_a_little_at_a_time_gets_it_all(tmp_path, monkeypatch):
     honest = os.write
     monkeypatch.setattr("os.write", lambda descriptor, data: honest(descriptor, data[:7]))
-    write_atomically(tmp_path / "a", b"0123456789" * 10)
+    replace_all(tmp_path, {"a": b"0123456789" * 10})
     assert (tmp_path / "a").read_bytes() == b"0123456789" * 10
 
 
@@ -104,14 +104,14 @@ def test_a_link_in_the_way_is_not_followed(tmp_path):
     path.parent.mkdir()
     temporary_path(path).symlink_to(precious)
     path.symlink_to(precious)
-    write_atomically(path, b"ours")
+    replace_all(path.parent, {path.name: b"ours"})
     assert (precious.read_text(), path.read_text(), path.is_symlink()) == ("mine", "ours", False)
 
 
 def test_a_pipe_in_the_way_is_not_waited_for(tmp_path):
     path = tmp_path / "a.txt"
     os.mkfifo(temporary_path(path))
-    writing = threading.Thread(target=write_atomically, args=(path, b"ours"), daemon=True)
+    writing = threading.Thread(target=replace_all, args=(tmp_path, {path.name: b"ours"}), daemon=True)
     writing.start()
     writing.join(20.0)
     assert path.read_bytes() == b"ours"

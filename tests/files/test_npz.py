@@ -8,7 +8,7 @@ import pytest
 
 from ikde.errors import FileError
 from ikde.files.npz import NpzTable, parse_npy
-from ikde.files.reading import most_bytes
+from ikde.files.reading import max_bytes
 
 
 def npy(array):
@@ -85,7 +85,8 @@ def test_a_pickle_is_never_loaded(tmp_path):
 
 
 def test_an_archive_inside_an_archive_is_no_array():
-    assert complaint(archive(p=archive(p=npy(np.zeros(3))))) == "a.npz: p: not an array of numpy"
+    inner = archive(p=npy(np.zeros(3)))
+    assert complaint(archive(p=inner)) == "a.npz: p: not an array of numpy, or its header is damaged"
 
 
 def test_what_unpacks_to_more_than_the_limit_is_refused_by_what_it_says(monkeypatch):
@@ -98,7 +99,7 @@ def test_what_unpacks_to_more_than_the_limit_is_refused_by_what_it_says(monkeypa
 def test_more_than_can_be_packed_into_so_few_bytes_is_refused():
     data = bytearray(archive(p=npy(np.zeros(3))))
     place = data.index(b"PK\1\2") + 24  # of the size that the list of members gives
-    data[place : place + 4] = (most_bytes() - 1).to_bytes(4, "little")
+    data[place : place + 4] = (max_bytes() - 1).to_bytes(4, "little")
     assert complaint(bytes(data)).endswith("bytes do not fit into the file")
 
 

@@ -8,7 +8,7 @@ import zlib
 import pytest
 
 from ikde.errors import FileError, InputError
-from ikde.files.reading import errors_of, most_bytes, read_bytes, read_json, read_text
+from ikde.files.reading import errors_of, max_bytes, read_bytes, read_json, read_text
 
 
 def complaint(read, *arguments, **options):
@@ -64,13 +64,13 @@ def test_sizes_are_limited_and_the_limit_is_said_and_can_be_raised(tmp_path, mon
 
 def test_half_a_gigabyte_is_the_limit_if_nothing_is_said(monkeypatch):
     monkeypatch.delenv("IKDE_MAX_FILE_MB", raising=False)
-    assert most_bytes() == 500 * 10**6
+    assert max_bytes() == 500 * 10**6
 
 
 @pytest.mark.parametrize("given", ["many", "-1", "0", "nan", "inf", "1e30"])
 def test_a_limit_that_is_none_is_refused(monkeypatch, given):
     monkeypatch.setenv("IKDE_MAX_FILE_MB", given)
-    assert complaint(most_bytes) == f"IKDE_MAX_FILE_MB: expected a number of MB above 0, got {given!r}"
+    assert complaint(max_bytes) == f"IKDE_MAX_FILE_MB: expected a number of MB above 0, got {given!r}"
 
 
 def test_a_link_is_followed_unless_that_is_forbidden(tmp_path):

@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 from ikde.errors import FileError, InputError
-from ikde.io.trajectory_files import base_motion, joint_trajectory, trajectory_table, write_trajectory
+from ikde.io.trajectory_files import base_motion, joint_trajectory, trajectory_table, write_track, write_trajectory
 from tests.track.motions import NAMES, make_motion
 
 DOCUMENTATION = (Path(__file__).parents[2] / "docs" / "track.md").read_text(encoding="utf-8")
@@ -189,3 +189,27 @@ def test_a_joint_of_any_name_comes_back_by_its_name(tmp_path, name):
     assert f"q_{name}" in pq.read_table(tmp_path / "trajectory.parquet").column_names
     for kind, load in (("yaml", yaml.safe_load), ("json", json.loads)):
         assert load((tmp_path / f"joint_trajectory.{kind}").read_text(encoding="utf-8"))["joint_names"][-1] == name
+
+
+def test_everything_is_written_and_the_page_comes_first(tmp_path):
+    files = write_track(tmp_path, make_motion(), {"points": 4}, "<html>")
+    assert files[0] == tmp_path / "report.html"
+    assert names_in(tmp_path) == sorted([*FILES, *TABLES, "report.html", "summary.json"])
+    assert json.loads((tmp_path / "summary.json").read_text()) == {"points": 4}
+
+
+def test_what_an_earlier_one_left_is_taken_away(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    write_track(tmp_path, make_motion(), {}, "<html>")
+    write_track(tmp_path, make_motion(base=False), {})
+    still = [name for name in (*FILES, *TABLES) if not name.startswith("base")]
+    assert names_in(tmp_path) == sorted([*still, "notes.txt", "summary.json"])
+    write_track(tmp_path, make_motion(reached=-1), {})
+    assert names_in(tmp_path) == ["notes.txt", "summary.json"]
+
+
+def test_a_name_in_a_tracks_folder_that_is_taken_is_one_line(tmp_path):
+    (tmp_path / "trajectory.csv").mkdir()
+    with pytest.raises(FileError, match="cannot be written") as caught:
+        write_track(tmp_path, make_motion(), {})
+    assert "\n" not in str(caught.value)

@@ -116,7 +116,7 @@ def test_aliases_of_nothing_and_second_documents_are_one_line(text, tmp_path):
 
 
 def test_values_are_counted_while_they_are_read(tmp_path, monkeypatch):
-    monkeypatch.setattr("ikde.io.yaml_file.MOST_VALUES", 100)
+    monkeypatch.setattr("ikde.io.yaml_file.MAX_VALUES", 100)
     assert len(load("[" + "1," * 99 + "]", tmp_path).data) == 99
     with pytest.raises(FileError, match=r"too many values"):
         load("[" + "1," * 100 + "]" * 10_000, tmp_path)  # the end, which is no YAML, is not reached

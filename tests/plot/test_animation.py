@@ -1,44 +1,61 @@
-"""A motion as data to play: whole millimetres, frames in time."""
+"""A drawn motion as data to play: whole millimetres, roles with their colours."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-import ikde
 from ikde.plot.animation import make_animation
+from ikde.report import html
+from ikde.scene.drawn_motion import draw_motion
+from ikde.scene.drawn_pose import COLORS
 from tests.track.measured import make_measured
 
 
 @pytest.fixture(scope="module")
 def motion(qiao):
-    return make_measured(qiao, amplitude=2.6)
+    return draw_motion(make_measured(qiao, amplitude=2.6), range(0, 21, 4))
 
 
-def test_frames_are_samples_and_the_last_is_among_them(motion):
-    data = make_animation(motion, 6)
-    assert data["times"] == [0.0, 0.08, 0.16, 0.24, 0.32, 0.4]
+def test_frames_are_in_time_along_the_path(motion):
+    data = make_animation(motion)
+    assert data["times_s"] == [0.0, 0.08, 0.16, 0.24, 0.32, 0.4]
     assert data["done"] == [1, 5, 9, 13, 17, 21]
-    assert data["end"] == 0.4
+    assert data["duration_s"] == 0.4
+    np.testing.assert_allclose(data["path_mm"], 1e3 * motion.path_m, atol=0.5)
 
 
-def test_bones_lead_to_the_tool(qiao, motion):
+def test_links_lead_to_the_tool(motion):
     data = make_animation(motion)
-    assert np.shape(data["bones"]) == (21, 11, 3)
-    for q, bones in zip(motion.trajectory.q, data["bones"], strict=True):
-        np.testing.assert_allclose(bones[-1], 1e3 * ikde.forward(qiao, q)["tool"][:3, 3], atol=0.5)
+    assert np.shape(data["links_mm"]) == (6, 11, 3)
+    np.testing.assert_allclose(data["links_mm"], 1e3 * motion.robot.links_m, atol=0.5)
 
 
-def test_spheres_have_their_parts(qiao, motion):
+def test_spheres_have_their_components_and_those_their_roles(motion):
+    data, robot = make_animation(motion), motion.robot
+    np.testing.assert_allclose(data["centres_mm"], 1e3 * robot.centres_m, atol=0.5)
+    np.testing.assert_allclose(data["radii_mm"], 1e3 * robot.radii_m, atol=0.5)
+    assert data["parts"] == robot.parts.tolist()
+    names = list(data["colors"])
+    assert data["colors"] == COLORS
+    assert [[names[role] for role in roles] for roles in data["roles"]] == robot.roles.tolist()
+
+
+def test_a_long_path_is_shown_by_few_points(qiao):
+    motion = draw_motion(make_measured(qiao, further=2000), [0, 20])
     data = make_animation(motion)
-    count = sum(row.count for row in qiao.approximations[motion.collision.detector.spheres])
-    assert np.shape(data["centres"]) == (21, count, 3)
-    assert len(data["radii"]) == len(data["parts"]) == count
-    assert {data["names"][part] for part in data["base"]} == {"M", "G"}
-    assert [{data["names"][part] for part in black} for black in data["black"]] == motion.colliding
+    assert len(data["path_mm"]) == 501
+    assert data["done"] == [1, 6]  # points 0, 4, 8, 12, 16 and 20 of 2,021
+
+
+def test_the_player_reads_no_key_that_is_not_written(motion):
+    script = (Path(html.__file__).parent / "templates" / "motion.js").read_text()
+    assert set(re.findall(r"motion\.(\w+)", script)) == set(make_animation(motion))
 
 
 def test_it_is_json_also_without_a_detector(qiao):
-    data = make_animation(make_measured(qiao, detector="none"), 3)
+    data = make_animation(draw_motion(make_measured(qiao, detector="none"), [0, 10, 20]))
     assert json.loads(json.dumps(data)) == data
-    assert data["centres"] == [[], [], []]
+    assert data["centres_mm"] == [[], [], []]

@@ -4,22 +4,25 @@ import numpy as np
 import pytest
 
 from ikde.plot.charts import (
-    MOST_POINTS,
+    MAX_POINTS,
     Bars,
     Estimate,
     Event,
     Line,
+    Panel,
     Sample,
     plot_bars,
     plot_cdf,
     plot_forest,
     plot_histogram,
     plot_lines,
+    plot_panels,
 )
 from ikde.plot.images import INK, to_svg
 from ikde.plot.style import COLORS, Axis
 
 TIME, MM = Axis(label="time", unit="s"), Axis(label="clearance", unit="mm")
+SECONDS = Axis(label="t", unit="s")
 
 
 def labels(figure):
@@ -90,7 +93,7 @@ def test_curves_of_a_cdf_begin_at_zero_and_end_together():
 
 def test_a_cdf_of_many_values_has_few_points():
     line = curves(plot_cdf([Sample(label="a", values=np.arange(100_000))], x=TIME))["a"]
-    assert len(line.get_xdata()) == MOST_POINTS + 2
+    assert len(line.get_xdata()) == MAX_POINTS + 2
     assert line.get_xdata()[-1] == 99_999
     assert line.get_ydata()[-1] == 100.0
 
@@ -132,3 +135,42 @@ def test_bars_and_estimates_may_have_no_value():
 def test_a_name_that_begins_with_an_underscore_is_in_the_legend():
     figure = plot_lines([Line(label="_fast", x=[0, 1], y=[0, 1])], x=TIME, y=MM)
     assert labels(figure) == [" _fast"]
+
+
+def panel(label, **changes):
+    return Panel(y=Axis(label=label), lines=[Line(label=label, x=[0, 1], y=[1, 2])], **changes)
+
+
+@pytest.fixture
+def panels():
+    same = Panel(y=Axis(label="again"), lines=[Line(label="a", x=[0, 1], y=[2, 1])])
+    return plot_panels(
+        [panel("a", bounds=[0.0, 3.0]), panel("b", bounds=[1.0], marks=[0.5]), same], x=SECONDS, columns=2
+    )
+
+
+def test_only_the_lowest_name_x(panels):
+    assert [axes.get_xlabel() for axes in panels.axes] == ["", "t [s]", "t [s]"]
+
+
+def test_one_legend_names_each_look_once(panels):
+    assert [text.get_text() for text in panels.legends[0].get_texts()] == ["a", "limit", "b", "collision"]
+    first, again = (panels.axes[k].lines[0] for k in (0, 2))
+    assert first.get_color() == again.get_color()
+    assert first.get_color() != panels.axes[1].lines[0].get_color()
+
+
+def test_a_title_stands_above_its_chart():
+    figure = plot_panels([panel("a", title="elbow"), panel("b")], x=SECONDS)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["elbow", ""]
+
+
+@pytest.mark.parametrize(("min_span", "span"), [(0.0, 1.1), (1.0, 1.1), (5.0, 5.0)])
+def test_an_axis_spans_what_it_must(min_span, span):
+    low, high = plot_panels([panel("a", min_span=min_span)], x=SECONDS).axes[0].get_ylim()
+    assert high - low == pytest.approx(span)
+    assert 0.5 * (low + high) == pytest.approx(1.5)
+
+
+def test_a_curve_without_a_label_needs_no_legend():
+    assert plot_panels([Panel(y=SECONDS, lines=[Line(label="", x=[0], y=[0])])], x=SECONDS).legends == []

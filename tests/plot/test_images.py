@@ -9,11 +9,11 @@ import pytest
 
 from ikde.errors import printable
 from ikde.model.collision_model import CollisionModel
-from ikde.plot.charts import Bars, Line, plot_bars, plot_lines
+from ikde.plot.charts import Bars, Line, Panel, plot_bars, plot_lines, plot_panels
 from ikde.plot.images import INK, to_png, to_svg
-from ikde.plot.panels import Panel, plot_panels
 from ikde.plot.pose import plot_pose, save_figure
 from ikde.plot.style import Axis, drawing_space
+from ikde.scene.drawn_pose import draw_pose
 from tests.hostile_names import EVERYTHING
 
 
@@ -105,5 +105,5 @@ def test_letters_that_the_type_does_not_have_are_no_news():
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
 def test_a_robot_of_any_name_is_drawn(tmp_path, qiao, kind):
     robot = replace(qiao, name="手臂 $\\frac{ <b>")
-    save_figure(plot_pose(CollisionModel.of(robot, "none"), robot.home), tmp_path / f"a.{kind}")
+    save_figure(plot_pose(draw_pose(CollisionModel.of(robot, "none"), robot.home)), tmp_path / f"a.{kind}")
     assert (tmp_path / f"a.{kind}").stat().st_size > 1000

@@ -1,4 +1,4 @@
-"""Views of the robot: as many as asked for, collisions first."""
+"""Views of a robot at moments: a circle a sphere, collisions black and named."""
 
 from dataclasses import replace
 
@@ -8,65 +8,52 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Circle
 
 from ikde.plot.images import to_png
-from ikde.plot.moments import choose_moments, plot_moments
-from ikde.plot.pose import COLLIDING
+from ikde.plot.moments import plot_moments
+from ikde.scene.drawn_motion import draw_motion
+from ikde.scene.drawn_pose import COLORS, Role
 from tests.track.measured import make_measured
 
 
 @pytest.fixture(scope="module")
-def motion(qiao):
-    return make_measured(qiao)
-
-
-@pytest.fixture(scope="module")
 def folded(qiao):
-    return make_measured(qiao, amplitude=2.6)
+    return draw_motion(make_measured(qiao, amplitude=2.6), [0, 10])
 
 
 def circles(axes):
     return [patch for patch in axes.patches if isinstance(patch, Circle)]
 
 
-def test_moments_are_even_from_first_to_last(motion):
-    assert choose_moments(motion) == [0, 3, 6, 9, 11, 14, 17, 20]
-    assert choose_moments(motion, 3) == [0, 10, 20]
+def test_every_sphere_is_a_circle_in_the_colour_of_its_role(folded):
+    views = plot_moments(folded).axes
+    for view, roles in zip(views, folded.robot.roles[:, folded.robot.parts], strict=True):
+        drawn = sorted(patch.get_facecolor()[:3] for patch in circles(view))
+        assert drawn == sorted(to_rgb(COLORS[role]) for role in roles)
+    assert "collide" in views[1].get_title()
 
 
-def test_a_short_motion_shows_each_sample_once(qiao):
-    assert choose_moments(make_measured(qiao, steps=2)) == [0, 1, 2]
+def test_far_spheres_are_drawn_first(folded):
+    robot = folded.robot
+    drawn = sorted(circles(plot_moments(folded).axes[0]), key=lambda circle: circle.zorder)
+    towards_eye = np.array([np.cos(np.radians(-55)), np.sin(np.radians(-55)), np.tan(np.radians(22))])
+    order = np.argsort(robot.centres_m[0] @ towards_eye, kind="stable")
+    assert [circle.radius for circle in drawn] == robot.radii_m[order].tolist()
 
 
-def test_a_collision_nearby_is_shown_instead(folded):
-    chosen = choose_moments(folded, 3)
-    assert any(folded.colliding[k] for k in chosen)
-    assert folded.verification.gaps_m.min() == folded.verification.gaps_m[chosen].min()
+@pytest.mark.parametrize(
+    ("names", "text"), [(set(), ""), ({"M", "J2"}, ": J2, M collide"), ({"M", "J2", "L1"}, ": 3 parts collide")]
+)
+def test_a_title_names_two_components_at_most(folded, names, text):
+    robot = folded.robot
+    roles = np.where(np.isin(robot.components, list(names)), Role.COLLIDING, Role.ARM)
+    motion = replace(folded, robot=replace(robot, roles=np.array([roles, roles])))
+    assert plot_moments(motion).axes[1].get_title() == f"t = 0.20 s{text}"
 
 
-def test_every_sphere_is_a_circle_and_collisions_are_black(qiao, motion, folded):
-    count = sum(row.count for row in qiao.approximations[motion.collision.detector.spheres])
-    views = plot_moments(motion, [0, 20]).axes
-    assert [len(circles(axes)) for axes in views] == [count, count]
-    worst = int(np.argmin(folded.verification.gaps_m.min(axis=1)))
-    (view,) = plot_moments(folded, [worst]).axes
-    black = [patch for patch in circles(view) if patch.get_facecolor()[:3] == to_rgb(COLLIDING)]
-    names = folded.colliding[worst]
-    rows = qiao.approximations[folded.collision.detector.spheres]
-    assert len(black) == sum(row.count for row in rows if row.component in names)
-    assert "collide" in view.get_title()
-
-
-def test_a_title_names_two_parts_at_most(folded):
-    for names, told in ((set(), ""), ({"M", "J2"}, ": J2, M collide"), ({"M", "J2", "L1"}, ": 3 parts collide")):
-        motion = replace(folded)
-        motion.__dict__["colliding"] = [names] * len(folded.trajectory.q)
-        assert plot_moments(motion, [5]).axes[0].get_title() == f"t = 0.10 s{told}"
-
-
-def test_without_a_detector_the_bones_are_drawn(qiao):
-    (view,) = plot_moments(make_measured(qiao, detector="none"), [5]).axes
+def test_without_a_detector_the_links_are_drawn(qiao):
+    (view,) = plot_moments(draw_motion(make_measured(qiao, detector="none"), [5])).axes
     assert circles(view) == []
     assert len(view.lines) > 3
 
 
-def test_it_becomes_a_picture(motion):
-    assert to_png(plot_moments(motion, [0]), dpi=50).startswith(b"\x89PNG")
+def test_it_becomes_a_picture(folded):
+    assert to_png(plot_moments(folded), dpi=50).startswith(b"\x89PNG")

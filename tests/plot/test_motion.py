@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints
+from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints, plot_path
 from tests.random_robots import make_frame, make_robot
 from tests.track.measured import make_measured, make_still
 
@@ -24,6 +24,20 @@ def levels(axes):
 def names(figure):
     """What stands above the charts."""
     return [axes.get_title(loc="left") for axes in figure.axes]
+
+
+def test_path_tool_and_base_are_drawn(motion):
+    axes = plot_path(motion).axes[0]
+    drawn = {line.get_label(): np.array(line.get_data_3d()).T for line in axes.lines}
+    np.testing.assert_allclose(drawn["path"], motion.trajectory.path.p_world_tool)
+    np.testing.assert_allclose(drawn["tool"], motion.trajectory.path.p_world_tool)
+    np.testing.assert_allclose(drawn["base, on the floor"][:, :2], motion.trajectory.q[:, :2])
+    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["path", "tool", "base, on the floor"]
+
+
+def test_a_robot_that_stands_still_drives_nowhere():
+    axes = plot_path(make_still(ikde.load_robot("ur5"))).axes[0]
+    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["path", "tool"]
 
 
 def test_joints_are_named_above_and_in_degrees(motion):

@@ -1,4 +1,4 @@
-"""The figure of a pose: the paper's colours, the closest pair, the target, and a file."""
+"""Figures of a pose and of frames: everything that is to be drawn is there, in the colour of its role, to scale."""
 
 from collections import Counter
 
@@ -9,20 +9,19 @@ from matplotlib.colors import to_rgb
 import ikde
 from ikde.errors import FileError
 from ikde.model.collision_model import CollisionModel
-from ikde.plot.pose import ARM, BASE, CLOSEST, COLLIDING, TARGET, base_components, plot_pose, save_figure
+from ikde.plot.pose import plot_frames, plot_pose, save_figure
+from ikde.scene.drawn_pose import COLORS, Role, draw_frames, draw_pose
+
+TARGET = ikde.Target((0.8, 0.5, 1.0))
+NAMES = ["Ob", "O1", "Oc12", "O2", "Oc23", "O3", "O4", "O5", "O6", "tool"]
 
 
-@pytest.fixture(scope="module")
-def folded(qiao):
-    """The arm in the load."""
+@pytest.fixture(scope="module", params=[2.6, 0.0], ids=["folded", "straight"])
+def pose(qiao, request):
+    """The arm in the load, and up in the air."""
     q = qiao.home
-    q[4:6] = 2.6, 2.6
-    return q
-
-
-def axes_of(robot, *arguments, detector="none", **options):
-    choice = detector
-    return plot_pose(CollisionModel.of(robot, choice), *arguments, **options).axes[0]
+    q[4:6] = request.param
+    return draw_pose(CollisionModel.of(qiao, "improved"), q, target=TARGET)
 
 
 def labels(axes):
@@ -40,114 +39,80 @@ def hue(surface):
     return tuple(np.round(brightest / max(brightest.max(), 1e-9), 1))
 
 
-def hue_of(color):
-    rgb = np.array(to_rgb(color))
+def hue_of(role):
+    rgb = np.array(to_rgb(COLORS[role]))
     return tuple(np.round(rgb / rgb.max(), 1))
 
 
-def test_every_sphere_is_drawn_in_the_colour_of_its_part(qiao):
-    detector = qiao.detectors["improved"]
-    drawn = Counter(hue(surface) for surface in surfaces(axes_of(qiao, qiao.home, detector=detector)))
-    spheres = Counter()
-    for row in qiao.approximations["improved"]:
-        spheres[hue_of(BASE if row.component in ("M", "G") else ARM)] += row.count
-    assert drawn == spheres
+def test_every_sphere_is_drawn_in_the_colour_of_its_role(pose):
+    drawn = Counter(hue(surface) for surface in surfaces(plot_pose(pose).axes[0]))
+    assert drawn == Counter(hue_of(role) for role in pose.robot.roles[pose.robot.parts])
 
 
-def test_colliding_components_are_black(qiao, folded):
-    detector = qiao.detectors["improved"]
-    colliding = {c for pair in ikde.check(qiao, folded).pairs if pair.collides for c in (pair.a, pair.b)}
-    drawn = Counter(hue(surface) for surface in surfaces(axes_of(qiao, folded, detector=detector)))
-    black = sum(row.count for row in qiao.approximations["improved"] if row.component in colliding)
-    assert colliding
-    assert drawn[hue_of(COLLIDING)] == black
+def test_the_legend_names_each_role_once(pose):
+    roles = dict.fromkeys(pose.robot.roles[pose.robot.parts])
+    assert labels(plot_pose(pose).axes[0]) == [*(f"{role} spheres" for role in roles), *(m.text for m in pose.marks)]
 
 
-def test_the_legend_names_each_colour_once(qiao, folded):
-    detector = qiao.detectors["improved"]
-    free = labels(axes_of(qiao, qiao.home, detector=detector))
-    assert [label for label in free if "spheres" in label] == ["base spheres", "arm spheres"]
-    assert "colliding spheres" in labels(axes_of(qiao, folded, detector=detector))
+def test_marks_are_drawn_where_they_are(pose):
+    closest, target = pose.marks
+    axes = plot_pose(pose).axes[0]
+    line = next(line for line in axes.lines if line.get_label() == closest.text)
+    assert line.get_color() == COLORS[Role.CLOSEST]
+    np.testing.assert_array_equal(np.array(line.get_data_3d()).T, closest.points_m)
+    mark = next(mark for mark in axes.collections if mark.get_label() == target.text)
+    assert to_rgb(mark.get_facecolor()[0][:3]) == pytest.approx(to_rgb(COLORS[Role.TARGET]))
+    assert axes.get_title() == pose.title
 
 
-def test_the_closest_pair_is_labelled_with_its_clearance(qiao):
-    axes = axes_of(qiao, qiao.home, detector=qiao.detectors["improved"])
-    pair = ikde.check(qiao, qiao.home).pairs[0]
-    text = f"closest pair, {pair.a}-{pair.b}: {pair.clearance_m * 1e3:.1f} mm"
-    assert text in labels(axes)
-    line = next(line for line in axes.lines if line.get_label() == text)
-    assert line.get_color() == CLOSEST
-
-
-def test_the_closest_pair_is_drawn_between_the_two_spheres(qiao):
-    axes = axes_of(qiao, qiao.home, detector=qiao.detectors["improved"])
-    line = next(line for line in axes.lines if line.get_label().startswith("closest pair"))
-    frames = ikde.forward(qiao, qiao.home)
-    ends = np.array(line.get_data_3d()).T
-    expected = [frames["O3"][:3, 3], frames["O6"][:3, 3]]  # J4 and J6
-    assert sorted(map(tuple, ends.round(9))) == sorted(map(tuple, np.array(expected).round(9)))
-
-
-def test_the_title_says_the_verdict(qiao, folded):
-    detector = qiao.detectors["improved"]
-    assert "free of self-collision" in axes_of(qiao, qiao.home, detector=detector).get_title()
-    title = axes_of(qiao, folded, detector=detector).get_title()
-    assert title.endswith("self-collision")
-    assert "free" not in title
-
-
-def test_an_unchecked_pose_is_not_called_free(qiao, folded):
-    assert axes_of(qiao, folded).get_title() == "qiao2021  ·  self-collision not checked"
-
-
-def test_a_target_is_marked(qiao):
-    axes = axes_of(qiao, qiao.home, target=ikde.Target((0.8, 0.5, 1.0)))
-    assert labels(axes) == ["target"]
-    marks = [mark for mark in axes.collections if mark.get_label() == "target"]
-    assert to_rgb(marks[0].get_facecolor()[0][:3]) == pytest.approx(to_rgb(TARGET))
-
-
-def test_without_spheres_and_target_the_skeleton_is_drawn(qiao):
-    axes = axes_of(qiao, qiao.home)
+def test_without_spheres_and_target_the_links_are_drawn(qiao):
+    axes = plot_pose(draw_pose(CollisionModel.of(qiao, "none"), qiao.home)).axes[0]
     assert surfaces(axes) == []
     tool = ikde.forward(qiao, qiao.home)["tool"][:3, 3]
     assert np.array(axes.lines[0].get_data_3d())[:, -1] == pytest.approx(tool)
 
 
 def test_everything_drawn_is_inside_the_axes_at_one_scale(any_robot):
-    detector = CollisionModel.of(any_robot).detector
-    axes = axes_of(any_robot, any_robot.home, detector=detector, target=ikde.Target((0.8, 0.5, 1.0)))
+    pose = draw_pose(CollisionModel.of(any_robot), any_robot.home, target=TARGET)
+    axes = plot_pose(pose).axes[0]
     limits = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
     assert np.ptp(limits, axis=1) == pytest.approx(np.ptp(limits[0]))
-    for line in axes.lines[:1]:
-        points = np.array(line.get_data_3d())
-        assert np.all(limits[:, :1] <= points + 1e-9)
-        assert np.all(points <= limits[:, 1:] + 1e-9)
-
-
-def test_the_base_of_the_paper_is_platform_and_load(qiao):
-    for detector in qiao.detectors.values():
-        assert base_components(CollisionModel(robot=qiao, detector=detector)) == {"M", "G"}
-
-
-@pytest.mark.parametrize(("name", "base"), [("ur5", {"base"}), ("panda", {"link0"})])
-def test_the_base_of_a_fixed_robot_is_its_foot(name, base):
-    robot = ikde.load_robot(name)
-    assert base_components(CollisionModel.of(robot)) == base
+    low, high = pose.compute_box()
+    assert np.all(limits[:, 0] <= low + 1e-9)
+    assert np.all(high <= limits[:, 1] + 1e-9)
 
 
 @pytest.mark.parametrize(("name", "start"), [("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF")])
 def test_the_file_is_of_its_kind(qiao, tmp_path, name, start):
-    save_figure(
-        plot_pose(CollisionModel.of(qiao, "none"), qiao.home, target=ikde.Target((0.8, 0.5, 1.0))), tmp_path / name
-    )
+    save_figure(plot_pose(draw_pose(CollisionModel.of(qiao, "none"), qiao.home, target=TARGET)), tmp_path / name)
     assert (tmp_path / name).read_bytes().startswith(start)
 
 
 @pytest.mark.parametrize(("name", "words"), [("a.xyz", "cannot be drawn"), ("nowhere/a.png", "cannot be written")])
 def test_a_file_that_cannot_be_made_is_one_line(qiao, tmp_path, name, words):
-    figure = plot_pose(CollisionModel.of(qiao, "none"), qiao.home, target=ikde.Target((0.8, 0.5, 1.0)))
+    figure = plot_pose(draw_pose(CollisionModel.of(qiao, "none"), qiao.home))
     with pytest.raises(FileError, match=words) as caught:
         save_figure(figure, tmp_path / name)
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def frames(qiao):
+    return plot_frames(draw_frames(qiao, qiao.home, NAMES, title="home")).axes[0]
+
+
+def test_every_frame_has_its_name_and_three_axes(frames):
+    assert [text.get_text() for text in frames.texts] == NAMES
+    assert len(frames.lines) == 1 + 3 * len(NAMES)
+    assert frames.get_title() == "home"
+
+
+def test_a_metre_is_a_metre_in_every_direction(frames):
+    spans = [np.ptp(axis.get_view_interval()) for axis in (frames.xaxis, frames.yaxis, frames.zaxis)]
+    scales = np.array(frames._box_aspect) / spans
+    assert np.ptp(scales) < 0.05 * np.mean(scales)
+
+
+def test_axes_are_named_with_their_unit(frames):
+    assert [frames.get_xlabel(), frames.get_ylabel(), frames.get_zlabel()] == ["x [m]", "y [m]", "z [m]"]

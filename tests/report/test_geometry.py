@@ -7,7 +7,7 @@ import pytest
 
 import ikde
 from ikde.report.geometry import check_json, format_check, format_forward, forward_json
-from ikde.report.units import Units
+from ikde.report.numbers import Units
 
 M_RAD, MM_DEG = Units(), Units("mm", "deg")
 

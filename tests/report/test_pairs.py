@@ -11,8 +11,8 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.proofs import drop_proved, proof_margin
 from ikde.model.pack import pack_robot
+from ikde.report.numbers import Units
 from ikde.report.pairs import format_pairs, pairs_json
-from ikde.report.units import Units
 from tests.bare_robot import BARE
 from tests.robot_files import load_text
 

@@ -9,8 +9,8 @@ import pytest
 import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Provenance
+from ikde.report.numbers import Units
 from ikde.report.robot import format_robot, format_robots, robot_json, robots_json
-from ikde.report.units import Units
 
 MM_DEG = Units("mm", "deg")
 

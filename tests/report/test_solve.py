@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.report.numbers import Units
 from ikde.report.solve import BAR, format_solve, solve_json
-from ikde.report.units import Units
 
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 MM_DEG = Units("mm", "deg")

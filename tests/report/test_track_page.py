@@ -19,7 +19,7 @@ from ikde.track.trajectory import TrackStop, TrackStopReason
 from tests.report.pages import leave_out_figures
 from tests.track.measured import make_measured, make_still
 
-MOST_BYTES = 5_000_000
+MAX_BYTES = 5_000_000
 STOP = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
 
 
@@ -36,7 +36,7 @@ def page(qiao, plan):
 
 def test_the_page_needs_nothing_else(page):
     text = render_html(page)
-    assert len(text) < MOST_BYTES
+    assert len(text) < MAX_BYTES
     assert re.findall(r'(?:src|href)="(?!#|data:image/png)', text) == []
     assert re.findall(r"@import|@font-face|url\((?!#)|https?://(?!www.w3.org)", text) == []
     assert "wave &lt;1&gt;" in text

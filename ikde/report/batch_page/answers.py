@@ -17,8 +17,8 @@ from ikde.batch.statistics import Rate
 from ikde.errors import FileError
 from ikde.solver.verify import MaskedBools
 
-MOST_MISSED = 50  # targets that are listed with a reason
-MOST_NAMED = 10_000  # targets whose names are kept
+MAX_MISSED = 50  # targets that are listed with a reason
+MAX_NAMED = 10_000  # targets whose names are kept
 ALWAYS = ("target", "reached")
 NUMBERS = (*ALWAYS, "attempts", "position_error_m", "orientation_error_rad", "clearance_m")
 WORDS = ("stop_reason", "pair_a", "pair_b")
@@ -44,7 +44,7 @@ class ArmAnswers:
     closest_pairs: Mapping[tuple[str, str], int]
     """Of the reached solutions."""
     missed: Mapping[int, Mapping[str, Any]]
-    """The first row that was not reached, by target, of the first `MOST_MISSED` of them."""
+    """The first row that was not reached, by target, of the first `MAX_MISSED` of them."""
 
     @property
     def name(self) -> str:
@@ -123,7 +123,7 @@ def gather_answers(folder: str | PathLike[str]) -> RunAnswers:
     names: dict[int, str] = {}
     for part in done:
         solutions = piles[part.arm].add(folder, part, manifest)
-        if manifest.targets <= MOST_NAMED and "target_name" in solutions.column_names:
+        if manifest.targets <= MAX_NAMED and "target_name" in solutions.column_names:
             names.update(_find_names(solutions))
     arms = tuple(piles[arm.name].answers(folder, arm, manifest.graders) for arm in manifest.arms)
     return RunAnswers(folder=folder, manifest=manifest, parts_done=len(done), arms=arms, names=names)
@@ -142,7 +142,7 @@ class _Pile:
     def add(self, folder: Path, part: Part, manifest: Manifest) -> pa.Table:
         """Put one part on the pile; returns what was read of its solutions."""
         graders = manifest.graders
-        listing = MISSED if len(self.missed) < MOST_MISSED else ()
+        listing = MISSED if len(self.missed) < MAX_MISSED else ()
         wanted = [*NUMBERS, *_verdicts(graders), *WORDS, "target_name", *listing]
         solutions = read_part(folder, manifest, part, SOLUTIONS, wanted)
         timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
@@ -168,7 +168,7 @@ class _Pile:
         numbers = np.flatnonzero(~solutions["reached"].to_numpy())
         targets, first = np.unique(solutions["target"].to_numpy()[numbers], return_index=True)
         for target, index in zip(targets.tolist(), first, strict=True):
-            if target not in self.missed and len(self.missed) < MOST_MISSED:
+            if target not in self.missed and len(self.missed) < MAX_MISSED:
                 self.missed[target] = solutions.slice(numbers[index], 1).to_pylist()[0]
 
     def answers(self, folder: Path, facts: ArmFacts, graders: tuple[str, ...]) -> ArmAnswers:

@@ -14,8 +14,8 @@ from ikde.report.batch_page.success import CHECKED
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Column, Figure, Gallery, Section, Table
 
-MOST_PAIRS = 12
-FEWEST, MOST_BINS = 12, 60
+MAX_PAIRS = 12
+MIN_BINS, MAX_BINS = 12, 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def _draw(arms: Sequence[ArmAnswers], measure: Measure) -> Figure:
     most = max(np.size(sample.values) for sample in samples)
     log = measure is not CLEARANCE and is_wide(samples)
     axis = Axis(label=measure.title, unit=measure.unit, log=log)
-    bins = int(np.clip(2.0 * most ** (1 / 3), FEWEST, MOST_BINS))
+    bins = int(np.clip(2.0 * most ** (1 / 3), MIN_BINS, MAX_BINS))
     return Figure(
         image=to_svg(plot_histogram(samples, x=axis, bins=bins)),
         alt=f"Histogram of the {measure.title} of the reached solutions, a line an arm",
@@ -100,7 +100,7 @@ def _make_pairs(run: RunAnswers) -> Table:
     for shares in arms:
         for pair, share in shares.items():
             sums[pair] = sums.get(pair, 0.0) + share
-    shown = sorted(sums, key=lambda pair: (-sums[pair], pair))[:MOST_PAIRS]
+    shown = sorted(sums, key=lambda pair: (-sums[pair], pair))[:MAX_PAIRS]
     left = len(sums) - len(shown)
     return Table(
         columns=(Column("pair", align="left"), *(Column(arm.name, "%", group="closest in") for arm in run.arms)),

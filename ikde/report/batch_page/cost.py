@@ -12,7 +12,7 @@ from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Column, Figure, Gallery, Section, Table
 
-MOST_CURVES = 6  # in one chart: there are six looks
+MAX_CURVES = 6  # in one chart: there are six looks
 WIDE = 30  # from here on, maximum over minimum, an axis is logarithmic
 
 
@@ -23,8 +23,8 @@ def make_cost(run: RunAnswers) -> Section:
 
 def choose_curves(arms: Sequence[ArmAnswers]) -> tuple[Sequence[ArmAnswers], str]:
     """The arms that fit into one chart, and a remark if these are not all."""
-    few = f" The first {MOST_CURVES} of {len(arms)} arms." if len(arms) > MOST_CURVES else ""
-    return arms[:MOST_CURVES], few
+    few = f" The first {MAX_CURVES} of {len(arms)} arms." if len(arms) > MAX_CURVES else ""
+    return arms[:MAX_CURVES], few
 
 
 def is_wide(samples: Sequence[Sample]) -> bool:

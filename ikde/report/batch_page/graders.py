@@ -6,7 +6,7 @@ import numpy as np
 
 from ikde.batch.statistics import Rate
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
-from ikde.report.batch_page.success import MOST_TARGETS, draw_rates, format_rate
+from ikde.report.batch_page.success import MAX_TARGETS, draw_rates, format_rate
 from ikde.report.page import Block, Column, Figure, Section, Table
 
 
@@ -16,7 +16,7 @@ def make_graders(run: RunAnswers) -> Section | None:
     if not graders:
         return None
     blocks: list[Block] = [_make_rates(run), *_draw(run)]
-    if 1 < run.manifest.targets <= MOST_TARGETS:
+    if 1 < run.manifest.targets <= MAX_TARGETS:
         blocks.append(_make_targets(run))
     if len(graders) > 1:
         blocks.append(_make_paired(run))

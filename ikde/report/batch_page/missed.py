@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ikde.report.batch_page.answers import MOST_MISSED, ArmAnswers, RunAnswers
+from ikde.report.batch_page.answers import MAX_MISSED, ArmAnswers, RunAnswers
 from ikde.report.numbers import vector
 from ikde.report.page import Column, Section, Table
 
@@ -17,7 +17,7 @@ def make_missed(run: RunAnswers) -> Section | None:
     misses = [(target, arm) for arm in run.arms for target in arm.missed]
     if not misses:
         return None
-    shown = sorted(misses, key=lambda miss: miss[0])[:MOST_MISSED]
+    shown = sorted(misses, key=lambda miss: miss[0])[:MAX_MISSED]
     rows = [_make_row(run, arm, target) for target, arm in shown]
     total = sum(np.unique(arm.numbers["target"][~arm.reached]).size for arm in run.arms)
     columns = [

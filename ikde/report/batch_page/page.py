@@ -15,7 +15,7 @@ from ikde.report.markup import code, verbatim
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Block, Notice, Number, Numbers, Page
 
-MOST_NUMBERS = 4  # arms that get large type
+MAX_NUMBERS = 4  # arms that get large type
 
 
 def make_batch_page(run: RunAnswers) -> Page:
@@ -66,7 +66,7 @@ def _headline(run: RunAnswers) -> list[Block]:
         return []
     if len(run.arms) == 1:
         return [Numbers((_reached("reached", run.rate, run.arms), *_cost(run.arms[0])))]
-    if len(run.arms) > MOST_NUMBERS:
+    if len(run.arms) > MAX_NUMBERS:
         return [Numbers((_reached("reached, over all arms", run.rate, run.arms),))]
     return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate, [arm]) for arm in run.arms))]
 

@@ -11,7 +11,7 @@ from ikde.report.numbers import with_interval
 from ikde.report.page import Block, Column, Figure, Section, Table
 
 CHECKED = {True: "checked", False: "not checked", None: "–"}
-MOST_TARGETS = 30  # rows of the table by target
+MAX_TARGETS = 30  # rows of the table by target
 
 
 def make_success(run: RunAnswers) -> Section:
@@ -83,8 +83,8 @@ def _make_targets(run: RunAnswers) -> Table:
     counts = [_count_by_target(arm, run.manifest.targets) for arm in run.arms]
     reached, solves = np.sum(counts, axis=0)
     shares = np.divide(reached, solves, out=np.full(run.manifest.targets, np.inf), where=solves > 0)
-    few = run.manifest.targets <= MOST_TARGETS
-    shown = np.arange(run.manifest.targets) if few else np.sort(np.argsort(shares, kind="stable")[:MOST_TARGETS])
+    few = run.manifest.targets <= MAX_TARGETS
+    shown = np.arange(run.manifest.targets) if few else np.sort(np.argsort(shares, kind="stable")[:MAX_TARGETS])
     names = run.names
     return Table(
         columns=(
@@ -100,7 +100,7 @@ def _make_targets(run: RunAnswers) -> Table:
             )
             for target in shown.tolist()
         ),
-        caption="By target" if few else f"The {MOST_TARGETS} targets that were reached least often",
+        caption="By target" if few else f"The {MAX_TARGETS} targets that were reached least often",
     )
 
 

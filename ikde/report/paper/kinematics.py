@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from ikde.model.robot import Robot
-from ikde.plot.frames import plot_frames
 from ikde.plot.images import to_png
+from ikde.plot.pose import plot_frames
 from ikde.report.numbers import fixed, significant, vector
 from ikde.report.page import Cell, Column, Figure, Gallery, Section, Table, Text
+from ikde.scene.drawn_pose import draw_frames
 
 MODEL_NAMES = {"key_point": "key points, Table 1(b)", "classical": "Denavit-Hartenberg, Table 1(a)"}
 
@@ -73,10 +74,10 @@ def _draw(data: Mapping[str, Any], robots: Mapping[str, Robot]) -> Gallery:
     figures = []
     for entry in data["exact"]["figures"]:
         name = MODEL_NAMES[entry["model"]]
-        figure = plot_frames(robots[entry["model"]], np.array(entry["q"]), entry["frames"], title=name)
+        pose = draw_frames(robots[entry["model"]], np.array(entry["q"]), entry["frames"], title=name)
         figures.append(
             Figure(
-                image=to_png(figure, dpi=90),
+                image=to_png(plot_frames(pose), dpi=90),
                 alt=f"Frames of the arm: {name}",
                 caption=f"Figure 6: {name}; x red dotted, y green solid, z blue dashed.",
             )

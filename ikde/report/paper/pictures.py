@@ -10,6 +10,7 @@ from ikde.model.target import Target
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_pose
 from ikde.report.page import Figure
+from ikde.scene.drawn_pose import draw_pose
 
 SIZE_IN, DPI = (6.4, 5.7), 84
 
@@ -24,5 +25,5 @@ def draw_robot(
 ) -> Figure:
     """The robot at `q` as a detector sees it: arm red, platform blue, colliding components black."""
     target = None if target_mm is None else Target(np.array(target_mm) * 1e-3)
-    figure = plot_pose(CollisionModel.of(robot, choice), np.array(q), target=target, size_in=SIZE_IN)
-    return Figure(image=to_png(figure, dpi=DPI), alt=caption, caption=caption)
+    pose = draw_pose(CollisionModel.of(robot, choice), np.array(q), target=target)
+    return Figure(image=to_png(plot_pose(pose, size_in=SIZE_IN), dpi=DPI), alt=caption, caption=caption)

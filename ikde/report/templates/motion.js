@@ -1,5 +1,5 @@
 // Motions that play, drawn as on a plan, in mm: from the side, right of it from the front, and below it from above.
-const ARM = "#d1352b", BASE = "#3568b8", DONE = "#e69f00", PAD = 14, LABEL = 20, TALLEST = 620;
+const PAD = 14, LABEL = 20, TALLEST = 620;
 const VIEWS = [
   {name: "side: x, z", flat: (p) => [p[0], p[2]], depth: (p) => -p[1], column: 0, row: 0},
   {name: "front: y, z", flat: (p) => [p[1], p[2]], depth: (p) => p[0], column: 1, row: 0},
@@ -12,9 +12,9 @@ function boxOf(motion, flat) {
     box[0] = Math.min(box[0], u - r); box[1] = Math.min(box[1], v - r);
     box[2] = Math.max(box[2], u + r); box[3] = Math.max(box[3], v + r);
   };
-  motion.path.forEach((p) => add(p, 20));
-  motion.bones.flat().forEach((p) => add(p, 20));
-  motion.centres.forEach((row) => row.forEach((p, s) => add(p, motion.radii[s])));
+  motion.path_mm.forEach((p) => add(p, 20));
+  motion.links_mm.flat().forEach((p) => add(p, 20));
+  motion.centres_mm.forEach((row) => row.forEach((p, s) => add(p, motion.radii_mm[s])));
   return box;
 }
 // One scale for all views; those of a column share x, those of a row share z.
@@ -38,39 +38,39 @@ function stroke(c, points, color, width) {
 function dot(c, [x, y], radius, color) {
   c.beginPath(); c.arc(x, y, radius, 0, 7); c.fillStyle = color; c.fill();
 }
+const roleOf = (motion, frame, part) => Object.keys(motion.colors)[motion.roles[frame][part]];
 function drawView(c, motion, view, frame, ink, soft) {
   c.globalAlpha = 1; c.fillStyle = soft;
   c.fillText(view.name, view.left, view.top - 6);
-  const path = motion.path.map((p) => view.at(p));
+  const path = motion.path_mm.map((p) => view.at(p));
   c.globalAlpha = .5; stroke(c, path, soft, 1.2);
-  const black = new Set(motion.black[frame]), base = new Set(motion.base);
-  const order = motion.centres[frame].map((p, s) => [view.depth(p), s]).sort((a, b) => a[0] - b[0]);
+  const order = motion.centres_mm[frame].map((p, s) => [view.depth(p), s]).sort((a, b) => a[0] - b[0]);
   for (const [, s] of order) {
-    const part = motion.parts[s], point = view.at(motion.centres[frame][s]), radius = motion.radii[s] * view.scale;
-    c.globalAlpha = .55; dot(c, point, radius, black.has(part) ? "#000" : base.has(part) ? BASE : ARM);
-    c.globalAlpha = .35; c.strokeStyle = black.has(part) ? ink : "#fff"; c.lineWidth = .7; c.stroke();
+    const role = roleOf(motion, frame, motion.parts[s]), point = view.at(motion.centres_mm[frame][s]), radius = motion.radii_mm[s] * view.scale;
+    c.globalAlpha = .55; dot(c, point, radius, motion.colors[role]);
+    c.globalAlpha = .35; c.strokeStyle = role === "colliding" ? ink : "#fff"; c.lineWidth = .7; c.stroke();
   }
-  c.globalAlpha = 1; stroke(c, path.slice(0, motion.done[frame]), DONE, 2.2);
-  const bones = motion.bones[frame].map((p) => view.at(p));
-  stroke(c, bones, ink, 1.6);
-  bones.forEach((p) => dot(c, p, 2, ink));
-  dot(c, bones[bones.length - 1], 3.5, DONE);
+  c.globalAlpha = 1; stroke(c, path.slice(0, motion.done[frame]), motion.colors.target, 2.2);
+  const links = motion.links_mm[frame].map((p) => view.at(p));
+  stroke(c, links, ink, 1.6);
+  links.forEach((p) => dot(c, p, 2, ink));
+  dot(c, links[links.length - 1], 3.5, motion.colors.target);
 }
 function setUp(figure) {
   const motion = JSON.parse(figure.dataset.motion);
   const [canvas, button, slider, clock] = ["canvas", "button", "input", "output"].map((name) => figure.querySelector(name));
-  const last = motion.times.length - 1;
+  const last = motion.times_s.length - 1;
   let layout, playing = 0, fitted = 0;
   slider.max = last;
   const draw = () => {
     const c = canvas.getContext("2d"), ratio = canvas.width / canvas.clientWidth, style = getComputedStyle(figure);
     const [ink, soft] = ["--ink", "--soft"].map((name) => style.getPropertyValue(name));
-    const frame = Number(slider.value), names = motion.black[frame].map((part) => motion.names[part]);
+    const frame = Number(slider.value), names = motion.components.filter((_, part) => roleOf(motion, frame, part) === "colliding").sort();
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     c.clearRect(0, 0, canvas.width, canvas.height);
     c.font = "12px system-ui, sans-serif"; c.lineJoin = c.lineCap = "round";
     layout.views.forEach((view) => drawView(c, motion, view, frame, ink, soft));
-    clock.textContent = `${motion.times[frame].toFixed(2)} of ${motion.end.toFixed(2)} s${names.length ? ": " + names.join(", ") + " collide" : ""}`;
+    clock.textContent = `${motion.times_s[frame].toFixed(2)} of ${motion.duration_s.toFixed(2)} s${names.length ? ": " + names.join(", ") + " collide" : ""}`;
   };
   const fit = () => {
     const width = canvas.clientWidth, ratio = window.devicePixelRatio || 1;
@@ -84,7 +84,7 @@ function setUp(figure) {
   const step = (from, begun) => (now) => {
     if (!playing) return;
     const time = from + (now - begun) / 1000;
-    let frame = motion.times.findIndex((t) => t > time);
+    let frame = motion.times_s.findIndex((t) => t > time);
     if (frame < 0) frame = last + 1;
     slider.value = frame - 1; draw();
     if (frame > last) return stop();
@@ -94,7 +94,7 @@ function setUp(figure) {
   const play = () => {
     if (Number(slider.value) === last) slider.value = 0;
     button.textContent = "❚❚"; button.ariaLabel = "pause";
-    const from = motion.times[Number(slider.value)], begun = performance.now();
+    const from = motion.times_s[Number(slider.value)], begun = performance.now();
     playing = requestAnimationFrame(step(from, begun));
   };
   button.onclick = () => (playing ? stop() : play());

@@ -76,14 +76,14 @@ def test_the_first_miss_of_each_target_is_kept(answers, rows):
 
 
 def test_no_more_targets_are_kept_than_are_listed(folder, monkeypatch):
-    monkeypatch.setattr(module, "MOST_MISSED", 1)
+    monkeypatch.setattr(module, "MAX_MISSED", 1)
     assert [len(arm.missed) for arm in gather_answers(folder).arms] == [1, 1]
 
 
 def test_names_are_kept_unless_there_are_very_many(answers, bare, folder, monkeypatch):
     assert answers.names == dict(enumerate(NAMES))
     assert bare.names == {}
-    monkeypatch.setattr(module, "MOST_NAMED", 3)
+    monkeypatch.setattr(module, "MAX_NAMED", 3)
     assert gather_answers(folder).names == {}
 
 

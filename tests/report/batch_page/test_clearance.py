@@ -6,7 +6,7 @@ import pytest
 
 from ikde.report.batch_page import clearance
 from ikde.report.batch_page.clearance import make_clearance
-from ikde.report.batch_page.cost import MOST_CURVES
+from ikde.report.batch_page.cost import MAX_CURVES
 from ikde.report.numbers import significant
 from tests.report.batch_page.blocks import column, figures, tables
 
@@ -50,7 +50,7 @@ def test_histograms_say_what_they_measure_and_of_whom(section, answers):
 
 def test_the_curves_are_those_of_arms_that_have_something_to_show(answers):
     free, careful = answers.arms
-    many = replace(answers, arms=(*[free] * MOST_CURVES, careful))
+    many = replace(answers, arms=(*[free] * MAX_CURVES, careful))
     assert ">careful</text>" in figures(make_clearance(many))[0].image
 
 
@@ -62,7 +62,7 @@ def test_closest_pairs_are_shares_of_the_reached(answers, monkeypatch):
     assert sum(shares) == pytest.approx(100.0, abs=0.1 * len(pairs))
     assert set(column(table, "closest in: free [%]")) == {"–"}  # it has no detector, so no pair
     assert " – " in table.rows[0][0]
-    monkeypatch.setattr(clearance, "MOST_PAIRS", 1)
+    monkeypatch.setattr(clearance, "MAX_PAIRS", 1)
     table = tables(make_clearance(answers))[1]
     assert len(table.rows) == 1
     assert table.note == f"{len(pairs) - 1} more pairs are rarer."

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.plot.charts import Sample
-from ikde.report.batch_page.cost import MOST_CURVES, choose_curves, is_wide, make_cost
+from ikde.report.batch_page.cost import MAX_CURVES, choose_curves, is_wide, make_cost
 from ikde.report.numbers import fixed, significant
 from tests.report.batch_page.blocks import column, figures, tables
 
@@ -43,9 +43,9 @@ def test_an_arm_that_has_not_begun_costs_nothing(unfinished):
 
 
 def test_more_curves_than_looks_are_not_drawn(answers):
-    arms = answers.arms[:1] * (MOST_CURVES + 1)
+    arms = answers.arms[:1] * (MAX_CURVES + 1)
     shown, few = choose_curves(arms)
-    assert len(shown) == MOST_CURVES
+    assert len(shown) == MAX_CURVES
     assert few == " The first 6 of 7 arms."
     assert choose_curves(answers.arms) == (answers.arms, "")
 

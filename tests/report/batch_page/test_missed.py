@@ -44,7 +44,7 @@ def test_a_run_that_was_not_asked_why_says_so(answers):
 
 
 def test_the_first_of_many_are_shown(answers, monkeypatch):
-    monkeypatch.setattr(missed, "MOST_MISSED", 1)
+    monkeypatch.setattr(missed, "MAX_MISSED", 1)
     table = make_table(answers)
     total = sum(len(arm.missed) for arm in answers.arms)
     assert len(table.rows) == 1

@@ -9,7 +9,7 @@ import pytest
 
 from ikde.batch.statistics import Rate
 from ikde.report.batch_page.answers import gather_answers
-from ikde.report.batch_page.page import MOST_NUMBERS, format_share, make_batch_page, say_how_to_go_on
+from ikde.report.batch_page.page import MAX_NUMBERS, format_share, make_batch_page, say_how_to_go_on
 from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
 from ikde.report.page import Notice, Numbers
@@ -67,7 +67,7 @@ def test_an_arm_without_a_detector_is_said_not_to_be_checked(answers):
     first, second = (item.note for item in make_batch_page(answers).lead[-1].items)
     assert first.endswith("of 32 solves, self-collision not checked")
     assert second.endswith("of 32 solves")
-    many = replace(answers, arms=(*answers.arms[:1], *answers.arms[1:] * MOST_NUMBERS))
+    many = replace(answers, arms=(*answers.arms[:1], *answers.arms[1:] * MAX_NUMBERS))
     assert make_batch_page(many).lead[-1].items[0].note.endswith("solves, self-collision not checked in 1 of 5 arms")
 
 
@@ -79,7 +79,7 @@ def test_a_run_without_graders_and_reasons_has_fewer_sections(bare):
 
 
 def test_many_arms_share_one_large_figure(bare):
-    many = replace(bare, arms=bare.arms * (MOST_NUMBERS + 1))
+    many = replace(bare, arms=bare.arms * (MAX_NUMBERS + 1))
     assert labels(make_batch_page(many)) == ["reached, over all arms"]
 
 

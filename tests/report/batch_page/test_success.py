@@ -59,7 +59,7 @@ def test_targets_are_told_apart_by_name(section):
 
 
 def test_of_many_targets_those_that_were_reached_least_often_are_shown(answers, monkeypatch):
-    monkeypatch.setattr(success, "MOST_TARGETS", 1)
+    monkeypatch.setattr(success, "MAX_TARGETS", 1)
     table = tables(make_success(answers))[1]
     assert column(table, "target") == ["1"]
     assert "reached least often" in table.caption

@@ -1,0 +1,62 @@
+"""A motion as plain data to draw: the robot at some of its samples, and the path; lengths in m, world frame."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikde.kernels.arrays import Floats
+from ikde.scene.drawn_pose import DrawnRobot, Role, draw_robot
+from ikde.track.summary import TrackSummary
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DrawnMotion:
+    """The robot at F samples of a motion."""
+
+    robot: DrawnRobot
+    """Its leading axis is [F]."""
+    samples: NDArray[np.intp]
+    """[F], ascending; the tool should be at point `samples[k]` of the path."""
+    times_s: Floats
+    """[F]."""
+    duration_s: float
+    """Of the whole path, which the motion may not have followed to its end."""
+    path_m: Floats
+    """What the tool was asked to follow [P, 3]."""
+
+    def list_colliding(self, frame: int) -> list[str]:
+        """Names of the components that collide in frame 0 .. F - 1, sorted."""
+        roles = self.robot.roles[frame]
+        return sorted(name for name, role in zip(self.robot.components, roles, strict=True) if role == Role.COLLIDING)
+
+
+def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp]) -> DrawnMotion:
+    """The robot at `samples` of a motion, coloured by what plain numpy measured there."""
+    trajectory, chosen = motion.trajectory, np.asarray(samples, np.intp)
+    gaps_m = motion.verification.gaps_m[chosen]
+    return DrawnMotion(
+        robot=draw_robot(motion.collision, trajectory.q[chosen], gaps_m),
+        samples=chosen,
+        times_s=trajectory.times_s[chosen],
+        duration_s=trajectory.path.duration_s,
+        path_m=trajectory.path.p_world_tool,
+    )
+
+
+def spread_samples(motion: TrackSummary, count: int) -> NDArray[np.intp]:
+    """At most `count` samples from the first to the last, evenly spaced."""
+    return np.unique(np.linspace(0, len(motion.trajectory.q) - 1, count).round().astype(np.intp))
+
+
+def choose_moments(motion: TrackSummary, count: int) -> list[int]:
+    """Evenly spaced samples; where one nearby collides the worst of those is shown instead."""
+    even = spread_samples(motion, count)
+    edges = np.concatenate([[0], (even[1:] + even[:-1] + 1) // 2, [len(motion.trajectory.q)]])
+    gaps = motion.verification.gaps_m.min(axis=1, initial=np.inf)
+    chosen = []
+    for sample, first, end in zip(even, edges[:-1], edges[1:], strict=True):
+        wrong = [k for k in range(first, end) if motion.colliding[k]]
+        chosen.append(int(min(wrong, key=lambda k: gaps[k])) if wrong else int(sample))
+    return chosen

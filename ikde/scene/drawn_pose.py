@@ -1,0 +1,199 @@
+"""A robot as plain data to draw: spheres with their roles, links, frames, marks and labels; lengths in m, world frame.
+
+Renderers place these things and give each role its colour; they compute no geometry of the robot and no collisions.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikde.kernels.arrays import Floats
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pairs import component_bodies
+from ikde.model.robot import WORLD, Robot
+from ikde.model.target import Target
+from ikde.model.tree import build_tree
+from ikde.solver.plain import compute_components, compute_frames, compute_gaps, compute_sphere_gaps
+
+NOT_CHECKED = "self-collision not checked"
+SAME_PLACE_M = 1e-3  # frames nearer than this share their label
+
+
+class Role(StrEnum):
+    """What a thing in a drawing means."""
+
+    ARM = "arm"
+    BASE = "base"
+    COLLIDING = "colliding"
+    CLOSEST = "closest pair"
+    TARGET = "target"
+    LINK = "link"
+
+
+COLORS: Mapping[Role, str] = {  # as the paper draws it: arm red, platform blue, collisions black
+    Role.ARM: "#d1352b",
+    Role.BASE: "#3568b8",
+    Role.COLLIDING: "#1a1a1a",
+    Role.CLOSEST: "#0b8a3c",
+    Role.TARGET: "#e69f00",
+    Role.LINK: "#333333",
+}
+AXIS_COLORS = ("#c00000", "#008000", "#0000c0")  # of a frame's x, y and z
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DrawnRobot:
+    """Links and spheres at one configuration, or at as many as the leading axes `...` hold."""
+
+    links_m: Floats
+    """Key points [..., n, 3] from the base to the tool, each joined to the next by a line."""
+    centres_m: Floats
+    """Of all spheres [..., S, 3]; none without a detector."""
+    radii_m: Floats
+    """[S]."""
+    components: tuple[str, ...]
+    """Names of the C components."""
+    parts: NDArray[np.intp]
+    """Index of each sphere's component [S]."""
+    roles: NDArray[np.str_]
+    """`Role.ARM`, `BASE` or `COLLIDING` of each component [..., C]."""
+
+    def compute_box(self, directions: Floats) -> Floats:
+        """Lower and upper corner [2, k] in m around everything, along unit `directions` [k, 3]."""
+        links, centres = self.links_m @ directions.T, self.centres_m @ directions.T
+        shown = [links, centres - self.radii_m[:, None], centres + self.radii_m[:, None]]
+        points = np.concatenate([part.reshape(-1, len(directions)) for part in shown])
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mark:
+    """A point, or points joined by a line, with what a legend says about it."""
+
+    points_m: Floats
+    """[n, 3]."""
+    role: Role
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DrawnPose:
+    """A robot at one configuration, with all that a drawing says about it."""
+
+    title: str
+    robot: DrawnRobot
+    Ts_world_frame: Floats
+    """Frames shown by their axes [k, 4, 4]."""
+    labels: tuple[tuple[str, Floats], ...] = ()
+    """Texts and their places [3]."""
+    marks: tuple[Mark, ...] = ()
+    heading_rad: float = 0.0
+    """About the world's z axis, of the frame that the links begin with."""
+
+    def compute_box(self) -> Floats:
+        """Lower and upper corner [2, 3] in m around robot and marks."""
+        points = np.concatenate([self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks)])
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = None) -> DrawnPose:
+    """The robot at `q` [N] with the spheres that are compared, the closest pair, its tool's axes, and the target."""
+    robot, gaps_m = collision.robot, compute_gaps(collision, q)
+    Ts_world = compute_frames(robot, q)
+    drawn = draw_robot(collision, q, gaps_m)
+    marks = []
+    if collision.pairs:
+        closest = int(np.argmin(gaps_m))
+        marks.append(_mark_closest(drawn, *collision.pairs[closest], float(gaps_m[closest])))
+    if target is not None:
+        marks.append(Mark(points_m=target.p_world_tool[None, :], role=Role.TARGET, text="target"))
+    x_axis = Ts_world[_list_links(robot)[0]][:2, 0]
+    return DrawnPose(
+        title=f"{robot.name}  ·  {_describe(collision, drawn)}",
+        robot=drawn,
+        Ts_world_frame=Ts_world[robot.tool][None],
+        marks=tuple(marks),
+        heading_rad=float(np.arctan2(x_axis[1], x_axis[0])),
+    )
+
+
+def draw_frames(robot: Robot, q: Floats, names: Sequence[str], *, title: str) -> DrawnPose:
+    """The frames `names` at `q` [N], in their order along the arm; frames that share their origin share a label."""
+    Ts_world = compute_frames(robot, q)
+    frames = np.array([Ts_world[name] for name in names])
+    labels: list[tuple[str, Floats]] = []
+    for name, point in zip(names, frames[:, :3, 3], strict=True):
+        if labels and np.allclose(labels[-1][1], point, atol=SAME_PLACE_M):
+            labels[-1] = (f"{labels[-1][0]}, {name}", point)
+        else:
+            labels.append((name, point))
+    drawn = draw_robot(CollisionModel(robot=robot, detector=None), q, np.empty(0), names)
+    return DrawnPose(title=title, robot=drawn, Ts_world_frame=frames, labels=tuple(labels))
+
+
+def draw_robot(collision: CollisionModel, q: Floats, gaps_m: Floats, links: Sequence[str] = ()) -> DrawnRobot:
+    """The robot at `q` [..., N], whose pairs of components are `gaps_m` [..., P] apart, with links through frames."""
+    Ts_world = compute_frames(collision.robot, q)
+    spheres = compute_components(collision, q)
+    components = tuple(spheres)
+    centres_m = [np.empty((*q.shape[:-1], 0, 3)), *(centres for centres, _ in spheres.values())]
+    radii_m = [np.empty(0), *(radii for _, radii in spheres.values())]
+    return DrawnRobot(
+        links_m=np.stack([Ts_world[name][..., :3, 3] for name in links or _list_links(collision.robot)], axis=-2),
+        centres_m=np.concatenate(centres_m, axis=-2),
+        radii_m=np.concatenate(radii_m),
+        components=components,
+        parts=np.repeat(np.arange(len(components)), [len(radii) for radii in radii_m[1:]]),
+        roles=_choose_roles(collision, components, gaps_m),
+    )
+
+
+def _choose_roles(collision: CollisionModel, components: Sequence[str], gaps_m: Floats) -> NDArray[np.str_]:
+    """The role of each component [..., C]."""
+    base, pairs = base_components(collision), collision.pairs
+    involved = np.array([[name in pair for name in components] for pair in pairs], bool)
+    touching = (gaps_m <= collision.limit_m)[..., None] & involved.reshape(len(pairs), len(components))
+    own = np.where([name in base for name in components], Role.BASE, Role.ARM)
+    return np.where(touching.any(axis=-2), Role.COLLIDING, own)
+
+
+def _list_links(robot: Robot) -> list[str]:
+    """Frames from the base to the tool, without the rails that a mobile base moves along."""
+    frames = {frame.name: frame for frame in robot.frames}
+    kinds = {joint.name: joint.kind for joint in robot.joints}
+    chain = [robot.tool]
+    while frames[chain[-1]].parent != WORLD:
+        chain.append(frames[chain[-1]].parent)
+    while len(chain) > 1 and kinds.get(frames[chain[-1]].joint or "") == "prismatic":
+        chain.pop()
+    return chain[::-1]
+
+
+def base_components(collision: CollisionModel) -> set[str]:
+    """Components that no other component carries: the platform and what is fixed to it."""
+    tree = build_tree(collision.robot)
+    bodies = component_bodies(collision.rows, tree)
+    carrying = {body: {tree.bodies[body].parent} for body in range(1, len(tree.bodies))}
+    for body in carrying:  # parents come first
+        carrying[body] |= carrying.get(tree.bodies[body].parent, set())
+    return {name for name, body in bodies.items() if not set(bodies.values()) & carrying.get(body, set())}
+
+
+def _describe(collision: CollisionModel, drawn: DrawnRobot) -> str:
+    if not collision.pairs:
+        return NOT_CHECKED
+    free = "" if Role.COLLIDING in drawn.roles else "free of "
+    return f"detector {collision.name}: {free}self-collision"
+
+
+def _mark_closest(drawn: DrawnRobot, a: str, b: str, gap_m: float) -> Mark:
+    """A line between the two nearest spheres of two components."""
+    owned = [drawn.parts == drawn.components.index(name) for name in (a, b)]
+    spheres = [(drawn.centres_m[own], drawn.radii_m[own]) for own in owned]
+    sphere_gaps_m = compute_sphere_gaps(*spheres)
+    i, j = np.unravel_index(int(np.argmin(sphere_gaps_m)), sphere_gaps_m.shape)
+    points_m = np.array([spheres[0][0][i], spheres[1][0][j]])
+    return Mark(points_m=points_m, role=Role.CLOSEST, text=f"closest pair, {a}-{b}: {gap_m * 1e3:.1f} mm")
