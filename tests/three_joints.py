@@ -1,5 +1,6 @@
 """A robot of three joints that can touch itself, whose kernels are compiled in seconds; and the tests' own judge."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -7,12 +8,27 @@ import numpy as np
 
 import ikde
 from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import SphereRow
 from tests import reference
 from tests.targets import target_at
 
 FILE = Path(__file__).parent / "three_joints.yaml"
 ROBOT = ikde.load_robot(FILE)
 KINDS = ("position", "axis", "pose")
+
+
+def crowd(rows):
+    """The robot with rows of 2, 3, .. spheres, no two of one radius, along its post and its hand."""
+    lines = {"floor": ("world", "world"), "post": ("column", "top"), "arm": ("sleeve", "mouth"), "hand": ("rod", "tip")}
+    spheres = [
+        SphereRow(component=name, start=a, end=b, radius_m=0.05 - 0.001 * k, count=k + 2, spacing="even")
+        for name, (a, b) in lines.items()
+        for k in range(rows if a != b and name != "arm" else 1)
+    ]
+    return replace(ROBOT, name=f"crowded_{rows}", approximations={"balls": tuple(spheres)})
+
+
+CROWDED = crowd(8)  # more tests than are written one by one: its check is written as tables
 
 
 def is_met(robot, target, q, settings):

@@ -52,14 +52,14 @@ def pair_collides(collision, centres, a, b):
 def find_colliding_pair(collision, bounds, centres):
     """Index of the first pair of components within the safe distance, or -1.
 
-    From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all.
+    From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all. The
+    search asks this and `compute_clearance` grades: they share no code.
     """
     for pair in range(collision.pairs.shape[0]):
         a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
-        if bounds_are_apart(collision, bounds, a, b, collision.safe_distance):
-            continue
-        reach = collision.bounds[b, 3] + collision.safe_distance
-        if not is_touched(collision, centres, a, bounds[b, 0], bounds[b, 1], bounds[b, 2], reach):
+        x, y, z, reach = bounds[b, 0], bounds[b, 1], bounds[b, 2], collision.bounds[b, 3] + collision.safe_distance
+        dx, dy, dz, limit = bounds[a, 0] - x, bounds[a, 1] - y, bounds[a, 2] - z, collision.bounds[a, 3] + reach
+        if dx * dx + dy * dy + dz * dz > limit * limit or not is_touched(collision, centres, a, x, y, z, reach):
             continue
         if pair_collides(collision, centres, a, b):
             return np.int64(pair)

@@ -1,7 +1,7 @@
 """The grader of many: metrics and verdict of finished configurations, in lanes.
 
 It shares nothing with what searches but the tables of robot, collision model and targets, and the functions of `trig`:
-it walks the tree itself, places every sphere and measures every pair, without bounds or early exit. Up to 32
+it walks the tree itself, places every sphere and measures every pair, with no bounds around many. Up to 32
 configurations stand side by side in each row of its buffers, so that the compiler vectorises every inner loop.
 Sums stand in the order of the scalar kernels, so the bits are theirs; `tests/kernels/test_grade_many.py` holds it.
 """
@@ -17,6 +17,7 @@ from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
 POSITION_ERROR, ORIENTATION_ERROR, CLEARANCE = range(3)
+SLACK = 1e-9  # m: more than rounding could hide
 LANES = 32  # shorter loops are unrolled instead, and roots are then taken one by one
 
 
@@ -30,7 +31,6 @@ class Lanes(NamedTuple):
     tool: Floats  # [12, L] T_world_tool
     centres: Floats  # [3 S, L] x, y, z of each sphere in the world, m
     square: Floats  # [L] smallest squared distance of centres so far, m^2
-    gap: Floats  # [L] clearance of one pair, m
     clearance: Floats  # [L] smallest of all pairs, m
     closest: Ints  # [L] the pair it belongs to
 
@@ -140,13 +140,12 @@ def approach(first_i, last_i, first_j, last_j, count, lanes):
 
 @inline_kernel
 def measure_pair(collision, pair, count, lanes):
-    """Smallest distance - R_i - R_j between two components into `lanes.gap`.
+    """Distance - R_i - R_j of two components' spheres into `lanes.clearance`, and the pair, where it is smaller.
 
-    Between spheres of equal radii the nearest centres decide: rounding keeps order, so one root is enough.
+    Between spheres of equal radii the nearest centres decide: rounding keeps order, so one root is enough, and none
+    where no lane could become smaller: 10.0 us a configuration in place of 12.6 with 200 spheres of as many radii.
     """
     a, b, radius = collision.pairs[pair, 0], collision.pairs[pair, 1], collision.radius
-    for lane in range(count):
-        lanes.gap[lane] = np.inf
     i, last_i = collision.components[a, FIRST], collision.components[a, LAST]
     while i < last_i:
         end_i = end_of_run(radius, i, last_i)
@@ -154,10 +153,16 @@ def measure_pair(collision, pair, count, lanes):
         while j < last_j:
             end_j = end_of_run(radius, j, last_j)
             approach(i, end_i, j, end_j, count, lanes)
-            radius_i, radius_j = radius[i], radius[j]
+            radius_i, radius_j, nearer = radius[i], radius[j], 0
             for lane in range(count):
-                gap, smallest = math.sqrt(lanes.square[lane]) - radius_i - radius_j, lanes.gap[lane]
-                lanes.gap[lane] = (gap if gap < smallest else smallest) + 0.0
+                limit = lanes.clearance[lane] + radius_i + radius_j + SLACK
+                nearer += lanes.square[lane] <= limit * limit
+            if nearer > 0:
+                for lane in range(count):
+                    gap, smallest = math.sqrt(lanes.square[lane]) - radius_i - radius_j, lanes.clearance[lane]
+                    closer = gap < smallest
+                    lanes.closest[lane] = pair if closer else lanes.closest[lane]
+                    lanes.clearance[lane] = (gap if closer else smallest) + 0.0
             j = end_j
         i = end_i
 
@@ -169,10 +174,6 @@ def measure_pairs(collision, count, lanes):
         lanes.clearance[lane], lanes.closest[lane] = np.inf, -1
     for pair in range(collision.pairs.shape[0]):
         measure_pair(collision, pair, count, lanes)
-        for lane in range(count):
-            closer = lanes.gap[lane] < lanes.clearance[lane]
-            lanes.closest[lane] = pair if closer else lanes.closest[lane]
-            lanes.clearance[lane] = lanes.gap[lane] if closer else lanes.clearance[lane]
 
 
 @inline_kernel
@@ -230,7 +231,6 @@ def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, o
         np.empty((12 * robot.bodies.shape[0], LANES)),
         np.empty((12, LANES)),
         np.empty((3 * collision.radius.size, LANES)),
-        np.empty(LANES),
         np.empty(LANES),
         np.empty(LANES),
         np.empty(LANES, dtype=np.int64),

@@ -9,8 +9,9 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from tests.kernels.arrays import freeze
 from tests.random_robots import random_robot
+from tests.three_joints import CROWDED
 
-ROBOTS = [*map(ikde.load_robot, ikde.robot_names()), *map(random_robot, range(12))]
+ROBOTS = [*map(ikde.load_robot, ikde.robot_names()), *map(random_robot, range(12)), CROWDED]
 
 
 def terms_of(robot, position=np.inf, orientation=np.inf):

@@ -13,6 +13,7 @@ from ikde.model.target import KINDS
 from tests.conftest import random_q
 from tests.kernels.grading import ROBOTS, grade, terms_of
 from tests.targets import targets_near
+from tests.three_joints import CROWDED
 from tests.uncompiled import reachable, run_text
 
 
@@ -30,10 +31,11 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
             assert (pair, verdict) == (pairs[row], accepted[row])
 
 
+@pytest.mark.parametrize("robot", [ikde.load_robot("qiao2021"), CROWDED], ids=lambda robot: robot.name)
 @pytest.mark.parametrize("kind", KINDS)
-def test_it_shares_no_code_with_what_searches_by_written_kernels(qiao, kind):
+def test_it_shares_no_code_with_what_searches_by_written_kernels(robot, kind):
     """Sines, cosines and arc tangents excepted; arguments are taken apart by functions that compute nothing."""
-    module = run_text(format_module(CollisionModel.of(qiao), kind))
+    module = run_text(format_module(CollisionModel.of(robot), kind))
     search = reachable(module.solve_target) | reachable(module.solve_targets) | reachable(module.fill_pool)
     shared = {name.rpartition(".")[0] for name in reachable(grade_one) & search}
     assert shared <= {"ikde.kernels.trig", "ikde.kernels.flat_arguments"}

@@ -27,6 +27,7 @@ from tests.conftest import random_q
 from tests.kernels.arrays import freeze
 from tests.kernels.seeding import no_seeds, pack_seeds
 from tests.targets import free_rows, target_at
+from tests.three_joints import CROWDED
 from tests.three_joints import ROBOT as THREE_JOINTS
 from tests.uncompiled import plain_module, quietly, run_text
 
@@ -220,7 +221,7 @@ def test_rows_without_attempts_are_left_alone(asked):
 @each_kind
 def test_the_data_driven_instance_reaches_the_same_targets(kind):
     """Other roundings on the way, the same seeds: the same targets reached with the same number of attempts."""
-    for robot in (ROBOTS[0], ROBOTS[1]):
+    for robot in (ROBOTS[0], ROBOTS[1], CROWDED):
         asked = make_question(robot, kind, count=12, budget=3)
         _, _, counts, _ = solve_singly(generated(robot, kind), asked)
         q, _, others, _ = solve_singly(by_tables, asked)
@@ -242,6 +243,12 @@ def assert_compiled_like_plain(robot, kind):
 def test_compiled_kernels_give_the_same_bits():
     """A robot of three joints: it is compiled in seconds."""
     assert_compiled_like_plain(THREE_JOINTS, "pose")
+
+
+@needs_compiler
+def test_compiled_tables_give_the_same_bits():
+    """A robot whose check is written as tables."""
+    assert_compiled_like_plain(CROWDED, "position")
 
 
 @pytest.mark.slow

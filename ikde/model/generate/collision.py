@@ -33,14 +33,16 @@ class Test:
 
 def list_tests(collision: CollisionArrays) -> list[Test]:
     """What has to be tested, pair by pair; of two components the one with the better lattices is the lattice."""
-    lattices = [component_lattices(collision, c) for c in range(len(collision.components))]
     tests = []
-    for pair, (a, b) in enumerate(collision.pairs):
-        sides = [(lattices[int(x)], lattices[int(y)]) for x, y in ((a, b), (b, a))]
-        grids, others = min(sides, key=lambda side: len(side[0]) * _count(side[1]))
+    for pair, (grids, others) in enumerate(_sides(collision)):
         for one in (single for other in others for single in _singles(other)):
             tests += [Test(number=len(tests) + k, pair=pair, lattice=grid, sphere=one) for k, grid in enumerate(grids)]
     return tests
+
+
+def count_tests(collision: CollisionArrays) -> int:
+    """How many `list_tests` would list."""
+    return sum(len(grids) * _count(others) for grids, others in _sides(collision))
 
 
 def count_sphere_pairs(collision: CollisionArrays) -> int:
@@ -98,6 +100,13 @@ def _write_guard(writer: Writer, poses: dict[int, Pose], tests: list[Test]) -> G
 def reach_name(reach: float) -> str:
     """Name of a squared reach in generated code: by all its digits, in m."""
     return "near_" + f"{reach!r}".replace(".", "_").replace("-", "n")
+
+
+def _sides(collision: CollisionArrays) -> list[tuple[list[Lattice], list[Lattice]]]:
+    """What is tested as lattices in each pair, and what as spheres."""
+    lattices = [component_lattices(collision, c) for c in range(len(collision.components))]
+    both = [(lattices[int(a)], lattices[int(b)]) for a, b in collision.pairs]
+    return [min(((x, y), (y, x)), key=lambda side: len(side[0]) * _count(side[1])) for x, y in both]
 
 
 def _count(lattices: list[Lattice]) -> int:

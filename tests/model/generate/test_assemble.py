@@ -18,9 +18,11 @@ from ikde.kernels import analytic, lm
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble, module
+from ikde.model.generate.collision import count_sphere_pairs, count_tests
 from ikde.model.target import KINDS
 from tests.collision_robots import SHIPPED, name_case
 from tests.hostile_names import rename
+from tests.three_joints import CROWDED, crowd
 
 ROOT = Path(__file__).parents[3]
 each_kind = pytest.mark.parametrize("kind", KINDS)
@@ -31,6 +33,12 @@ OWN = ["make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes
 def text_of(name, kind):
     """The module of a robot that ships."""
     robot = ikde.load_robot(name)
+    return assemble.format_module(CollisionModel.of(robot), kind)
+
+
+@cache
+def table_text(robot, kind):
+    """The module of a robot made for tests."""
     return assemble.format_module(CollisionModel.of(robot), kind)
 
 
@@ -51,9 +59,37 @@ def test_a_module_is_python_of_one_robot(name, kind):
 
 
 @each_kind
-@pytest.mark.parametrize("name", ["qiao2021", "panda"])
+def test_a_check_of_many_tests_is_written_as_tables(kind):
+    text = table_text(CROWDED, kind)
+    assert [function.name for function in functions_of(text)][:2] == ["take_step", "take_steps"]
+    assert assemble.TABLE_IMPORT in text
+    assert "judge_lanes" not in text
+    pairs = count_sphere_pairs(CollisionModel.of(CROWDED).arrays)
+    assert ast.get_docstring(ast.parse(text)).endswith(f"\n{pairs} pairs of spheres, in tables.")
+
+
+def test_the_number_of_tests_decides(monkeypatch):
+    """At the most that is written straight-line, and beyond it."""
+    robot = ikde.load_robot("ur5")
+    count = count_tests(CollisionModel.of(robot).arrays)
+    for most, in_tables in ((count, False), (count - 1, True)):
+        monkeypatch.setattr(assemble, "MAX_TESTS", most)
+        text = assemble.format_module(CollisionModel.of(robot), "position")
+        assert (assemble.TABLE_IMPORT in text) == in_tables
+        assert ("def judge_lanes" in text) != in_tables
+
+
+def test_no_sphere_is_in_a_text_that_reads_tables():
+    """More spheres: the same text but for its head, and so as much to compile."""
+    few, many = (table_text(crowd(rows), "position") for rows in (8, 18))
+    assert count_tests(CollisionModel.of(crowd(18)).arrays) > 4 * assemble.MAX_TESTS
+    assert few.split("import math", 1)[1] == many.split("import math", 1)[1]
+
+
+@each_kind
+@pytest.mark.parametrize("name", ["qiao2021", "panda", "crowded"])
 def test_every_name_is_known_where_it_is_used(name, kind):
-    text = text_of(name, kind)
+    text = table_text(CROWDED, kind) if name == "crowded" else text_of(name, kind)
     rules = "E9,F821,F822,F823,F841,W291,W293"
     command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", rules, "-"]
     done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=60, check=False)
@@ -77,6 +113,11 @@ def test_no_name_is_in_it(name, kind):
     robot = ikde.load_robot(name)
     hostile = rename(robot, lambda old: f'{old}"""\n{old}\\')
     assert assemble.format_module(CollisionModel.of(hostile), kind) == text_of(name, kind)
+
+
+def test_no_name_is_in_tables():
+    hostile = rename(CROWDED, lambda old: f'{old}"""\n{old}\\')
+    assert assemble.format_module(CollisionModel.of(hostile), "axis") == table_text(CROWDED, "axis")
 
 
 def test_the_engine_is_in_it_as_it_stands():

@@ -7,6 +7,7 @@ from ikde.kernels.arrays import BODY
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import (
     count_sphere_pairs,
+    count_tests,
     find_root,
     group_by_guard,
     list_tests,
@@ -70,7 +71,7 @@ def test_lattices_save_tests(case):
         list_tests(CollisionModel(robot=case[0], detector=case[1]).arrays),
         CollisionModel(robot=case[0], detector=case[1]).arrays,
     )
-    assert len(tests) <= count_sphere_pairs(packed)
+    assert len(tests) == count_tests(packed) <= count_sphere_pairs(packed)
     assert [test.number for test in tests] == list(range(len(tests)))
     assert all(len(test.sphere.centres) == 1 for test in tests)
 

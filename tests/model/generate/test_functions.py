@@ -9,6 +9,8 @@ import pytest
 from ikde.kernels.arrays import DescentArrays
 from ikde.kernels.tables import LANES
 from ikde.model.collision_model import CollisionModel
+from ikde.model.generate import assemble
+from ikde.model.generate.assemble import NO_BUFFERS
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps, order_pairs
 from ikde.model.generate.proofs import drop_implied, drop_proved
@@ -48,21 +50,33 @@ def make_checks(robot, detector, margin=MARGIN):
     if np.isfinite(margin):
         tests = drop_proved(arrays, tests, margin, robot.lower, robot.upper)
     text = format_find(arrays, tests, robot.lower, robot.upper) + format_judge(arrays, tests)
-    return run_text(text)
+    return run_text(f"{NO_BUFFERS}\n{text}")
 
 
-def find_pairs(robot, detector, Q, safe_distance, margin=MARGIN):
+@cache
+def make_table_checks(robot, detector, _margin=MARGIN):
+    """A whole module whose check is written as tables."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(assemble, "MAX_TESTS", -1)
+        return run_text(assemble.format_module(CollisionModel(robot=robot, detector=detector), "position"))
+
+
+def find_pairs(robot, detector, Q, safe_distance, margin=MARGIN, make=make_checks):
     """The generated answer for each row of `Q`."""
-    find, collision = make_checks(robot, detector, margin).find_collision, Limit(safe_distance)
-    return np.array([find(None, collision, q, None) for q in Q.tolist()])
+    checks, asked = make(robot, detector, margin), (None, Limit(safe_distance))
+    if make is make_table_checks:
+        packed = CollisionModel(robot=robot, detector=detector).arrays
+        asked = pack_robot(robot), packed._replace(safe_distance=safe_distance)
+    buffers = checks.make_buffers(*asked, len(robot.joints))
+    return np.array([checks.find_collision(*asked, q, buffers) for q in Q.tolist()])
 
 
-def assert_verdicts(robot, detector, Q, safe_distance, margin=MARGIN):
+def assert_verdicts(robot, detector, Q, safe_distance, margin=MARGIN, make=make_checks):
     """Brute force says the same, and the pair that is named does collide; returns the verdicts."""
     gaps = find_gaps(robot, detector, Q)
     clear = away_from_contact(gaps, safe_distance)
     Q, gaps = Q[clear], gaps[clear]
-    pairs = find_pairs(robot, detector, Q, safe_distance, margin)
+    pairs = find_pairs(robot, detector, Q, safe_distance, margin, make)
     collides = (gaps <= safe_distance).any(axis=1)
     np.testing.assert_array_equal(pairs >= 0, collides)
     assert (gaps[collides, pairs[collides]] <= safe_distance).all()
@@ -74,6 +88,14 @@ def test_verdicts_are_those_of_brute_force(case, rng):
     robot, detector = case
     for safe_distance in (0.0, 0.003, 0.05, 0.0999):
         assert_verdicts(robot, detector, random_q(robot, rng, 40), safe_distance)
+
+
+@every_case
+def test_verdicts_in_tables_are_those_of_brute_force(case, rng):
+    """And so those of straight-line code, which are the same."""
+    robot, detector = case
+    for safe_distance in (0.0, 0.05, 0.0999):
+        assert_verdicts(robot, detector, random_q(robot, rng, 20), safe_distance, make=make_table_checks)
 
 
 def test_both_verdicts_occur(rng):
