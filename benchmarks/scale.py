@@ -34,6 +34,7 @@ from ikde.model.generate.module import load_module
 from ikde.model.robot import NO_DETECTOR, Frame, Robot, SphereRow
 from ikde.solver.engines.pool import load_kernels
 from ikde.solver.plain import compute_frames
+from ikde.solver.problem import pack_searched
 
 KIND = "pose"
 CHECKS, TARGETS, SINGLE, ROUNDS = 20_000, 2_000, 500, 5
@@ -118,7 +119,7 @@ def compile_both(collision: CollisionModel) -> dict[str, float]:
 
 def time_solves(collision: CollisionModel) -> dict[str, float]:
     """Microseconds of a check of random configurations, and of poses that free ones reach: alone and in bulk."""
-    robot, (module, tree, told) = collision.robot, load_kernels(collision, KIND)
+    robot, module, (tree, told) = collision.robot, load_kernels(collision, KIND), pack_searched(collision)
     buffers = module.make_buffers(tree, told, len(robot.joints))
     Q = np.random.default_rng(1).uniform(robot.lower, robot.upper, (CHECKS, len(robot.joints)))
     free = np.array([module.find_collision(tree, told, q, buffers) < 0 for q in Q])

@@ -28,7 +28,9 @@ def make_buffers(robot, collision, joints):
 MAX_TESTS = 150
 """Beyond so many the check is that of `kernels/tables.py`, compiled in the same time whatever the number of spheres.
 
-XX
+Written one by one, 91 tests of the panda take 190 ns in place of 298; 485 of one with 40 single spheres take 325 in
+place of 292 and 7 s more to compile. A target in bulk costs the same. To prove pairs apart and to sort them saved less
+than a tenth.
 """
 
 
