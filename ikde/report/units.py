@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ikde.io.units import ANGLES_RAD, LENGTHS_M
+from ikde.files.entries import ANGLES_RAD, LENGTHS_M
 from ikde.model.robot import Joint
 
 
