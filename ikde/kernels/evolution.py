@@ -11,7 +11,7 @@ from ikde.kernels.frames import compute_bodies, compute_tool
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.mutation import LARGEST_DRAW, draw_members, mutate, repair_bound
 from ikde.kernels.pose_error import compute_orientation_error, compute_position_error
-from ikde.kernels.rng import next_index, next_uniform
+from ikde.kernels.rng import next_index, next_uniform, seed_stream
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
 IGNORE, REJECT, FEASIBILITY = range(3)
@@ -176,3 +176,17 @@ def evolve(robot, detector, target, index, search, lower, upper, state, work):
                 keep(work.x, work.score, i, work.next_x[i], work.next_score[i, 0], work.next_score[i, 1])
             best = find_best(work.score)
     return best, False, evaluations
+
+
+@kernel
+def evolve_alone(robot, detector, target, index, search, lower, upper, seed, work, out_q):
+    """The best of one population within [lower, upper] into `out_q` [N]; returns whether it meets, and evaluations.
+
+    One sample of a path, `index` of a stream, as if it stood alone [Qiao2022, section 3.1].
+    """
+    state = np.empty(1, dtype=np.uint64)
+    seed_stream(seed, index, np.int64(0), state)
+    best, meets, evaluations = evolve(robot, detector, target, index, search, lower, upper, state, work)
+    for k in range(out_q.size):
+        out_q[k] = work.x[best, k]
+    return meets, evaluations
