@@ -18,8 +18,8 @@ from ikde.files.reading import errors_of, expect_at_most, most_bytes
 
 ENDING, MAGIC = ".npy", b"\x93NUMPY"
 PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-MOST_SHRUNK = 1040  # deflate shrinks nothing to less than 1 / 1032
-MOST_LISTED = 2**22  # bytes of an archive's list of members
+MAX_SHRINKAGE = 1040  # deflate shrinks nothing to less than 1 / 1032
+MAX_LISTED = 2**22  # bytes of an archive's list of members
 LONGEST_HEADER = 10_000  # bytes of an array's
 PLAIN_TYPE = re.compile(r"[<>|=]?[biufcSU]\d{1,6}")  # no objects, which are pickles, and no records
 PIECE = 2**20
@@ -29,7 +29,7 @@ class _Archive(BytesIO):
     """The bytes of an archive; what is read at once is small, but for the list of its members."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        if size is not None and size > MOST_LISTED:
+        if size is not None and size > MAX_LISTED:
             raise zipfile.BadZipFile("too many members")
         return super().read(size)
 
@@ -55,7 +55,7 @@ class NpzTable:
     def _read(self, name: str, member: zipfile.ZipInfo) -> np.ndarray:
         if member.compress_type not in PACKINGS or member.flag_bits & 1:
             raise FileError(self._path, f"{name}: expected an array that is stored or deflated, and not encrypted")
-        if member.file_size > MOST_SHRUNK * member.compress_size:
+        if member.file_size > MAX_SHRINKAGE * member.compress_size:
             raise FileError(self._path, f"{name}: cannot be read: {member.file_size:,} bytes do not fit into the file")
         with errors_of(self._path):
             with self._archive.open(member) as file:
@@ -85,8 +85,8 @@ def _parse_header(header: bytes) -> tuple[np.dtype[Any], bool, tuple[int, ...]]:
     """Type, order and shape: a dictionary as Python writes it, of plain constants."""
     try:
         with warnings.catch_warnings(action="ignore"):
-            told = ast.literal_eval(header.decode("utf-8").strip())
-        word, is_fortran, shape = told["descr"], told["fortran_order"], told["shape"]
+            header_values = ast.literal_eval(header.decode("utf-8").strip())
+        word, is_fortran, shape = header_values["descr"], header_values["fortran_order"], header_values["shape"]
     except (ValueError, SyntaxError, TypeError, KeyError, RecursionError, MemoryError):
         raise ValueError("not an array of numpy: its header is damaged") from None
     if not (isinstance(word, str) and PLAIN_TYPE.fullmatch(word)):

@@ -14,9 +14,9 @@ from ikde.errors import FileError, IkdeError, InputError, quoted
 
 LIMIT = "IKDE_MAX_FILE_MB"
 """Environment variable: MB (10^6 bytes) that a table may take up in its file and, as numbers, in memory."""
-MOST_MB = 500.0  # unless the variable says otherwise
+MAX_MB = 500.0  # unless the variable says otherwise
 TEXT_SHARE = 0.1  # of that for YAML and JSON, which take more room once they are read
-MOST_DEPTH = 40  # of mappings and lists inside each other
+MAX_DEPTH = 40  # of mappings and lists inside each other
 
 # A pipe without a writer does not block; a terminal does not take over.
 _CAREFULLY = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_CLOEXEC", 0)
@@ -26,7 +26,7 @@ _STEP = {"[": 1, "{": 1, "]": -1, "}": -1}
 
 def most_bytes(share: float = 1.0) -> int:
     """Bytes that a file may hold, or `share` of them; raises `InputError` if `$IKDE_MAX_FILE_MB` is no number."""
-    given = os.environ.get(LIMIT) or str(MOST_MB)
+    given = os.environ.get(LIMIT) or str(MAX_MB)
     try:
         most = float(given)
     except ValueError:
@@ -96,8 +96,8 @@ def read_json(path: Path, *, follow: bool = True) -> Any:
     """Plain data from a JSON file; raises `FileError` in one line."""
     text = read_text(path, follow=follow)
     depth = max(accumulate(_STEP.get(mark, 0) for mark in _BRACKET.findall(text)), default=0)
-    if depth > MOST_DEPTH:
-        raise FileError(path, f"nested too deeply; expected at most {MOST_DEPTH} levels")
+    if depth > MAX_DEPTH:
+        raise FileError(path, f"nested too deeply; expected at most {MAX_DEPTH} levels")
     try:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:

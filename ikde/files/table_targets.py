@@ -14,8 +14,8 @@ from ikde.files.tables import Column, Table, as_floats, as_names, open_table, ro
 from ikde.kernels.arrays import Floats
 from ikde.model.target import FARTHEST, POSE, Targets
 
-LARGEST = 1e9  # of a number that is no position: beyond, digits are lost
-SHORTEST = 1e-12  # of an axis or a quaternion
+MAX_NUMBER = 1e9  # of a number that is no position: beyond, digits are lost
+MIN_LENGTH = 1e-12  # of an axis or a quaternion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -110,9 +110,9 @@ def _read_orientations(
     path: Path, kind: OrientationKind, names: Sequence[str], data: Mapping[str, Column], units: UnitsEntry
 ) -> Floats:
     """Axes [T, 3], roll, pitch, yaw in rad [T, 3], or quaternions [T, 4]."""
-    values = _stack(path, names, data, 4 if kind == "quat_wxyz" else 3, LARGEST)
+    values = _stack(path, names, data, 4 if kind == "quat_wxyz" else 3, MAX_NUMBER)
     if kind == "rpy":
         return values * units.angle_rad
-    for (row,) in np.argwhere(np.linalg.norm(values, axis=1) <= SHORTEST)[:1]:
+    for (row,) in np.argwhere(np.linalg.norm(values, axis=1) <= MIN_LENGTH)[:1]:
         raise row_error(path, int(row), f"{', '.join(names)}: a length of 0 has no direction")
     return values

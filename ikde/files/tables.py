@@ -23,7 +23,7 @@ from ikde.files.reading import errors_of, expect_at_most, most_bytes, read_bytes
 Column = pa.ChunkedArray | np.ndarray
 """[T], from arrow or numpy; of an NPZ file also [T, 3] or [T, 4]."""
 
-MOST_COLUMNS = 10_000
+MAX_COLUMNS = 10_000
 LONGEST_HEADER = 10**6  # characters
 LONGEST_NAME = 1000  # characters of a target's name
 FLOAT_BYTES = 8
@@ -154,8 +154,8 @@ def open_table(path: Path) -> Table:
     except FileError as error:
         raise InputError(f"{error.message}: {path}", ("path",)) from None
     table = reader(path, data)
-    if len(table.names) > MOST_COLUMNS:
-        raise FileError(path, f"expected at most {MOST_COLUMNS:,} columns, got {len(table.names):,}")
+    if len(table.names) > MAX_COLUMNS:
+        raise FileError(path, f"expected at most {MAX_COLUMNS:,} columns, got {len(table.names):,}")
     return table
 
 

@@ -27,9 +27,9 @@ from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import check_robot
 
 Pairs = tuple[tuple[str, str], ...]
-MOST_JOINTS, MOST_ENTRIES, MOST_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
-MOST_SPHERES = 100_000  # of a robot's approximations together
-OfLists = Field(max_length=MOST_LISTS)
+MAX_JOINTS, MAX_ENTRIES, MAX_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
+MAX_SPHERES = 100_000  # of a robot's approximations together
+OfLists = Field(max_length=MAX_LISTS)
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
 
@@ -122,11 +122,11 @@ class RobotFile(Entry):
     units: UnitsEntry = UnitsEntry()
     convention: Name = "own"
     sources: dict[Name, SourceEntry] = {}
-    joints: Annotated[dict[Name, JointEntry], Field(max_length=MOST_JOINTS)]
-    frames: Annotated[dict[Name, FrameEntry], Field(max_length=MOST_ENTRIES)]
+    joints: Annotated[dict[Name, JointEntry], Field(max_length=MAX_JOINTS)]
+    frames: Annotated[dict[Name, FrameEntry], Field(max_length=MAX_ENTRIES)]
     tool: Name
     conventions: Annotated[dict[Name, ConventionEntry], OfLists] = {}
-    spheres: Annotated[dict[Name, Annotated[list[SphereRowEntry], Field(max_length=MOST_ENTRIES)]], OfLists] = {}
+    spheres: Annotated[dict[Name, Annotated[list[SphereRowEntry], Field(max_length=MAX_ENTRIES)]], OfLists] = {}
     adjacent: AdjacentEntry | None = None
     pairs: Annotated[dict[Name, PairEntry], OfLists] = {}
     detectors: Annotated[dict[Name, RobotDetectorEntry], OfLists] = {}
@@ -149,8 +149,8 @@ def parse_robot(document: Document) -> Robot:
 def _to_robot(file: RobotFile) -> Robot:
     length, angle = file.units.length_m, file.units.angle_rad
     unit = {"revolute": angle, "prismatic": length}
-    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MOST_SPHERES:
-        raise InputError(f"expected at most {MOST_SPHERES:,} spheres in all", ("spheres",))
+    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
+        raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
     return Robot(
         name=file.name,

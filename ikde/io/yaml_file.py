@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from ikde.errors import FileError, InputError, quoted
-from ikde.files.reading import MOST_DEPTH, read_text
+from ikde.files.reading import MAX_DEPTH, read_text
 
 Where = tuple[str | int, ...]
 
@@ -143,8 +143,8 @@ class _Reader:
         self._deepest = max(self._deepest, len(where) + levels)
         if self._values > MOST_VALUES:
             raise self._document.error(f"too many values, aliases counted; expected at most {MOST_VALUES:,}", where[:3])
-        if len(where) + levels > MOST_DEPTH:
-            raise self._document.error(f"nested too deeply; expected at most {MOST_DEPTH} levels", where[:3])
+        if len(where) + levels > MAX_DEPTH:
+            raise self._document.error(f"nested too deeply; expected at most {MAX_DEPTH} levels", where[:3])
 
     def _read_list(self, where: Where) -> list[Any]:
         items: list[Any] = []

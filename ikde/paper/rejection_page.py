@@ -88,7 +88,7 @@ def _say(agrees: bool) -> str | Cell:
 
 
 def _judge(data: Rejection) -> Text:
-    """Which printed rates the stated setting meets, told from the intervals."""
+    """Which printed rates the stated setting meets, by the intervals."""
     lines = []
     for reading, name in READING_NAMES.items():
         cells = [(printed, ours) for *_, printed, _, ours in _list_cells(data, reading)]
@@ -133,7 +133,7 @@ def _make_lists(data: Rejection) -> Table:
     return make_table(
         rows,
         (Column("target", align="left"), lambda row: row[0]),
-        (Column("pairs that both look at", align="left"), lambda row: row[2].replace("_", " ")),
+        (Column("pairs that both compare", align="left"), lambda row: row[2].replace("_", " ")),
         *(
             (Column(f"rejected, {name}", "%", mark="ours"), lambda row, name=name: row[1].rate(name, row[2]).text)
             for name in APPROXIMATIONS

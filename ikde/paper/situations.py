@@ -201,7 +201,7 @@ def _introduce(data: Situations) -> Text:
     detections = data.detections
     agree = sum(detection.agrees for detection in detections)
     return Text(
-        f"Uniform motions of ten seconds. A detector looks {data.settings['grid']}; each situation looks at its own "
+        f"Uniform motions of ten seconds. A detector checks {data.settings['grid']}; each situation compares its own "
         f"pairs. {agree} of {len(detections)} printed angles are detected at exactly the printed grid point. The "
         "onset is where the spheres first touch, which the grid cannot show. The contact is that of the true shapes "
         "in the paper's simulator (V-REP): how early a detector speaks is what its spheres give away."
