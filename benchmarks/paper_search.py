@@ -21,7 +21,7 @@ from rich.progress import track
 from rich.table import Table
 
 import ikde
-from ikde.bench.plain_search import limit_base
+from ikde.paper.plain_search import limit_base
 
 TARGETS_M = {"task 1": (0.8, 0.5, 1.0), "task 2": (0.54, -0.131, 0.974)}
 BASE_RANGE_M = 0.1

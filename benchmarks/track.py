@@ -3,7 +3,7 @@
     python benchmarks/track.py           # ten seeds, 100 random starts a task: a quarter of an hour on two cores
     python benchmarks/track.py --quick   # one seed, four starts; writes nothing
 
-`ikde.bench.tracks` runs and counts, as for `ikde bench track`: all methods begin where `continuation` begins, what
+`ikde.track.comparison` runs and counts, as for `ikde bench track`: all methods begin where `continuation` begins, what
 `typical` does is graded as if the base could slide, times are wall times of each sample, of the first seed, which runs
 alone; the others run on all cores at once. Writes benchmarks/results/track.json after each task.
 """
@@ -19,9 +19,9 @@ from machine import describe
 from rich.console import Console
 from rich.table import Table
 
-from ikde.bench.tracks import FULL, METHODS, TrackBudget, compare_methods
 from ikde.io.track_file import load_track
 from ikde.report.track_comparison import FIGURES, list_cells
+from ikde.track.comparison import FULL, METHODS, TrackBudget, compare_methods
 from ikde.track.spec import Drive, TrackMethod
 
 HERE = Path(__file__).parent

@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.model.robot import Robot as Robot
     from ikde.model.target import Target as Target
     from ikde.model.target import Targets as Targets
+    from ikde.paper.surface import check_surface as check_surface
     from ikde.solver.check import CheckResult as CheckResult
     from ikde.solver.check import check as check
     from ikde.solver.distinct import solve_distinct as solve_distinct
@@ -45,7 +46,6 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.settings import SolveSettings as SolveSettings
     from ikde.solver.solve import solve as solve
     from ikde.solver.solve import solve_many as solve_many
-    from ikde.solver.surface import check_surface as check_surface
     from ikde.solver.verify import Verification as Verification
     from ikde.solver.verify import verify as verify
     from ikde.track.courses import ContinuationSettings as ContinuationSettings
@@ -95,7 +95,7 @@ _HOME = {
     "family": "ikde.solver.families",
     "forward": "ikde.solver.forward",
     "check": "ikde.solver.check",
-    "check_surface": "ikde.solver.surface",
+    "check_surface": "ikde.paper.surface",
     "CheckResult": "ikde.solver.check",
     "verify": "ikde.solver.verify",
     "Verification": "ikde.solver.verify",

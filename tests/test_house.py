@@ -15,19 +15,18 @@ PROVENANCE = {"published", "derived", "calibrated"}
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
 NO_TEST_OF_ITS_OWN = {
     "__main__.py": "two lines; tests/cli/test_app.py runs them in a process",
-    "bench/budget.py": "sample sizes; the tests of every section use them",
     "cli/exit_codes.py": "an enumeration; tests/cli/test_app.py",
     "cli/output.py": "tests/cli/test_app.py sees what it writes",
     "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",
     "cli/machine.py": "tests/cli/test_doctor.py",
-    "io/units.py": "two tables; every test in mm or deg uses them",
     "io/plan_file.py": "tests/io/test_batch_file.py and test_track_file.py load every kind of plan",
     "io/schema.py": "tests/io/test_robot_file.py reads its messages",
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
     "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",
     "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
-    "model/surface.py": "tests/solver/test_surface.py",
+    "paper/inputs.py": "sample sizes and what is loaded; the tests of every section use them",
+    "paper/topics.py": "a table; tests/paper/test_results.py goes over it",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
 }
 

@@ -1,6 +1,6 @@
-"""The shipped robots show what the papers print: `ikde/bench/qiao2021.yaml`, with its misprints put right.
+"""The shipped robots show what the papers print: `ikde/paper/qiao2021.yaml`, with its misprints put right.
 
-Only the printed numbers are shared with `ikde.bench`: every figure is worked out here a second time.
+Only the printed numbers are shared with `ikde.paper`: every figure is worked out here a second time.
 docs/misprints.md cites the tests at the end of this file as evidence.
 """
 
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.io.published import load_published
 from ikde.model.rotation import rotation_about
+from ikde.paper.published import load_published
 
 PAPER = load_published()
 ROWS = {f"target {row['target']} {row['row']}": row for row in PAPER["table_5"]}

@@ -3,10 +3,8 @@
 from dataclasses import replace
 from functools import cache
 
-import ikde
-from ikde.bench.budget import QUICK
-from ikde.bench.paper import Sources, compute_paper
-from ikde.io.published import load_misprints, load_published
+from ikde.paper.inputs import QUICK, load_inputs
+from ikde.paper.results import compute_paper
 
 TINY = replace(
     QUICK,
@@ -38,14 +36,4 @@ class Record:
 def compute_tiny():
     """(results, what progress heard): once for all tests, which change nothing in it."""
     record = Record()
-    return compute_paper(load_sources(), TINY, progress=record), record
-
-
-def load_sources():
-    """What the report is computed from."""
-    return Sources(
-        key_point=ikde.load_robot("qiao2021"),
-        classical=ikde.load_robot("qiao2021_dh"),
-        published=load_published(),
-        misprints=load_misprints(),
-    )
+    return compute_paper(replace(load_inputs(TINY), progress=record)), record

@@ -9,13 +9,12 @@ from functools import cache
 
 import numpy as np
 
-from ikde.bench.approximation import APPROXIMATIONS
-from ikde.bench.solutions import read_row
-from ikde.bench.sweeps import Sweep, compute_clearance, find_onset, read_sweeps, shows_sweep
-from ikde.io.published import load_published
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import approximation_volume_m3
+from ikde.paper.published import APPROXIMATIONS, load_published
+from ikde.paper.solutions import read_row
+from ikde.paper.sweeps import Sweep, compute_clearance, find_onset, read_sweeps, shows_sweep
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +56,7 @@ def observe_sweep(robot: Robot, sweep: Sweep, detector: str) -> Observation:
 def observe_labels(robot: Robot) -> list[Observation]:
     """Table 5's labels: s rows free with both detectors, f rows colliding with the typical one."""
     labelled = [row for row in load_published()["table_5"] if row["free"] is not None]
-    Q = np.array([read_row(robot, row) for row in labelled])
+    Q = np.array([read_row(robot, row["q"]) for row in labelled])
     typical, improved = (1e3 * compute_clearance(CollisionModel.of(robot, name), Q) for name in APPROXIMATIONS)
     return [
         Observation(

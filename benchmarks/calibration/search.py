@@ -18,9 +18,9 @@ from calibration.layout import (
     shift_links,
 )
 from calibration.observations import first_failure, load_sweeps, observe_collisions, observe_sweep
-from ikde.bench.approximation import APPROXIMATIONS
-from ikde.bench.sweeps import bisect, shows_sweep
 from ikde.model.robot import Robot
+from ikde.paper.published import APPROXIMATIONS
+from ikde.paper.sweeps import bisect, shows_sweep
 
 SPAN_MM = 60.0
 

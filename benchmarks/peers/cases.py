@@ -13,9 +13,9 @@ import numpy as np
 from checker import Checker, make_checker
 
 import ikde
-from ikde.bench.plain_search import limit_base
 from ikde.kernels.frames import compute_bodies, compute_jacobian, compute_tool
 from ikde.model.pack import pack_robot
+from ikde.paper.plain_search import limit_base
 
 ROBOT = "qiao2021"
 SEED = 20260

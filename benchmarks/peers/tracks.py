@@ -30,9 +30,9 @@ from adapters.mink_ import MinkProgram
 from adapters.pink_ import PinkProgram
 
 import ikde
-from ikde.bench.tracks import draw_random_starts, measure
 from ikde.io.track_file import load_track
 from ikde.track import methods
+from ikde.track.comparison import draw_random_starts, measure
 from ikde.track.courses import USES
 from ikde.track.follow_path import grade_motion
 from ikde.track.follower import Follower, make_follower

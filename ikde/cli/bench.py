@@ -1,9 +1,9 @@
 """`ikde bench`; and `ikde bench paper`: the paper's tables and figures, published beside ours, as one page."""
 
 import gc
-from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -12,9 +12,6 @@ from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption
 from ikde.cli.output import announce_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
-
-if TYPE_CHECKING:
-    from ikde.bench.paper import Sources
 
 bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
 
@@ -48,64 +45,61 @@ def paper(
 
     Example: ikde bench paper --out report/
     """
-    from ikde.io.report_folder import prepare_folder, read_results
+    from ikde.io.report_folder import prepare_folder
 
     gc.enable()
     if check and (quick or only):
         raise typer.BadParameter("results.json says what is in it; leave --quick and --only out", param_hint="--check")
     sections = _read_sections(only)
     if check:
-        raise typer.Exit(_check(read_results(out), out, as_json))
+        raise typer.Exit(_check(out, as_json))
     prepare_folder(out)
     _make(out, quick, sections, as_json)
 
 
 def _read_sections(only: str | None) -> tuple[str, ...]:
-    from ikde.bench.paper import SECTIONS
+    from ikde.paper.topics import TOPICS
 
     if only is None:
-        return SECTIONS
+        return tuple(TOPICS)
     chosen = tuple(filter(None, only.split(",")))
-    wrong = [name for name in chosen if name not in SECTIONS]
+    wrong = [name for name in chosen if name not in TOPICS]
     if wrong or not chosen:
-        raise typer.BadParameter(f"expected some of {', '.join(SECTIONS)}, got {only!r}", param_hint="--only")
+        raise typer.BadParameter(f"expected some of {', '.join(TOPICS)}, got {only!r}", param_hint="--only")
     return chosen
 
 
 def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> None:
-    from ikde.bench.budget import FULL, QUICK
-    from ikde.bench.paper import compute_paper, count_solves
     from ikde.io.report_folder import RESULTS, format_results, write_report
+    from ikde.paper.inputs import FULL, QUICK, load_inputs
+    from ikde.paper.page import make_paper_page
+    from ikde.paper.results import compute_paper, count_solves
+    from ikde.report.html import render_html
+    from ikde.report.markdown import render_markdown
 
-    sources, budget = _load_sources(), QUICK if quick else FULL
-    with show_benchmark(count_solves(sources, budget)) as progress:
-        results = compute_paper(sources, budget, only=sections, progress=progress, announce_compile=_announce)
+    inputs = load_inputs(QUICK if quick else FULL)
+    with show_benchmark(count_solves(inputs)) as progress:
+        results = compute_paper(replace(inputs, progress=progress), sections, _announce)
+        data = results.as_json()
         progress.begin("page")
-        write_report(out, {RESULTS: format_results(results), **_render(results, sources)})
+        page = make_paper_page(results, inputs)
+        texts = {"report.html": render_html(page), "report.md": render_markdown(page)}
+        write_report(out, {RESULTS: format_results(data), **texts})
     if as_json:
-        print_json(results)
+        print_json(data)
     else:
         print_line(f"{out / 'report.html'}  (report.md and {RESULTS} beside it)")
 
 
-def _render(results: Mapping[str, Any], sources: "Sources") -> dict[str, str]:
-    from ikde.report.html import render_html
-    from ikde.report.markdown import render_markdown
-    from ikde.report.paper.page import make_paper_page
-
-    page = make_paper_page(results, {"key_point": sources.key_point, "classical": sources.classical})
-    return {"report.html": render_html(page), "report.md": render_markdown(page)}
-
-
-def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
-    from ikde.bench.budget import Budget
-    from ikde.bench.paper import check_paper, count_solves
+def _check(out: Path, as_json: bool) -> ExitCode:
     from ikde.io.report_folder import RESULTS
+    from ikde.paper.inputs import Budget, load_inputs
+    from ikde.paper.results import check_paper, count_solves, read_results
 
-    sources = _load_sources()
-    solves = count_solves(sources, Budget(**recorded["made"]["budget"]))
-    with show_benchmark(solves) as progress:
-        differences = check_paper(recorded, sources, progress=progress, announce_compile=_announce)
+    recorded = read_results(out)
+    inputs = load_inputs(Budget(**recorded["made"]["budget"]))
+    with show_benchmark(count_solves(inputs)) as progress:
+        differences = check_paper(recorded, replace(inputs, progress=progress), _announce)
     if as_json:
         print_json({"agrees": not differences, "differences": differences})
     elif differences:
@@ -118,16 +112,3 @@ def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
 
 def _announce() -> None:
     announce_compile("about a minute")
-
-
-def _load_sources() -> "Sources":
-    from ikde.bench.paper import Sources
-    from ikde.io.published import load_misprints, load_published
-    from ikde.io.robots import load_robot
-
-    return Sources(
-        key_point=load_robot("qiao2021"),
-        classical=load_robot("qiao2021_dh"),
-        published=load_published(),
-        misprints=load_misprints(),
-    )

@@ -37,12 +37,12 @@ def bench_track(
 
     Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
     """
-    from ikde.bench.tracks import FULL, QUICK, compare_methods, count_runs
     from ikde.io.report_folder import RESULTS, format_results, open_folder, write_report
     from ikde.io.track_file import load_track
     from ikde.kernels.jit import compile_clock
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
+    from ikde.track.comparison import FULL, QUICK, compare_methods, count_runs
 
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
@@ -63,7 +63,7 @@ def bench_track(
 
 
 def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":
-    from ikde.bench.tracks import METHODS
+    from ikde.track.comparison import METHODS
 
     if text is None:
         return METHODS

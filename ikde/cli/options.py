@@ -84,7 +84,7 @@ def read_collision(
     from dataclasses import replace
 
     from ikde.errors import InputError
-    from ikde.io.units import LENGTHS_M
+    from ikde.files.entries import LENGTHS_M
     from ikde.model.collision_model import CollisionModel
     from ikde.model.names import LONGEST_NAME
 

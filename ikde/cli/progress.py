@@ -11,7 +11,7 @@ from ikde.errors import printable
 
 if TYPE_CHECKING:
     from ikde.batch.run import Progress
-    from ikde.bench.progress import Progress as BenchProgress
+    from ikde.solver.progress import Progress as BenchProgress
 
     Tell = Callable[[Progress], None]
 

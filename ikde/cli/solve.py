@@ -127,9 +127,9 @@ def solve(
     Example: ikde solve --position 800 500 1000 --unit mm --plot pose.png
     """
     skip_blas_probe()
+    from ikde.files.entries import ANGLES_RAD, LENGTHS_M
     from ikde.io.robots import load_robot
     from ikde.io.target import make_target
-    from ikde.io.units import ANGLES_RAD, LENGTHS_M
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
     from ikde.report.solve import format_solve, solve_json

@@ -1,4 +1,4 @@
-"""Entries that several kinds of files share: numbers, units, orientations, tables, detectors."""
+"""Entries that all kinds of files share, robot files among them: numbers, units, orientations, tables, detectors."""
 
 import math
 from collections.abc import Sequence
@@ -8,9 +8,12 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from ikde.errors import InputError
 from ikde.files.names import Name, Text
+from ikde.model.validate import NON_ADJACENT
 
 OrientationKind = Literal["axis", "rpy", "quat_wxyz"]
 ORIENTATIONS: tuple[OrientationKind, ...] = get_args(OrientationKind)
+LENGTHS_M = {"mm": 1e-3, "m": 1.0}
+ANGLES_RAD = {"deg": math.pi / 180.0, "rad": 1.0}
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Count = Annotated[int, Field(strict=True, ge=1, le=10**9)]
 Interval = Annotated[list[Number], Field(min_length=2, max_length=2)]
@@ -30,9 +33,16 @@ FourColumns = Annotated[Annotated[Text, AsText] | Annotated[FourTexts, AsEntry],
 
 
 class Entry(BaseModel):
-    """Part of a run file: unknown keys are errors, and the text under a key is what an editor shows."""
+    """Part of a file: unknown keys are errors, and the text under a key is what an editor shows."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, populate_by_name=True)
+
+
+class NamedEntry(Entry):
+    """Something that results call by a name of the user's."""
+
+    name: Name
+    """What to call it in the results."""
 
 
 class UnitsEntry(Entry):
@@ -46,12 +56,12 @@ class UnitsEntry(Entry):
     @property
     def length_m(self) -> float:
         """One unit of length in m."""
-        return 1e-3 if self.length == "mm" else 1.0
+        return LENGTHS_M[self.length]
 
     @property
     def angle_rad(self) -> float:
         """One unit of angle in rad."""
-        return math.pi / 180.0 if self.angle == "deg" else 1.0
+        return ANGLES_RAD[self.angle]
 
 
 class OrientationEntry(Entry):
@@ -108,17 +118,19 @@ class FileEntry(Entry):
     """Units of the table (default: those of the run file)."""
 
 
-class DetectorEntry(Entry):
-    """A detector of your own, from the robot's approximations and pair lists."""
+class DetectorPartsEntry(Entry):
+    """What a detector compares, and how near is a collision."""
 
-    name: Name
-    """What to call it in the results."""
     spheres: Name
     """The robot's sphere approximation."""
-    pairs: Name = "non_adjacent"
+    pairs: Name = NON_ADJACENT
     """The robot's list of component pairs to compare."""
     safe_distance: Number = 0.0
     """Clearance at which collision begins."""
+
+
+class DetectorEntry(DetectorPartsEntry, NamedEntry):
+    """A detector of your own, from the robot's approximations and pair lists."""
 
 
 DetectorChoice = Annotated[Annotated[Name, AsText] | Annotated[DetectorEntry, AsEntry], TextOrEntry]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ikde.errors import InputError, nearest
-from ikde.files.entries import DetectorEntry, UnitsEntry
+from ikde.files.entries import DetectorEntry, DetectorPartsEntry, UnitsEntry
 from ikde.model.collision_model import CollisionModel, check_detector
 from ikde.model.robot import FARTHEST, NO_DETECTOR, Detector, Joint, Robot
 
@@ -15,10 +15,15 @@ def read_collision(robot: Robot, choice: str | DetectorEntry | None, units: Unit
         return CollisionModel.of(robot, choice)
     if choice.name == NO_DETECTOR:
         raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", ("name",))
-    safe_distance_m = choice.safe_distance * units.length_m
-    own = Detector(name=choice.name, spheres=choice.spheres, pairs=choice.pairs, safe_distance_m=safe_distance_m)
+    own = make_detector(choice.name, choice, units)
     check_detector(robot, own, ())
     return CollisionModel(robot=robot, detector=own)
+
+
+def make_detector(name: str, entry: DetectorPartsEntry, units: UnitsEntry) -> Detector:
+    """A detector as it is written, not yet checked."""
+    safe_distance_m = entry.safe_distance * units.length_m
+    return Detector(name=name, spheres=entry.spheres, pairs=entry.pairs, safe_distance_m=safe_distance_m)
 
 
 def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEntry) -> Robot:

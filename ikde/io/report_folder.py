@@ -3,15 +3,12 @@
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from ikde.bench.budget import Budget
-from ikde.errors import FileError, quoted
+from ikde.errors import FileError
 from ikde.files.atomic import replace_all
-from ikde.files.reading import read_json
 
 RESULTS = "results.json"
 
@@ -49,27 +46,3 @@ def write_report(folder: Path, files: Mapping[str, str]) -> None:
 def format_results(results: Mapping[str, Any]) -> str:
     """`results.json`'s text."""
     return json.dumps(results, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-
-
-def read_results(folder: Path) -> dict[str, Any]:
-    """What an earlier `ikde bench paper` recorded; raises `FileError` if the folder holds no such record."""
-    path = folder / RESULTS
-    results = read_json(path)
-    try:
-        made, sections = results["made"], results["sections"]
-        budget, _ = asdict(Budget(**made["budget"])), set(made["only"])
-    except (KeyError, TypeError):
-        raise FileError(path, "not a record of this version's `ikde bench paper`") from None
-    for name, size in budget.items():
-        if type(size) is not int or size < 1:
-            raise FileError(
-                path, f"expected a whole number of at least 1, got {quoted(size)}", ("made", "budget", name)
-            )
-    for where, value in {("sections",): sections, **_list_sections(sections)}.items():
-        if not isinstance(value, dict):
-            raise FileError(path, f"expected a mapping, got {quoted(value)}", where)
-    return results
-
-
-def _list_sections(sections: Any) -> dict[tuple[str, ...], Any]:
-    return {("sections", name): section for name, section in sections.items()} if isinstance(sections, dict) else {}

@@ -3,19 +3,19 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError, nearest
+from ikde.files.entries import DetectorPartsEntry, Entry, Number, UnitsEntry, Vector
 from ikde.files.names import LONGEST_TEXT, Name, Text
+from ikde.files.robot_entries import make_detector
 from ikde.io.schema import as_file_error
-from ikde.io.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
 from ikde.model.robot import (
     NO_DETECTOR,
     AdjacentPair,
-    Detector,
     Frame,
     Joint,
     Provenance,
@@ -24,42 +24,30 @@ from ikde.model.robot import (
     Wheels,
 )
 from ikde.model.rotation import rotation_from_rpy
-from ikde.model.validate import NON_ADJACENT, check_robot
+from ikde.model.validate import check_robot
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
-Vector = tuple[Number, Number, Number]
 Pairs = tuple[tuple[str, str], ...]
-MOST_JOINTS, MOST_ENTRIES, MOST_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
-MOST_SPHERES = 100_000  # of a robot's approximations together
-OfLists = Field(max_length=MOST_LISTS)
+MAX_JOINTS, MAX_ENTRIES, MAX_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
+MAX_SPHERES = 100_000  # of a robot's approximations together
+OfLists = Field(max_length=MAX_LISTS)
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
 
 
-class Entry(BaseModel):
-    """An entry of the file: unknown keys are errors."""
+class SourcedEntry(Entry):
+    """An entry whose numbers have a source."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     source: Source | None = None
 
 
-class Units(BaseModel):
-    """Units of this file's lengths and angles."""
-
-    model_config = ConfigDict(extra="forbid")
-    length: Literal["mm", "m"] = "m"
-    angle: Literal["deg", "rad"] = "rad"
-
-
-class SourceEntry(BaseModel):
+class SourceEntry(Entry):
     """Where numbers come from."""
 
-    model_config = ConfigDict(extra="forbid")
     kind: Literal["published", "derived", "calibrated"]
     text: Text
 
 
-class JointEntry(Entry):
+class JointEntry(SourcedEntry):
     """One coordinate of q."""
 
     kind: Literal["revolute", "prismatic"]
@@ -68,20 +56,19 @@ class JointEntry(Entry):
     home: Number = 0.0
 
 
-class FrameEntry(Entry):
+class FrameEntry(SourcedEntry):
     """A frame: first `xyz`, then `rpy` about the fixed axes of the parent, then the joint about or along `axis`."""
 
     parent: Name
-    xyz: Vector = (0.0, 0.0, 0.0)
-    rpy: Vector = (0.0, 0.0, 0.0)
+    xyz: Vector = [0.0, 0.0, 0.0]
+    rpy: Vector = [0.0, 0.0, 0.0]
     joint: Name | None = None
     axis: Vector | None = None
 
 
-class SphereEntry(Entry):
+class SphereRowEntry(SourcedEntry):
     """A row of equal spheres between two key points."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
     component: Name
     start: Name = Field(alias="from")
     end: Name | None = Field(None, alias="to")
@@ -90,7 +77,7 @@ class SphereEntry(Entry):
     spacing: Literal["touching", "even"] = "touching"
 
 
-class PairEntry(Entry):
+class PairEntry(SourcedEntry):
     """A pair list: pairs of its own, other lists included, or both."""
 
     pairs: dict[Name, list[Name]] = {}
@@ -104,50 +91,45 @@ def _with_reasons(value: Any) -> Any:
     raise PydanticCustomError("no_reason", 'expected a reason for each pair: {A: {B: "why A and B may touch"}}')
 
 
-class AdjacentEntry(Entry):
+class AdjacentEntry(SourcedEntry):
     """Pairs that are adjacent although the tree does not show it, each with the reason: {A: {B: "why"}}."""
 
     pairs: dict[Name, Annotated[dict[Name, str], BeforeValidator(_with_reasons)]]
 
 
-class DetectorEntry(Entry):
+class RobotDetectorEntry(DetectorPartsEntry, SourcedEntry):
     """An approximation, a pair list and a safe distance."""
 
-    spheres: Name
-    pairs: Name = NON_ADJACENT
-    safe_distance: Number = 0.0
 
-
-class ConventionEntry(Entry):
+class ConventionEntry(SourcedEntry):
     """Another way to count the joints: q_other = q + offset."""
 
     offsets: dict[Name, Number]
 
 
-class WheelsEntry(Entry):
+class WheelsEntry(SourcedEntry):
     """The two driven wheels of a base: how large, and how far from its middle."""
 
     radius: Number
     half_track: Number
 
 
-class RobotFile(BaseModel):
+class RobotFile(Entry):
     """The whole file."""
 
-    model_config = ConfigDict(extra="forbid")
     name: Name
     title: Annotated[str, Field(max_length=LONGEST_TEXT)] = ""
-    units: Units = Units()
+    units: UnitsEntry = UnitsEntry()
     convention: Name = "own"
     sources: dict[Name, SourceEntry] = {}
-    joints: Annotated[dict[Name, JointEntry], Field(max_length=MOST_JOINTS)]
-    frames: Annotated[dict[Name, FrameEntry], Field(max_length=MOST_ENTRIES)]
+    joints: Annotated[dict[Name, JointEntry], Field(max_length=MAX_JOINTS)]
+    frames: Annotated[dict[Name, FrameEntry], Field(max_length=MAX_ENTRIES)]
     tool: Name
     conventions: Annotated[dict[Name, ConventionEntry], OfLists] = {}
-    spheres: Annotated[dict[Name, Annotated[list[SphereEntry], Field(max_length=MOST_ENTRIES)]], OfLists] = {}
+    spheres: Annotated[dict[Name, Annotated[list[SphereRowEntry], Field(max_length=MAX_ENTRIES)]], OfLists] = {}
     adjacent: AdjacentEntry | None = None
     pairs: Annotated[dict[Name, PairEntry], OfLists] = {}
-    detectors: Annotated[dict[Name, DetectorEntry], OfLists] = {}
+    detectors: Annotated[dict[Name, RobotDetectorEntry], OfLists] = {}
     default_detector: Name | None = None
     wheels: WheelsEntry | None = None
 
@@ -165,10 +147,10 @@ def parse_robot(document: Document) -> Robot:
 
 
 def _to_robot(file: RobotFile) -> Robot:
-    length, angle = LENGTHS_M[file.units.length], ANGLES_RAD[file.units.angle]
+    length, angle = file.units.length_m, file.units.angle_rad
     unit = {"revolute": angle, "prismatic": length}
-    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MOST_SPHERES:
-        raise InputError(f"expected at most {MOST_SPHERES:,} spheres in all", ("spheres",))
+    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
+        raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
     return Robot(
         name=file.name,
@@ -179,10 +161,7 @@ def _to_robot(file: RobotFile) -> Robot:
         approximations={name: tuple(_to_row(e, length) for e in rows) for name, rows in file.spheres.items()},
         pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
         adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
-        detectors={
-            name: Detector(name=name, spheres=e.spheres, pairs=e.pairs, safe_distance_m=e.safe_distance * length)
-            for name, e in file.detectors.items()
-        },
+        detectors={name: make_detector(name, entry, file.units) for name, entry in file.detectors.items()},
         default_detector=_choose_default(file),
         convention=file.convention,
         conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
@@ -214,7 +193,7 @@ def _unit(name: str, axis: np.ndarray) -> np.ndarray:
     return axis / norm
 
 
-def _to_row(entry: SphereEntry, length: float) -> SphereRow:
+def _to_row(entry: SphereRowEntry, length: float) -> SphereRow:
     return SphereRow(
         component=entry.component,
         start=entry.start,

@@ -19,7 +19,6 @@ EXPECTED = {
     "string_type": "expected text",
     "dict_type": "expected keys with values",
     "list_type": "expected a list",
-    "tuple_type": "expected a list",
     "model_type": "expected keys with values",
     "model_attributes_type": "expected keys with values",
     "finite_number": "expected a finite number",
@@ -84,9 +83,6 @@ def as_file_error(document: Source, error: ValidationError, model: type[BaseMode
         message = f"{EXPECTED[kind]}{got}"
     else:
         message = first["msg"][0].lower() + first["msg"][1:]
-    if kind == "missing" and isinstance(where[-1] if where else None, int):
-        message = f"expected 3 values, got {where[-1]}"
-        where = where[:-1]
     return document.error(message, where)
 
 

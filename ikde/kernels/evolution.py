@@ -204,3 +204,17 @@ def solve_lanes(
         block[0], block[1] = attempts[0], min(attempts[1], last[index])
         outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
         solve_lane(robot, collision, target, index, search, seed, streams[index], block, *outputs)
+
+
+@kernel
+def evolve_alone(robot, collision, target, index, search, lower, upper, seed, work, out_q):
+    """The best of one population within [lower, upper] into `out_q` [N]; returns whether it meets, and evaluations.
+
+    One sample of a path, `index` of a stream, as if it stood alone [Qiao2022, section 3.1].
+    """
+    state = np.empty(1, dtype=np.uint64)
+    seed_stream(seed, index, np.int64(0), state)
+    best, meets, evaluations = evolve(robot, collision, target, index, search, lower, upper, state, work)
+    for k in range(out_q.size):
+        out_q[k] = work.x[best, k]
+    return meets, evaluations

@@ -1,10 +1,9 @@
 """How figures are written: few digits, in the user's units, the same everywhere."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from ikde.io.units import ANGLES_RAD, LENGTHS_M
+from ikde.files.entries import ANGLES_RAD, LENGTHS_M
 from ikde.model.robot import Joint
 
 
@@ -68,22 +67,10 @@ def percent(value_pct: float) -> str:
     return f"{fixed(value_pct, 1)} %"
 
 
-def rate(cell: Mapping[str, Any]) -> str:
-    """A rate of rejection in % with its interval: `73.0 (63.6–80.7)`; a dash of nothing."""
-    if not cell["SN"]:
-        return "–"
-    return with_interval(cell["rejected_pct"], cell["interval_pct"])
-
-
 def with_interval(value: float, interval: Sequence[float], digits: int = 1) -> str:
     """A number with the interval that it lies in: `73.0 (63.6–80.7)`."""
     low, high = interval
     return f"{fixed(value, digits)} ({fixed(low, digits)}–{fixed(high, digits)})"
-
-
-def spread(values: Mapping[str, float], digits: int = 3) -> str:
-    """`1.5 / 5.6 / 9.4`: median, 95th percentile, maximum."""
-    return " / ".join(significant(values[key], digits) for key in ("median", "p95", "max"))
 
 
 def vector(values: Sequence[float], digits: int) -> str:

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ikde import __version__
-from ikde.bench.tracks import Compared, TrackBudget
 from ikde.report.numbers import significant
 from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
 from ikde.report.track import MM, gap_mm, singular
 from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
+from ikde.track.comparison import Compared, TrackBudget
 from ikde.track.summary import TrackSummary
 
 FRAMES, DPI = 101, 70  # of an animation and of a picture: there are many on this page

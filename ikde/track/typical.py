@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikde.kernels.arrays import IGNORE, Floats, SearchArrays
-from ikde.kernels.evolution import make_workspace
+from ikde.kernels.evolution import evolve_alone, make_workspace
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
-from ikde.kernels.sample_evolution import evolve_alone
 from ikde.model.pack import pack_robot
 from ikde.model.planar_base import find_planar_base
 from ikde.solver.settings import require

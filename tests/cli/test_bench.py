@@ -6,7 +6,7 @@ from dataclasses import asdict
 import pytest
 from matplotlib.figure import Figure
 
-from ikde.bench import budget as budgets
+from ikde.paper import inputs
 from ikde.plot.pose import plot_pose
 from tests.tiny_paper import TINY
 
@@ -14,7 +14,7 @@ from tests.tiny_paper import TINY
 @pytest.fixture
 def report(cli, tmp_path, monkeypatch, substitute):
     """A tiny report in a folder of its own, its pictures of the robot blank: each takes half a second."""
-    monkeypatch.setattr(budgets, "QUICK", TINY)
+    monkeypatch.setattr(inputs, "QUICK", TINY)
     substitute(plot_pose, lambda *_, **__: Figure(figsize=(1, 1)))
     outcome = cli("bench", "paper", "--out", tmp_path / "report", "--quick")
     assert outcome.code == 0, outcome

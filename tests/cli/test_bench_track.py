@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from ikde.bench import tracks
 from ikde.errors import InputError
+from ikde.track import comparison as tracks
 from tests.cli.short_track import SPEC
 
 

@@ -191,7 +191,7 @@ def test_frames_may_stand_in_any_order(tmp_path):
         ("count: 4", "count: 0", "spheres.coarse[1].count", "expected at least 1, got 0"),
         ("count: 4", "count: 2.5", "spheres.coarse[1].count", "whole number"),
         ("kind: prismatic", "kind: sliding", "joints.slide.kind", "'revolute' or 'prismatic'"),
-        ("length: mm", "length: cm", "robot.yaml:2 → units.length", "'mm' or 'm'"),
+        ("length: mm", "length: cm", "robot.yaml:2 → units.length", "'m' or 'mm'"),
         ("source: ours}\n  turn", "source: theirs}\n  turn", "joints.slide.source", "no source is called 'theirs'"),
         ("tool: tip\n", "", "robot.yaml:1 → tool", "missing"),
         ("default_detector: coarse", "default_detector: corse", "default_detector", "did you mean 'coarse'?"),

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, OUTSIDE, REACHED
-from ikde.kernels.evolution import evolve, find_best, is_better, make_workspace, solve_lane
+from ikde.kernels.evolution import evolve, evolve_alone, find_best, is_better, make_workspace, solve_lane
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.kernels.rng import seed_stream
 from ikde.model.collision_model import CollisionModel
@@ -16,11 +16,14 @@ from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import pack_search
 from ikde.solver.settings import SolveSettings
+from ikde.track.typical import TypicalSettings, bound_sample
+from ikde.track.typical import pack_search as pack_sample_search
 from tests import reference
 from tests.conftest import random_q
 from tests.problems import problem_of
 from tests.random_robots import random_robot
 from tests.targets import make_target
+from tests.track.paper_tasks import follower_of, short_task, start_of
 
 KINDS = ("position", "axis", "pose")
 RULES = ("ignore", "reject", "feasibility")
@@ -289,3 +292,20 @@ def test_near_keeps_the_first_attempt_in_its_box(qiao):
     q, _, counts, _ = run_lane(qiao, HARD, [(0, 1)], near=qiao.home, generations=3)
     assert counts[ATTEMPTS] == 1
     assert np.all(np.abs(q - qiao.home) <= (qiao.upper - qiao.lower) / 64 + 1e-15)
+
+
+def test_a_sample_by_itself_is_one_population_on_its_stream(qiao):
+    follower, sample = follower_of(qiao, short_task(1), detector=False), 3
+    alone = TypicalSettings(generations=20)
+    robot, detector, search = (
+        pack_robot(qiao),
+        CollisionModel.of(qiao, "none").arrays,
+        pack_sample_search(follower, alone),
+    )
+    lower, upper = bound_sample(follower, alone, start_of("qiao2021", 1))
+    work, q, state = make_workspace(robot, detector, 9, 50), np.zeros(9), np.zeros(1, dtype=np.uint64)
+    evolve_alone(robot, detector, follower.target, sample, search, lower, upper, np.uint64(5), work, q)
+    seed_stream(np.uint64(5), np.int64(sample), np.int64(0), state)
+    best, _, _ = evolve(robot, detector, follower.target, sample, search, lower, upper, state, work)
+    np.testing.assert_array_equal(q, work.x[best])
+    assert ((q >= lower) & (q <= upper)).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ikde.report.numbers import Units, fixed, format_fixed, percent, rate, significant, spread, vector, with_interval
+from ikde.report.numbers import Units, fixed, format_fixed, percent, significant, vector, with_interval
 
 MM_DEG = Units("mm", "deg")
 
@@ -31,18 +31,15 @@ def test_significant_digits(value, digits, text):
     assert significant(value, digits) == text
 
 
-def test_rates_with_their_interval():
+def test_percentages():
     assert percent(73.0) == "73.0 %"
-    assert rate({"SN": 100, "rejected_pct": 73.0, "interval_pct": [63.6, 80.73]}) == "73.0 (63.6–80.7)"
-    assert rate({"SN": 0, "rejected_pct": None, "interval_pct": [0, 100]}) == "–"
 
 
 def test_numbers_with_their_interval():
     assert with_interval(0.5, (-0.0001, 1481.1), 2) == "0.50 (0.00–1,481.10)"
 
 
-def test_spreads_and_vectors():
-    assert spread({"median": 1.5, "p95": 5.64, "max": 94.0}) == "1.50 / 5.64 / 94.0"
+def test_vectors():
     assert vector([540, 0, 569.2], 1) == "540.0, 0.0, 569.2"
 
 

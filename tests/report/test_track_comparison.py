@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 
 import ikde
-from ikde.bench.tracks import Compared, TrackBudget, measure
 from ikde.report import track_comparison
 from ikde.report.html import render_html
 from ikde.report.track_comparison import (
@@ -16,6 +15,7 @@ from ikde.report.track_comparison import (
     make_runs_table,
 )
 from ikde.report.track_page import BASE, CLEARANCE, PATH
+from ikde.track.comparison import Compared, TrackBudget, measure
 from tests.track.measured import make_measured, make_still
 
 BUDGET = TrackBudget(seeds=2, starts=4)

@@ -1,6 +1,0 @@
-"""Units that users write. Inside, everything is in metres and radians."""
-
-import math
-
-LENGTHS_M = {"mm": 1e-3, "m": 1.0}
-ANGLES_RAD = {"deg": math.pi / 180.0, "rad": 1.0}

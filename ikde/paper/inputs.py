@@ -1,0 +1,91 @@
+"""What the paper's report is computed from, and how much of it: all of it in minutes, or a taste of it in seconds."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ikde.io.robots import load_robot
+from ikde.model.robot import Robot
+from ikde.model.target import Target
+from ikde.paper.published import load_misprints, load_published
+from ikde.solver.progress import SILENCE, Progress
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Budget:
+    """Sample sizes of the sections that have any."""
+
+    solves: int
+    """Solves of each target in Table 4."""
+    variation_solves: int
+    """Solves of each target for every variation of Table 4's setting."""
+    waits: int
+    """Solves of each target and detector until a solution is free."""
+    timing_rounds: int
+    """Rounds over which a time's median is taken, the things compared taking turns."""
+    verdicts: int
+    """Random configurations over which pair lists are compared."""
+    surface_verdicts: int
+    """Random configurations over which surface points and centres are compared."""
+    plain_verdicts: int
+    """Random configurations that are judged the paper's way, every surface point against every other; 0.4 s each."""
+    timed_verdicts: int
+    """Random configurations whose verdicts are timed one by one."""
+    curve_points: int
+    """Moments of a situation's curve."""
+
+
+FULL = Budget(
+    solves=10_000,
+    variation_solves=500,
+    waits=1_000,
+    timing_rounds=21,
+    verdicts=10_000,
+    surface_verdicts=1_000,
+    plain_verdicts=5,
+    timed_verdicts=500,
+    curve_points=201,
+)
+QUICK = Budget(
+    solves=300,
+    variation_solves=10,
+    waits=40,
+    timing_rounds=5,
+    verdicts=1_000,
+    surface_verdicts=100,
+    plain_verdicts=1,
+    timed_verdicts=50,
+    curve_points=101,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Inputs:
+    """What every section is computed from."""
+
+    robot: Robot
+    """qiao2021, the key-point model."""
+    classical: Robot
+    """qiao2021_dh, the Denavit-Hartenberg model of the same arm."""
+    published: Mapping[str, Any]
+    misprints: Sequence[Mapping[str, str]]
+    budget: Budget
+    progress: Progress = SILENCE
+
+    @property
+    def targets(self) -> dict[str, Target]:
+        """The two targets of section 5.3.3."""
+        return {name: Target(np.array(p_mm) * 1e-3) for name, p_mm in self.published["targets_mm"].items()}
+
+
+def load_inputs(budget: Budget) -> Inputs:
+    """The shipped robots and printed numbers."""
+    return Inputs(
+        robot=load_robot("qiao2021"),
+        classical=load_robot("qiao2021_dh"),
+        published=load_published(),
+        misprints=load_misprints(),
+        budget=budget,
+    )

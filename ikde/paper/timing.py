@@ -1,0 +1,245 @@
+"""Table 3: seconds to place surface points and centres, by spatial transformation and by key points.
+
+Another machine and another program than the paper's, so the seconds say little beside one another; the ratios may.
+"""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ikde.kernels.arrays import CollisionArrays, Floats, RobotArrays
+from ikde.kernels.paper import place_by_key_points, place_by_transformation
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
+from ikde.model.robot import Robot
+from ikde.paper.inputs import Inputs
+from ikde.paper.published import APPROXIMATIONS
+from ikde.paper.section import Computed
+from ikde.paper.surface import M_STEPS, N_STEPS, surface_directions
+
+POINTS = ("surface", "centres")
+SCOPES = {
+    "placing": "the spheres alone, all poses known",
+    "kinematics": "from joint values: poses of the bodies, origins of the key points, then the spheres",
+}
+LOOP = {"surface": 2, "centres": 300}  # placements in a timed loop: some 50 us, fifty times what its call costs
+PLACED = tuple(product(POINTS, APPROXIMATIONS))
+TableColumn = Mapping[str, str]  # a column of Table 3: its name, approximation, points, method
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PrintedRatio:
+    """Time by key points over time by transformation: as the text says it, and as the table gives it."""
+
+    points: str
+    approximation: str
+    columns: list[str]
+    stated: float
+    from_average: float
+    from_mean: float
+    from_median: float
+    see: str
+    """The place in the list of misprints."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColumnTimes:
+    """One column's times."""
+
+    name: str
+    median_s: float
+    quartiles_s: list[float]
+    rows_s: list[float]
+    """Medians, a moment each."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ratio:
+    """Time by key points over time by transformation, each pair measured in the same round at the same moment."""
+
+    points: str
+    approximation: str
+    median: float
+    quartiles: list[float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScopeTimes:
+    """What is timed in one of `SCOPES`."""
+
+    columns: list[ColumnTimes]
+    ratios: list[Ratio]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timing(Computed):
+    """Table 3 as printed, and the motion."""
+
+    columns: list[TableColumn]
+    printed_rows_s: list[list[float]]
+    printed_s: dict[str, dict[str, float]]
+    """Average (printed), mean and median (of the rows), by column."""
+    printed_ratios: list[PrintedRatio]
+    placed: dict[str, dict[str, int]]
+    q: list[list[float]]
+    measured: dict[str, ScopeTimes]
+
+
+def compute_timing(inputs: Inputs) -> Timing:
+    """Table 3's columns as printed and ours, at ten moments of the published motion, and what they say of ratios."""
+    robot, table, rounds = inputs.robot, inputs.published["table_3"], inputs.budget.timing_rounds
+    placements = [make_placement(robot, column) for column in table["columns"]]
+    moments = read_motion(table["motion"], len(table["rows_s"]))
+    printed = summarise_printed(table)
+    return Timing(
+        columns=table["columns"],
+        printed_rows_s=table["rows_s"],
+        printed_s=printed,
+        printed_ratios=[_compare_printed(table, printed, *key) for key in PLACED],
+        placed={name: _count_points(robot, name) for name in APPROXIMATIONS},
+        q=moments.tolist(),
+        measured={scope: _measure(placements, moments, scope, rounds) for scope in SCOPES},
+        settings={
+            "source": "[Qiao2021, Table 3 and section 5.3.2]",
+            "printed_on": inputs.published["computer"],
+            "scopes": SCOPES,
+            "rounds": rounds,
+            "moments": len(moments),
+            "placements_in_a_loop": LOOP,
+            "surface_grid": [M_STEPS, N_STEPS],
+            "threads": 1,
+        },
+    )
+
+
+def read_motion(motion: Mapping[str, Any], moments: int) -> Floats:
+    """Configurations [moments, 9] of the published motion in m and rad, its start and end among them."""
+    arm = np.linspace(motion["start_deg"], motion["end_deg"], moments)
+    return np.radians(np.hstack([np.tile(np.asarray(motion["base"], dtype=float), (moments, 1)), arm]))
+
+
+# ---- what is printed
+
+
+def summarise_printed(table: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """The printed average of each column, and the mean and the median of its ten printed rows."""
+    names, rows = [column["name"] for column in table["columns"]], np.array(table["rows_s"])
+    summaries = {"average": table["average_s"], "mean": rows.mean(axis=0), "median": np.median(rows, axis=0)}
+    return {kind: dict(zip(names, map(float, values), strict=True)) for kind, values in summaries.items()}
+
+
+def _compare_printed(
+    table: Mapping[str, Any], printed: Mapping[str, Mapping[str, float]], points: str, approximation: str
+) -> PrintedRatio:
+    slow, fast = (table["columns"][index]["name"] for index in _find_columns(table["columns"], points, approximation))
+    return PrintedRatio(
+        points=points,
+        approximation=approximation,
+        columns=[fast, slow],
+        stated=table["stated_ratio"][points],
+        **{f"from_{kind}": values[fast] / values[slow] for kind, values in printed.items()},
+        see=table["see"][points],
+    )
+
+
+def _find_columns(columns: Sequence[TableColumn], points: str, approximation: str) -> tuple[int, int]:
+    """Indices of the columns of Table 3 that place something by transformation and by key points."""
+    asked = {"points": points, "approximation": approximation}
+    found = {column["method"]: k for k, column in enumerate(columns) if asked.items() <= column.items()}
+    return found["transformation"], found["key_points"]
+
+
+def _count_points(robot: Robot, approximation: str) -> dict[str, int]:
+    spheres = sum(row.count for row in robot.approximations[approximation])
+    return {"centres": spheres, "surface": spheres * M_STEPS * N_STEPS}
+
+
+# ---- what is measured
+
+
+def clock(run: Callable[[], object]) -> float:
+    """Seconds that a call takes."""
+    begin = time.perf_counter_ns()
+    run()
+    return 1e-9 * (time.perf_counter_ns() - begin)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Placement:
+    """One column of Table 3, ready to run."""
+
+    column: TableColumn
+    robot: RobotArrays
+    collision: CollisionArrays
+    directions: Floats  # [K, 3]; none for centres
+    T_world_body: Floats
+    T_world_frame: Floats
+    centres: Floats  # [3, S]
+    points: Floats  # [S, K, 3]
+
+    def run(self, q: Floats, moves: bool, times: int) -> None:
+        """Place everything `times` times, at the poses of `q` [N] if it `moves`, else where the last run left them."""
+        shared = (self.robot, self.collision, self.directions, q, moves, times, self.T_world_body)
+        if self.column["method"] == "transformation":
+            place_by_transformation(*shared, self.centres, self.points)
+        else:
+            place_by_key_points(*shared, self.T_world_frame, self.centres, self.points)
+
+    def measure(self, q: Floats, moves: bool) -> float:
+        """Seconds of one placement."""
+        self.run(q, True, 1)
+        times = LOOP[self.column["points"]]
+        return clock(lambda: self.run(q, moves, times)) / times
+
+
+def make_placement(robot: Robot, column: TableColumn) -> Placement:
+    """Pack a column's approximation; every component takes part, since the detectors' pairs name them all."""
+    arrays = pack_robot(robot)
+    collision = CollisionModel.of(robot, column["approximation"]).arrays
+    directions = surface_directions() if column["points"] == "surface" else np.empty((0, 3))
+    return Placement(
+        column=column,
+        robot=arrays,
+        collision=collision,
+        directions=directions,
+        T_world_body=np.empty((arrays.bodies.shape[0], 3, 4)),
+        T_world_frame=np.zeros((arrays.frame_body.size, 3, 4)),
+        centres=np.empty((3, collision.radius.size)),
+        points=np.empty((collision.radius.size, len(directions), 3)),
+    )
+
+
+def _measure(placements: Sequence[Placement], moments: Floats, scope: str, rounds: int) -> ScopeTimes:
+    """Every column at every moment, all of them in turn in every round."""
+    moves = scope == "kinematics"
+    for placement in placements:
+        placement.measure(moments[0], moves)
+    times = np.array([[[p.measure(q, moves) for p in placements] for q in moments] for _ in range(rounds)])
+    columns = [placement.column for placement in placements]
+    return ScopeTimes(
+        columns=[_summarise(column, times[:, :, index]) for index, column in enumerate(columns)],
+        ratios=[_compare(columns, times, *key) for key in PLACED],
+    )
+
+
+def quartiles(values: Floats) -> tuple[float, list[float]]:
+    """The median, and the quartiles."""
+    low, median, high = np.percentile(values, (25, 50, 75)).tolist()
+    return median, [low, high]
+
+
+def _summarise(column: TableColumn, times: Floats) -> ColumnTimes:
+    """Over all rounds and moments [rounds, moments]."""
+    median, spread = quartiles(times)
+    rows = np.median(times, axis=0).tolist()
+    return ColumnTimes(name=column["name"], median_s=median, quartiles_s=spread, rows_s=rows)
+
+
+def _compare(columns: Sequence[TableColumn], times: Floats, points: str, approximation: str) -> Ratio:
+    slow, fast = _find_columns(columns, points, approximation)
+    median, spread = quartiles(times[:, :, fast] / times[:, :, slow])
+    return Ratio(points=points, approximation=approximation, median=median, quartiles=spread)

@@ -1,0 +1,28 @@
+"""What the sections share: parts of the record, verdicts, and cells."""
+
+import pytest
+
+import ikde
+from ikde.batch.statistics import Spread
+from ikde.paper.section import format_spread, judge, make_table, name_pairs
+from ikde.report.page import Column
+
+
+def test_a_verdict_is_that_of_check(qiao):
+    verdict, seen = judge(qiao, qiao.home, "single"), ikde.check(qiao, qiao.home, "single")
+    assert verdict.collides
+    assert verdict.clearance_mm == pytest.approx(1e3 * seen.clearance_m)
+    assert verdict.pair == [seen.pairs[0].a, seen.pairs[0].b]
+    assert verdict.colliding_pairs == [[pair.a, pair.b] for pair in seen.pairs if pair.collides]
+
+
+def test_a_table_has_a_cell_for_each_row_and_column():
+    table = make_table([1, 2], (Column("one"), str), (Column("twice"), lambda k: str(2 * k)), caption="c", note="n")
+    assert [column.title for column in table.columns] == ["one", "twice"]
+    assert (table.rows, table.caption, table.note) == ((("1", "2"), ("2", "4")), "c", "n")
+
+
+def test_spreads_and_pairs_in_words():
+    assert format_spread(Spread(1.5, 5.64, 94.0)) == "1.50 / 5.64 / 94.0"
+    assert name_pairs([["G", "L1"], ["G", "L2"]]) == "(G, L1), (G, L2)"
+    assert name_pairs([]) == "–"

@@ -1,0 +1,56 @@
+"""Table 3: the printed ratios, and placements that place what they should."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ikde.paper.timing import compute_timing, make_placement, read_motion
+from tests import reference
+from tests.paper.conftest import is_plain
+
+
+@pytest.fixture(scope="module")
+def section(inputs):
+    return compute_timing(replace(inputs, budget=replace(inputs.budget, timing_rounds=2)))
+
+
+def test_printed_ratios_are_not_those_of_the_text(section):
+    ratios = {(row.points, row.approximation): row for row in section.printed_ratios}
+    assert ratios["surface", "typical"].from_average == pytest.approx(0.2548 / 0.6311)
+    assert ratios["centres", "improved"].from_average == pytest.approx(0.444 / 0.654)
+    assert ratios["surface", "typical"].stated == 0.47
+    assert all(abs(row.from_average - row.stated) > 0.05 for row in ratios.values())
+
+
+def test_every_column_is_measured_at_every_moment(section):
+    assert is_plain(section)
+    for scope in section.settings["scopes"]:
+        columns = section.measured[scope].columns
+        assert [column.name for column in columns] == ["Ta1", "Tb1", "Tc1", "Td1", "Ta2", "Tb2", "Tc2", "Td2"]
+        for column in columns:
+            low, high = column.quartiles_s
+            assert 0.0 < low <= column.median_s <= high
+            assert len(column.rows_s) == 10
+        assert len(section.measured[scope].ratios) == 4
+
+
+def test_the_motion_starts_and_ends_as_published(published):
+    Q = np.degrees(read_motion(published["table_3"]["motion"], 10))
+    np.testing.assert_allclose(Q[0], [0, 0, 0, 99, 9, -9, 0, 81, 0], atol=1e-12)
+    np.testing.assert_allclose(Q[-1], [0, 0, 0, 180, 90, -90, 0, 90, 0], atol=1e-12)
+
+
+def test_what_is_timed_places_the_spheres(qiao, published, rng):
+    q = rng.uniform(qiao.lower, qiao.upper)
+    for column in published["table_3"]["columns"]:
+        placement = make_placement(qiao, column)
+        placement.run(q, True, 1)
+        spheres = reference.list_spheres(qiao, qiao.detectors[column["approximation"]], q)
+        centres = np.array([centre for _, centre, _ in spheres])
+        if column["points"] == "centres":
+            np.testing.assert_allclose(placement.centres.T, centres, atol=1e-13)
+            continue
+        radii = [radius for _, _, radius in spheres]
+        distances = np.linalg.norm(placement.points - centres[:, None], axis=2)
+        np.testing.assert_allclose(distances, np.broadcast_to(np.array(radii)[:, None], distances.shape), atol=1e-13)
