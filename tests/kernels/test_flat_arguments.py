@@ -10,8 +10,8 @@ from ikde.kernels.flat_arguments import flatten_grader, flatten_search, unpack_g
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests.conftest import random_q
+from tests.kernels.grading import ROBOTS, terms_of
 from tests.kernels.seeding import no_seeds, pack_seeds
-from tests.kernels.test_grade_many import ROBOTS, terms_of
 
 
 def assert_same(ours, theirs):
