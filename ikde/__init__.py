@@ -42,6 +42,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.forward import forward as forward
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
+    from ikde.solver.settings import DeSettings as DeSettings
     from ikde.solver.settings import SolveSettings as SolveSettings
     from ikde.solver.solve import solve as solve
     from ikde.solver.solve import solve_many as solve_many
@@ -87,6 +88,7 @@ _HOME = {
     "Target": "ikde.model.target",
     "Targets": "ikde.model.target",
     "SolveSettings": "ikde.solver.settings",
+    "DeSettings": "ikde.solver.settings",
     "SolveResult": "ikde.solver.result",
     "StopReason": "ikde.solver.result",
     "solve": "ikde.solver.solve",

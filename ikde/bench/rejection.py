@@ -94,10 +94,12 @@ def compute_rejection(
 
 def describe_setup(setup: Setup) -> Data:
     """A setup as plain data."""
+    settings = setup.settings
+    tolerances = {name: getattr(settings, name) for name in ("position_tolerance_m", "orientation_tolerance_rad")}
     return {
         "base_half_width_mm": setup.base_half_width_m * 1e3,
         "limits": setup.limits,
-        "search": asdict(setup.settings),
+        "search": {**tolerances, "restarts": settings.restarts, **asdict(settings.evolution)},
     }
 
 

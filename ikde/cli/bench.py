@@ -9,7 +9,7 @@ import typer
 
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import JsonOption
+from ikde.cli.options import Command, JsonOption
 from ikde.cli.output import announce_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
@@ -24,10 +24,10 @@ def default() -> None:
     """Benchmarks that compare with published results."""
 
 
-bench.command("track")(bench_track)
+bench.command("track", cls=Command)(bench_track)
 
 
-@bench.command("paper")
+@bench.command("paper", cls=Command)
 def paper(
     out: Annotated[
         Path, typer.Option(metavar="FOLDER", help="Where report.html, report.md and results.json go.")

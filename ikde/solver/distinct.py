@@ -12,6 +12,7 @@ from ikde.kernels.seeds import LUCKY_ATTEMPTS
 from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, Problem, make_problem
@@ -75,7 +76,7 @@ def solve_distinct(
     first = confirm(robot, solve(robot, target, chosen, **told))
     if not first.reached or count == 1:
         return [first]
-    look = _go_on if chosen.evolves or chosen.method == "memetic" else _sample
+    look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(problem, target, count, first, options)
     return sort_solutions(problem, solutions, rank)[:count]
 

@@ -9,6 +9,7 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.digits import at_least
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.found import Found
 from ikde.solver.hints import (
     Probe,
@@ -189,10 +190,10 @@ def _read_counts(problem: Problem, found: Found) -> _Met:
 
 def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str | None]:
     """Collisions counted pair by pair, where the search did not; and what helps, if that finds a solution."""
-    if problem.settings.evolves:
-        if met.colliding > 0 or not problem.collision.pairs or problem.settings.knob("collision") == "reject":
+    if ENGINES[problem.settings.engines[-1]].counts_all_pairs:
+        if met.colliding > 0 or not problem.collision.pairs or problem.settings.evolution.collision == "reject":
             return met, None
-        rejecting = problem.with_settings(collision="reject")
+        rejecting = problem.with_settings(de={"collision": "reject"})
         tested = probe.run(rejecting)
         hint = "collision reject: a solution was found by testing the best of each population only"
         return _read_counts(problem, tested), hint if probe.confirms(rejecting, tested) else None

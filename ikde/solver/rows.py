@@ -9,7 +9,8 @@ import numpy as np
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
-from ikde.solver.engines.found import ENGINES, Found
+from ikde.solver.engine_table import NAMES
+from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, count_blocking_pairs, reason_from_counts
 from ikde.solver.grade import Graded, Verify, grade
 from ikde.solver.problem import Problem
@@ -95,7 +96,7 @@ class Rows:
 
     @property
     def engines(self) -> Ints:
-        """Who answered [T]: index into `solver.search.ENGINES`."""
+        """Which engine answered [T]: its place in `engine_table.NAMES`."""
         return self.found.engine
 
     def __len__(self) -> int:
@@ -152,7 +153,7 @@ class Rows:
             closest_pair=pairs[closest] if closest >= 0 else None,
             self_collision=_verdict(self.self_collision, index),
             verified=_verdict(self.verified, index),
-            method=ENGINES[self.engines[index]],
+            method=NAMES[self.engines[index]],
             settings=problem.settings,
             detector=problem.collision.name,
             seed=self.seed,

@@ -14,7 +14,7 @@ from ikde.errors import InputError
 from tests.batch.small import BLINK, make_arm, make_batch
 from tests.substitutes import never
 
-ENDLESS = {"method": "de", "restarts": 10**6, "generations": 20, "population": 20, "position_tolerance_m": 1e-12}
+ENDLESS = {"restarts": 10**6, "generations": 20, "population": 20, "position_tolerance_m": 1e-12}
 ARMS = (make_arm("free", detector="none", **BLINK), make_arm("careful", **BLINK))
 
 
