@@ -77,7 +77,6 @@ def compute_paper(
     *,
     only: Sequence[str] = SECTIONS,
     progress: Progress = SILENCE,
-    announce_compile: Callable[[], None] | None = None,
 ) -> Data:
     """Compute the report's sections.
 
@@ -86,14 +85,13 @@ def compute_paper(
         budget: sample sizes; `QUICK` takes seconds instead of minutes.
         only: names of the sections to compute.
         progress: told how far it is.
-        announce_compile: called once if kernels must be compiled first.
 
     Returns:
         Plain data that JSON holds: `made` (when, how, on what) and `sections`.
     """
     started, clock = datetime.now(UTC), time.perf_counter()
     sections, seconds = {}, {}
-    with compile_clock(announce_compile) as compiling:
+    with compile_clock() as compiling:
         computations = list_sections(sources, budget, progress)
         for name in filter(set(only).__contains__, computations):
             progress.begin(name)
@@ -121,7 +119,6 @@ def check_paper(
     sources: Sources,
     *,
     progress: Progress = SILENCE,
-    announce_compile: Callable[[], None] | None = None,
 ) -> list[str]:
     """Compute the exact parts of a report again; returns a line for each difference.
 
@@ -129,12 +126,9 @@ def check_paper(
         results: what `compute_paper` gave.
         sources: robots and published figures.
         progress: told how far it is.
-        announce_compile: called once if kernels must be compiled first.
     """
     budget = Budget(**results["made"]["budget"])
-    again = compute_paper(
-        sources, budget, only=results["made"]["only"], progress=progress, announce_compile=announce_compile
-    )
+    again = compute_paper(sources, budget, only=results["made"]["only"], progress=progress)
     return list_differences(_drop_times(results["sections"]), _drop_times(again["sections"]))
 
 

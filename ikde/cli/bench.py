@@ -10,11 +10,13 @@ import typer
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import Command, JsonOption
-from ikde.cli.output import announce_compile, print_json, print_line
+from ikde.cli.output import note_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
     from ikde.bench.paper import Sources
+
+TAKES = "about a minute"  # compiling all kernels
 
 bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
 
@@ -79,7 +81,8 @@ def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> N
 
     sources, budget = _load_sources(), QUICK if quick else FULL
     with show_benchmark(count_solves(sources, budget)) as progress:
-        results = compute_paper(sources, budget, only=sections, progress=progress, announce_compile=_announce)
+        with note_compile(TAKES):
+            results = compute_paper(sources, budget, only=sections, progress=progress)
         progress.begin("page")
         write_report(out, {RESULTS: format_results(results), **_render(results, sources)})
     if as_json:
@@ -104,8 +107,8 @@ def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
 
     sources = _load_sources()
     solves = count_solves(sources, Budget(**recorded["made"]["budget"]))
-    with show_benchmark(solves) as progress:
-        differences = check_paper(recorded, sources, progress=progress, announce_compile=_announce)
+    with show_benchmark(solves) as progress, note_compile(TAKES):
+        differences = check_paper(recorded, sources, progress=progress)
     if as_json:
         print_json({"agrees": not differences, "differences": differences})
     elif differences:
@@ -114,10 +117,6 @@ def _check(recorded: Mapping[str, Any], out: Path, as_json: bool) -> ExitCode:
     else:
         print_line(f"{out / RESULTS}: every exact figure comes out the same")
     return ExitCode.NOT_REACHED if differences else ExitCode.OK
-
-
-def _announce() -> None:
-    announce_compile("about a minute")
 
 
 def _load_sources() -> "Sources":

@@ -30,7 +30,7 @@ from ikde.cli.options import (
     read_freeze,
     read_q,
 )
-from ikde.cli.output import announce_compile, print_json, print_note, print_result, use_color, working
+from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
 from ikde.solver.engine_table import ENGINES
 
@@ -134,7 +134,7 @@ def solve(
     frozen = read_freeze(model, freeze, unit, angles, convention)
     check_drawable(plot)
     note_unchecked(model, detector)
-    with working("searching ..."):
+    with working("searching ..."), note_compile():
         results = solve_distinct(
             model,
             target,
@@ -145,7 +145,6 @@ def solve(
             collision=checked,
             near=start,
             freeze=frozen,
-            announce_compile=announce_compile,
         )
     _print(model, results, count, units, convention, as_json)
     draw(plot, checked, results[0].q, target)

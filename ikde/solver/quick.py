@@ -4,7 +4,6 @@ The answer is that of the long way (`solver.rows`), bit for bit; what this way c
 """
 
 import time
-from collections.abc import Callable
 from functools import lru_cache, partial
 
 import numpy as np
@@ -60,13 +59,11 @@ class Quick:
         }
         self._is_ready = False
 
-    def solve(
-        self, target: Target, seed: int, stream: int, announce_compile: Callable[[], None] | None
-    ) -> SolveResult | None:
+    def solve(self, target: Target, seed: int, stream: int) -> SolveResult | None:
         """A graded solution, or None if this target needs another engine, more attempts, or a reason."""
         if self._is_ready:
             return self._try(target, seed, stream)
-        with compile_clock(announce_compile) as clock:
+        with compile_clock() as clock:
             self._try(target, seed, stream)
             result = self._try(target, seed, stream)
         if result is not None:

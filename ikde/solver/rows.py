@@ -1,6 +1,6 @@
 """Many solves at once, a row each: searched on all cores, graded, explained."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -186,7 +186,6 @@ def solve_rows(
     strict: bool = False,
     verify: Verify = "all",
     spent_s: float = 0.0,
-    announce_compile: Callable[[], None] | None = None,
 ) -> Rows:
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
 
@@ -202,14 +201,13 @@ def solve_rows(
         verify: which rows plain numpy grades too: `"all"`, `"sample"` (one stream in 64), or `"none"`; beyond those,
             every unreached row that is probed.
         spent_s: what is gone of each target's time, if the settings have a timeout.
-        announce_compile: called once if kernels must be compiled first.
 
     Raises:
         VerificationError: with `strict`, for a disagreement of more than 1e-11: a bug.
     """
     targets = Targets.of(targets)
     streams = range(first_stream, first_stream + len(targets))
-    with compile_clock(announce_compile) as clock:
+    with compile_clock() as clock:
         found = search(
             problem,
             targets,

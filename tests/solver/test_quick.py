@@ -25,8 +25,8 @@ AUTO = SolveSettings.for_method("auto")
 def solve_quick(robot, target, seed, stream, detector=None):
     """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
     quick = Quick(CollisionModel.of(robot, detector), AUTO, target.kind)
-    quick.solve(target, seed, stream, None)
-    return quick.solve(target, seed, stream, None)
+    quick.solve(target, seed, stream)
+    return quick.solve(target, seed, stream)
 
 
 def solve_long(robot, target, settings, seed, stream):
