@@ -141,17 +141,17 @@ def _prove(problem: Problem, target: Target) -> Explanation | None:
 
 
 def _out_of_reach(far_m: float, off_rad: float = 0.0) -> str:
-    told = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
-    told += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
-    return f"out of reach: at least {' and '.join(told)}, whatever the joints do"
+    words = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
+    words += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
+    return f"out of reach: at least {' and '.join(words)}, whatever the joints do"
 
 
 def _colliding(met: _Met, remedy: str | None) -> Explanation:
     worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
-    told = f"{met.colliding} met the target, each in collision; blocked by {worst}"
+    collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
     return Explanation(
         stop_reason=StopReason.SELF_COLLISION,
-        reason=f"only colliding solutions found: {told}",
+        reason=f"only colliding solutions found: {collisions}",
         hint=remedy,
         blocking_pairs=met.blocking,
     )
@@ -207,8 +207,8 @@ def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str |
 def _search_often(problem: Problem, probe: Probe) -> Found:
     """One attempt on each of many streams; attempt 0 with `near` is `near` itself, on every stream."""
     begin = 0 if problem.near is None else 1
-    told = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
-    return search(problem, [probe.target] * COUNTED, **told)
+    lanes = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
+    return search(problem, [probe.target] * COUNTED, **lanes)
 
 
 def _count_pairs(problem: Problem, found: Found) -> _Met:

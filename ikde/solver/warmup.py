@@ -6,7 +6,7 @@ from functools import partial
 
 from ikde.kernels.jit import compile_clock
 from ikde.model.closed_form import find_ur_arm
-from ikde.model.collision_model import CollisionChoice
+from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES, SEVERAL
@@ -39,6 +39,7 @@ def list_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
         "axis": Target(T[:3, 3], axis_world_tool=T[:3, 2]),
         "pose": Target(T[:3, 3], R_world_tool=T[:3, :3]),
     }
+    collision = CollisionModel.of(robot, collision)  # a wrong name is found before anything is compiled
     one, many = partial(solve, robot, collision=collision), partial(_solve_many, robot, collision)
     stages = {}
     for name, row in ENGINES.items():
