@@ -95,9 +95,9 @@ def measure(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) ->
 
 def engine_names() -> tuple[str, ...]:
     """In the order of `Rows.engines`."""
-    from ikde.solver.engines.found import ENGINES
+    from ikde.solver.engine_table import NAMES
 
-    return ENGINES
+    return NAMES
 
 
 def time_bulk(robot: ikde.Robot, targets: ikde.Targets, settings: ikde.SolveSettings, rounds: int) -> float:

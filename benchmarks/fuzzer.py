@@ -142,7 +142,8 @@ def _table_run(path: Path) -> dict[str, Any]:
 
 
 def _small_run(folder: Path) -> dict[str, Any]:
-    quick = {"settings": {"population": 6, "generations": 1, "restarts": 1}, "detector": "none"}
+    settings = {"restarts": 1, "de": {"population": 6, "generations": 1}}
+    quick = {"method": "de", "settings": settings, "detector": "none"}
     run = _table_run(folder / "points.csv")
     return {**run, "arms": {"a": quick, "b": quick}, "grade": ["typical"], "repeats": 2, "chunk": 8, "explain": False}
 

@@ -181,8 +181,8 @@ def solve(method: Method, case: Case, stream: int, length: int, budget: int) -> 
     """Evaluations until a verified solution, or infinity."""
     problem, target = case
     joints = int(np.sum(problem.upper > problem.lower))
-    settings = {"generations": length // PAPER["population"] - 1, **PAPER, **method.plain} if method.plain else {}
-    chosen = problem.with_settings(**settings)
+    de = {"generations": length // PAPER["population"] - 1, **PAPER, **method.plain}
+    chosen = problem.with_settings(method="de", de=de) if method.plain else problem
     search = pack_search(chosen)
     detector = problem.collision.arrays
     detector = detector._replace(safe_distance=detector.safe_distance + ROUNDING)

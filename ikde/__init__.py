@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.track_file import load_track as load_track
     from ikde.io.trajectory_files import write_trajectory as write_trajectory
     from ikde.io.urdf import format_urdf as format_urdf
+    from ikde.kernels.jit import compile_clock as compile_clock
     from ikde.model.collision_model import CollisionModel as CollisionModel
     from ikde.model.convention import from_convention as from_convention
     from ikde.model.convention import to_convention as to_convention
@@ -43,6 +44,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.forward import forward as forward
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
+    from ikde.solver.settings import DeSettings as DeSettings
     from ikde.solver.settings import SolveSettings as SolveSettings
     from ikde.solver.solve import solve as solve
     from ikde.solver.solve import solve_many as solve_many
@@ -87,6 +89,7 @@ _HOME = {
     "Target": "ikde.model.target",
     "Targets": "ikde.model.target",
     "SolveSettings": "ikde.solver.settings",
+    "DeSettings": "ikde.solver.settings",
     "SolveResult": "ikde.solver.result",
     "StopReason": "ikde.solver.result",
     "solve": "ikde.solver.solve",
@@ -101,6 +104,7 @@ _HOME = {
     "Verification": "ikde.solver.verify",
     "from_convention": "ikde.model.convention",
     "to_convention": "ikde.model.convention",
+    "compile_clock": "ikde.kernels.jit",
     "IkdeError": "ikde.errors",
     "InputError": "ikde.errors",
     "FileError": "ikde.errors",

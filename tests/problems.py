@@ -4,9 +4,10 @@ import numpy as np
 
 import ikde
 from ikde.solver.problem import make_problem
+from tests.flat_settings import flat_settings
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=8)
-CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=1)
+CHEAP = flat_settings(population=8, generations=5, restarts=1)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 
 

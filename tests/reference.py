@@ -270,7 +270,7 @@ def compute_score(problem, target, q):
     orientation_tolerance = problem.settings.orientation_tolerance_rad - 1e-12
     cost = position + orientation * position_tolerance / orientation_tolerance
     meets = position <= position_tolerance and orientation <= orientation_tolerance
-    if problem.collision.detector is None or problem.settings.collision == "reject":
+    if problem.collision.detector is None or problem.settings.evolution.collision == "reject":
         return (0.0, cost), meets
     depth = compute_depth(problem.robot, problem.collision.detector, q)
     return (depth, cost), meets and depth == 0.0
@@ -278,7 +278,7 @@ def compute_score(problem, target, q):
 
 def make_trial(problem, stream, x, i, best):
     """Mutation, binomial crossover [Storn1997] and bound repair, coordinate by coordinate as the stream is consumed."""
-    settings = problem.settings
+    settings = problem.settings.evolution
     drawn = draw_members(stream, len(x), i)
     forced = stream.index(x.shape[1])
     donor = MUTATIONS[settings.strategy](x, i, best, drawn, settings.weight)
@@ -295,18 +295,18 @@ def evolve(problem, target, stream):
     The scores are (depth, cost). The search ends at the first trial that meets the target and is not worse than its
     parent; that trial then stands in the population.
     """
-    population, joints = problem.settings.population, len(problem.robot.joints)
-    in_place = problem.settings.update == "in_place"
+    settings, joints = problem.settings.evolution, len(problem.robot.joints)
+    population, in_place = settings.population, settings.update == "in_place"
     x, scores = np.zeros((population, joints)), [(np.inf, np.inf)] * population
     evaluations, best = 0, 0
-    for generation in range(problem.settings.generations + 1):
+    for generation in range(settings.generations + 1):
         next_x, next_scores = x.copy(), list(scores)
         for i in range(population):
             if generation == 0:
                 trial = problem.near
                 if i > 0 or problem.near is None:
                     middle = 0.5 * (problem.lower + problem.upper)
-                    width = problem.settings.start_share * (problem.upper - problem.lower)
+                    width = settings.start_share * (problem.upper - problem.lower)
                     trial = middle + np.array([stream.uniform() - 0.5 for _ in range(joints)]) * width
             else:
                 trial = make_trial(problem, stream, x, i, best)

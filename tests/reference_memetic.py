@@ -95,7 +95,7 @@ def make_pbest_trial(problem, memetic, stream, x, ranked, history, i, progress):
         r2 = stream.index(len(everybody))
     forced = stream.index(x.shape[1])
     donor = x[i] + pull * (x[best] - x[i]) + weight * (x[r1] - everybody[r2])
-    trial, repair = x[i].copy(), problem.settings.bounds
+    trial, repair = x[i].copy(), problem.settings.evolution.bounds
     for k in range(len(trial)):
         if k == forced or stream.uniform() < crossover:
             trial[k] = repair_bound(repair, stream, donor[k], x[i, k], problem.lower[k], problem.upper[k])

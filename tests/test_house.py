@@ -18,7 +18,6 @@ NO_TEST_OF_ITS_OWN = {
     "cli/exit_codes.py": "an enumeration; tests/cli/test_app.py",
     "cli/output.py": "tests/cli/test_app.py sees what it writes",
     "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",
-    "cli/machine.py": "tests/cli/test_doctor.py",
     "io/plan_file.py": "tests/io/test_batch_file.py and test_track_file.py load every kind of plan",
     "io/schema.py": "tests/io/test_robot_file.py reads its messages",
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",

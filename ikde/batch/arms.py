@@ -1,5 +1,6 @@
 """From `solve` and `arms` of a run file to problems: names resolved, numbers in m and rad."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from ikde.batch.parts import PLAIN_NAME
@@ -63,13 +64,20 @@ def _make_named(name: str, spec: BatchSpec, robot: Robot) -> Arm:
     if not PLAIN_NAME.fullmatch(name):
         raise InputError("expected a name of up to 100 letters, digits and . _ -, since it names files", ("arms", name))
     shared = spec.solve.model_dump(exclude_unset=True)
-    added = {key: {**shared[key], **own[key]} for key in MERGED if shared.get(key) and own.get(key)}
+    added = {key: _lay_over(shared[key], own[key]) for key in MERGED if shared.get(key) and own.get(key)}
     try:
         return make_arm(name, robot, SolveEntry.model_validate({**shared, **own, **added}), spec.units)
     except InputError as error:
         inherited = _holds(shared, error.where) and not _holds(own, error.where)
         where = ("solve",) if inherited else ("arms", name)
         raise InputError(error.message, (*where, *error.where)) from None
+
+
+def _lay_over(shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """Both, key by key; where both say something, what is its own."""
+    nested = [key for key in own if isinstance(own[key], dict) and isinstance(shared.get(key), dict)]
+    both = {key: _lay_over(shared[key], own[key]) for key in nested}
+    return {**shared, **own, **both}
 
 
 def _holds(data: Any, where: tuple[str | int, ...]) -> bool:
@@ -83,7 +91,8 @@ def _holds(data: Any, where: tuple[str | int, ...]) -> bool:
 def _make_settings(entry: SolveEntry, units: UnitsEntry) -> SolveSettings:
     given = entry.settings.model_dump(exclude_none=True)
     factors = {"position_tolerance": units.length_m, "orientation_tolerance": units.angle_rad}
-    changes = {TOLERANCES.get(key, key): value * factors.get(key, 1) for key, value in given.items()}
+    given |= {key: given[key] * factor for key, factor in factors.items() if key in given}
+    changes = {TOLERANCES.get(key, key): value for key, value in given.items()}
     try:
         return SolveSettings.for_method(entry.method).with_changes(**changes)
     except InputError as error:

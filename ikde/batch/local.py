@@ -13,38 +13,34 @@ from dataclasses import replace
 from ikde.batch.parts import Part, SealedPart, seal_part
 from ikde.batch.plan import Batch
 from ikde.batch.task import make_task, solve_task
+from ikde.solver.engine_table import SEVERAL
 from ikde.solver.search import usable_cores
 from ikde.solver.stopping import stoppable
-from ikde.solver.warmup import SEVERAL
 
 AHEAD = 1  # parts that may wait to be written, beyond one a thread: memory stays flat
 
-Announce = Callable[[], None]
 
-
-def solve_parts(
-    batch: Batch, parts: Sequence[Part], threads: int | None = None, announce_compile: Announce | None = None
-) -> Generator[SealedPart]:
+def solve_parts(batch: Batch, parts: Sequence[Part], threads: int | None = None) -> Generator[SealedPart]:
     """Solve parts and give them back sealed, in order. The answers do not depend on `threads` (None: all cores)."""
     threads, recipe = threads or usable_cores(), batch.hash
 
-    def solve(part: Part, inside: int, announce_compile: Announce | None = None) -> SealedPart:
-        answer = solve_task(make_task(batch, part), inside, announce_compile)
+    def solve(part: Part, inside: int) -> SealedPart:
+        answer = solve_task(make_task(batch, part), inside)
         return seal_part(part, answer.solutions, answer.timing, recipe=recipe)
 
     if threads == 1 or len(parts) <= 1:
-        yield from (solve(part, threads, announce_compile) for part in parts)
+        yield from (solve(part, threads) for part in parts)
         return
     for part in {part.arm: part for part in reversed(parts)}.values():
-        _warm_up(batch, part, announce_compile)
+        _warm_up(batch, part)
     yield from _solve_side_by_side(solve, parts, threads)
 
 
-def _warm_up(batch: Batch, part: Part, announce_compile: Announce | None) -> None:
-    """Solve a few targets of an arm: kernels are compiled or loaded once, and who waits for that is told."""
+def _warm_up(batch: Batch, part: Part) -> None:
+    """Solve a few targets of an arm, so that kernels are compiled or loaded once."""
     task = make_task(batch, replace(part, last=min(part.last, part.first + SEVERAL)))
     once = replace(task.arm, problem=task.arm.problem.with_settings(restarts=1))
-    solve_task(replace(task, arm=once, explain=False), 1, announce_compile)
+    solve_task(replace(task, arm=once, explain=False), 1)
 
 
 def _solve_side_by_side(

@@ -1,7 +1,6 @@
 """What a batch would do, and how long it would take: measured by solving a sample of each arm, writing nothing."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import pyarrow as pa
@@ -55,14 +54,12 @@ class Preview:
         return sum(arm.seconds for arm in self.arms)
 
 
-def preview_batch(
-    batch: Batch, *, threads: int | None = None, announce_compile: Callable[[], None] | None = None
-) -> Preview:
+def preview_batch(batch: Batch, *, threads: int | None = None) -> Preview:
     """Say what would run; solves a sample of each arm, some seconds long, and writes nothing."""
     check_options(threads, None, None)
     cores, parts = threads or usable_cores(), -(-batch.solves // batch.chunk)
     budget = SAMPLE_SECONDS / len(batch.arms)
-    samples = [_time_arm(batch, arm, cores, budget, announce_compile) for arm in batch.arms]
+    samples = [_time_arm(batch, arm, cores, budget) for arm in batch.arms]
     return Preview(
         name=batch.name,
         robot=batch.robot.name,
@@ -78,11 +75,9 @@ def preview_batch(
     )
 
 
-def _time_arm(
-    batch: Batch, arm: Arm, threads: int, budget: float, announce: Callable[[], None] | None
-) -> tuple[ArmPreview, Answer]:
+def _time_arm(batch: Batch, arm: Arm, threads: int, budget: float) -> tuple[ArmPreview, Answer]:
     """Solve larger and larger samples until one fills about the budget."""
-    solve_task(_take_sample(batch, arm, 1), threads, announce)  # compiles or loads the kernels
+    solve_task(_take_sample(batch, arm, 1), threads)  # compiles or loads the kernels
     size = min(threads, batch.solves)
     while True:
         started = time.perf_counter()

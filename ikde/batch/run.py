@@ -44,7 +44,6 @@ def run_batch(
     dask: str | None = None,
     workers: int | None = None,
     progress: Callable[[Progress], None] | None = None,
-    announce_compile: Callable[[], None] | None = None,
 ) -> RunSummary:
     """Solve everything that a batch asks for and write it to a folder.
 
@@ -59,7 +58,6 @@ def run_batch(
         dask: address of a Dask cluster that does the work, or `"local"` for processes on this machine.
         workers: processes of `dask="local"`; None for one a core.
         progress: called at the start and after every part.
-        announce_compile: called once if kernels must be compiled first.
 
     Returns:
         What came of it, over all parts of the folder.
@@ -72,7 +70,7 @@ def run_batch(
         raise InputError("expected a Batch; ikde.load_batch reads files and mappings")
     check_options(threads, dask, workers)
     folder = Path(out)
-    with _open(threads, dask, workers, announce_compile) as solve, claim_folder(folder, batch, overwrite=overwrite):
+    with _open(threads, dask, workers) as solve, claim_folder(folder, batch, overwrite=overwrite):
         parts = list(list_parts([arm.name for arm in batch.arms], batch.solves, batch.chunk))
         missing = [part for part in parts if not is_finished(folder, part, batch.hash)]
         now, tell = _start(parts, missing), progress or (lambda now: None)
@@ -98,12 +96,10 @@ def _start(parts: list[Part], missing: list[Part]) -> Progress:
 
 
 @contextmanager
-def _open(
-    threads: int | None, dask: str | None, workers: int | None, announce_compile: Callable[[], None] | None
-) -> Iterator[Solve]:
+def _open(threads: int | None, dask: str | None, workers: int | None) -> Iterator[Solve]:
     """What solves parts, here or on a cluster: reached, or found out of reach, before a folder is made."""
     if dask is None:
-        yield lambda batch, parts: solve_parts(batch, parts, threads, announce_compile)
+        yield lambda batch, parts: solve_parts(batch, parts, threads)
     else:
         with open_cluster(dask, workers) as solve:
             yield lambda batch, parts: _solve_remotely(solve, batch, parts)

@@ -18,7 +18,8 @@ from ikde.files.entries import (
 )
 from ikde.files.names import Name, Text
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
-from ikde.solver.settings import Collision, Method, Update
+from ikde.solver.engine_table import Method
+from ikde.solver.settings import Collision, Update
 
 ColumnGroup = Literal["q", "errors", "clearance", "cost", "reason", "target"]
 COLUMN_GROUPS: tuple[ColumnGroup, ...] = get_args(ColumnGroup)
@@ -96,15 +97,11 @@ class TargetsEntry(Entry):
     """Random points in a ball or on its surface."""
 
 
-class SettingsEntry(Entry):
-    """How to search; what is left out is the method's own choice."""
+class DeEntry(Entry):
+    """Settings of the method `de`, the differential evolution of the papers."""
 
-    position_tolerance: Number | None = None
-    """Accepted distance from the target."""
-    orientation_tolerance: Number | None = None
-    """Accepted angle from the target."""
     strategy: str | None = Field(default=None, json_schema_extra={"enum": [*STRATEGIES, None]})
-    """Mutation of the differential evolution."""
+    """Mutation."""
     population: int | None = None
     """Members of the population, NP."""
     start_share: Number | None = None
@@ -115,23 +112,34 @@ class SettingsEntry(Entry):
     """Crossover rate, CR, 0 to 1."""
     generations: int | None = None
     """Generations of one attempt."""
+    bounds: str | None = Field(default=None, json_schema_extra={"enum": [*REPAIRS, None]})
+    """What happens to a coordinate out of its range; `memetic` uses it, too."""
+    update: Update | None = None
+    """When a better trial replaces its parent."""
+    collision: Collision | None = None
+    """`reject`: test the best, start again until it is free; `feasibility`: inside the selection; `memetic` uses it."""
+
+
+class SettingsEntry(Entry):
+    """How to search; what is left out is the method's own choice."""
+
+    position_tolerance: Number | None = None
+    """Accepted distance from the target."""
+    orientation_tolerance: Number | None = None
+    """Accepted angle from the target."""
     restarts: int | None = None
     """Attempts before the budget is spent."""
     timeout_s: Number | None = None
     """Seconds after which no further attempt at a target is begun. The answers may then depend on the machine."""
-    bounds: str | None = Field(default=None, json_schema_extra={"enum": [*REPAIRS, None]})
-    """What happens to a coordinate out of its range."""
-    update: Update | None = None
-    """When a better trial replaces its parent."""
-    collision: Collision | None = None
-    """`reject`: test the best, start again until it is free; `feasibility`: inside the selection."""
+    de: DeEntry | None = None
+    """What belongs to the method `de`."""
 
 
 class SolveEntry(Entry):
     """How to solve."""
 
     method: Method = "auto"
-    """`auto`, ikde's choice, or `de`, the search of the paper."""
+    """The engine: `auto` is ikde's choice, `de` the search of the paper."""
     detector: DetectorChoice | None = None
     """What counts as self-collision: a name, `none`, or a detector of your own (default: the robot's)."""
     settings: SettingsEntry = SettingsEntry()

@@ -1,6 +1,5 @@
 """The work of one part: it holds all it needs, so that it can be sent to another process or machine."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,7 +55,7 @@ def make_task(batch: Batch, part: Part) -> Task:
     )
 
 
-def solve_task(task: Task, threads: int | None = None, announce_compile: Callable[[], None] | None = None) -> Answer:
+def solve_task(task: Task, threads: int | None = None) -> Answer:
     """Solve, grade and tabulate one part; the solutions are the same bits wherever this runs."""
     numbers = np.arange(task.part.first, task.part.last)
     local = numbers // task.repeats - numbers[0] // task.repeats
@@ -68,7 +67,6 @@ def solve_task(task: Task, threads: int | None = None, announce_compile: Callabl
         threads=threads,
         probe=task.explain,
         verify="sample",
-        announce_compile=announce_compile,
     )
     solutions = make_solutions(
         task.arm.name,

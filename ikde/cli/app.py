@@ -14,6 +14,7 @@ from ikde.cli.check import check
 from ikde.cli.doctor import doctor
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.fk import fk
+from ikde.cli.options import Command
 from ikde.cli.output import print_note, print_result
 from ikde.cli.report import report
 from ikde.cli.robots import robots
@@ -56,7 +57,7 @@ def root(
 
 
 for command in (solve, fk, check, batch, report, track, schema, warmup, doctor):
-    app.command()(command)
+    app.command(cls=Command)(command)
 app.add_typer(robots, name="robots")
 app.add_typer(bench, name="bench")
 

@@ -8,7 +8,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption, note_unchecked
-from ikde.cli.output import announce_compile, print_json, print_note, print_result, use_color
+from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color
 from ikde.cli.progress import show_progress
 
 if TYPE_CHECKING:
@@ -69,7 +69,8 @@ def _preview(plan: "Batch", threads: int | None, dask: str | None, workers: int 
     check_options(threads, dask, workers)
     if dask is not None:
         print_note("a dry run solves its sample on this machine: the cluster is left alone")
-    preview = preview_batch(plan, threads=threads, announce_compile=announce_compile)
+    with note_compile():
+        preview = preview_batch(plan, threads=threads)
     if as_json:
         print_json(preview_json(preview))
     else:
@@ -84,7 +85,7 @@ def _run(
     from ikde.batch.run import run_batch
 
     try:
-        with show_progress(f"{plan.name} → {out}") as tell:
+        with show_progress(f"{plan.name} → {out}") as tell, note_compile():
             return run_batch(
                 plan,
                 out,
@@ -93,7 +94,6 @@ def _run(
                 dask=dask,
                 workers=workers,
                 progress=tell,
-                announce_compile=announce_compile,
             )
     except KeyboardInterrupt:
         raise typer.Abort(f"ikde: interrupted; {GO_ON}") from None

@@ -9,9 +9,11 @@ import typer
 
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import JsonOption
-from ikde.cli.output import announce_compile, print_json, print_line
+from ikde.cli.options import Command, JsonOption
+from ikde.cli.output import note_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
+
+TAKES = "about a minute"  # compiling all kernels
 
 bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
 
@@ -21,10 +23,10 @@ def default() -> None:
     """Benchmarks that compare with published results."""
 
 
-bench.command("track")(bench_track)
+bench.command("track", cls=Command)(bench_track)
 
 
-@bench.command("paper")
+@bench.command("paper", cls=Command)
 def paper(
     out: Annotated[
         Path, typer.Option(metavar="FOLDER", help="Where report.html, report.md and results.json go.")
@@ -79,7 +81,8 @@ def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> N
 
     inputs = load_inputs(QUICK if quick else FULL)
     with show_benchmark(count_solves(inputs)) as progress:
-        results = compute_paper(replace(inputs, progress=progress), sections, _announce)
+        with note_compile(TAKES):
+            results = compute_paper(replace(inputs, progress=progress), sections)
         data = results.as_json()
         progress.begin("page")
         page = make_paper_page(results, inputs)
@@ -98,8 +101,8 @@ def _check(out: Path, as_json: bool) -> ExitCode:
 
     recorded = read_results(out)
     inputs = load_inputs(Budget(**recorded["made"]["budget"]))
-    with show_benchmark(count_solves(inputs)) as progress:
-        differences = check_paper(recorded, replace(inputs, progress=progress), _announce)
+    with show_benchmark(count_solves(inputs)) as progress, note_compile(TAKES):
+        differences = check_paper(recorded, replace(inputs, progress=progress))
     if as_json:
         print_json({"agrees": not differences, "differences": differences})
     elif differences:
@@ -108,7 +111,3 @@ def _check(out: Path, as_json: bool) -> ExitCode:
     else:
         print_line(f"{out / RESULTS}: every exact figure comes out the same")
     return ExitCode.NOT_REACHED if differences else ExitCode.OK
-
-
-def _announce() -> None:
-    announce_compile("about a minute")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import JsonOption, note_unchecked
-from ikde.cli.output import announce_compile, print_json, print_line
+from ikde.cli.output import note_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
@@ -39,7 +39,6 @@ def bench_track(
     """
     from ikde.io.report_folder import RESULTS, format_results, open_folder, write_report
     from ikde.io.track_file import load_track
-    from ikde.kernels.jit import compile_clock
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
     from ikde.track.comparison import FULL, QUICK, compare_methods, count_runs
@@ -50,7 +49,7 @@ def bench_track(
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
-        with compile_clock(lambda: announce_compile("a minute or two")):
+        with note_compile("a minute or two"):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
         page = make_comparison_page(compared, budget, _repeat(tracks, methods, drive, quick))

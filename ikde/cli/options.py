@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from ikde.cli.output import print_note
 
@@ -31,36 +33,46 @@ class AngleUnit(StrEnum):
 
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
-RobotOption = Annotated[
-    str, typer.Option("--robot", metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")
-]
-UnitOption = Annotated[LengthUnit, typer.Option("--unit", help="Unit of lengths, in and out.")]
-AnglesOption = Annotated[AngleUnit, typer.Option("--angles", help="Unit of angles, in and out.")]
-ConventionOption = Annotated[
-    str | None, typer.Option("--convention", help="How joints are counted, in and out (default: the robot's own).")
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, always in m, rad and s.")]
-PlotOption = Annotated[
-    Path | None, typer.Option("--plot", metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")
+OUTPUT = "Units and output"
+of_target = partial(typer.Option, rich_help_panel="Target")  # headings of the help, in the order of the options
+of_robot = partial(typer.Option, rich_help_panel="Robot")
+of_collision = partial(typer.Option, rich_help_panel="Collision")
+of_search = partial(typer.Option, rich_help_panel="Search")
+of_output = partial(typer.Option, rich_help_panel=OUTPUT)
+
+RobotOption = Annotated[str, of_robot(metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")]
+QOption = Annotated[
+    str | None,
+    of_robot(
+        metavar="Q", help="Joint values: numbers in one string, name=value pairs, or a YAML/JSON file (default: home)."
+    ),
 ]
 DetectorOption = Annotated[
     str | None,
-    typer.Option("--detector", metavar="NAME|none", help="What counts as self-collision (default: the robot's)."),
+    of_collision(metavar="NAME|none", help="What counts as self-collision (default: the robot's)."),
 ]
 PairsOption = Annotated[
-    str | None, typer.Option("--pairs", metavar="LIST", help="Pair list instead of the detector's, e.g. non_adjacent.")
+    str | None, of_collision(metavar="LIST", help="Pair list instead of the detector's, e.g. non_adjacent.")
 ]
-SafeDistanceOption = Annotated[
-    float | None, typer.Option("--safe-distance", help="Clearance at which collision begins, in --unit.")
+SafeDistanceOption = Annotated[float | None, of_collision(help="Clearance at which collision begins, in --unit.")]
+UnitOption = Annotated[LengthUnit, of_output(help="Unit of lengths, in and out.")]
+AnglesOption = Annotated[AngleUnit, of_output(help="Unit of angles, in and out.")]
+ConventionOption = Annotated[
+    str | None, of_output(metavar="NAME", help="How joints are counted, in and out (default: the robot's own).")
 ]
-QOption = Annotated[
-    str | None,
-    typer.Option(
-        "--q",
-        metavar="Q",
-        help="Joint values: numbers in one string, name=value pairs, or a YAML/JSON file (default: home).",
-    ),
-]
+JsonOption = Annotated[bool, of_output("--json", help="Print JSON, always in m, rad and s.")]
+PlotOption = Annotated[Path | None, of_output(metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")]
+
+
+class Command(TyperCommand):
+    """A command whose `--help` stands beside `--json`: options without a heading would come before all others."""
+
+    def get_help_option(self, ctx: Any) -> Any:
+        """The option, with its heading."""
+        option: Any = super().get_help_option(ctx)
+        if option is not None:
+            option.rich_help_panel = OUTPUT
+        return option
 
 
 def read_q(
@@ -127,6 +139,30 @@ def read_freeze(
     given = {name: value for name, value in frozen.items() if value is not None}
     own = dict(zip(robot.joint_names, read_joints(robot, given, convention, default=robot.home), strict=True))
     return {name: float(own[name]) if name in given else None for name in frozen}
+
+
+def read_de(text: str | None) -> dict[str, Any]:
+    """Settings of the differential evolution by name, from `population=80,strategy=best/1`."""
+    from dataclasses import fields
+
+    from ikde.errors import InputError, nearest, quoted
+    from ikde.solver.settings import DeSettings
+
+    kinds, given = {field.name: type(field.default) for field in fields(DeSettings)}, {}
+    for word in (text or "").replace(",", " ").split():
+        name, _, value = word.partition("=")
+        if name not in kinds:
+            raise InputError(
+                f"unknown key {quoted(name)}{nearest(name, kinds)}; expected {', '.join(kinds)}", ("--de",)
+            )
+        if name in given:
+            raise InputError("this key is given twice", ("--de", name))
+        try:
+            given[name] = kinds[name](value)
+        except ValueError:
+            number = "a whole number" if kinds[name] is int else "a number"
+            raise InputError(f"expected {name}={number}, got {quoted(word)}", ("--de", name)) from None
+    return given
 
 
 def check_drawable(path: Path | None) -> None:

@@ -57,9 +57,10 @@ def as_words(text: str) -> Any:
     return Text(printable(text))
 
 
-def announce_compile(takes: str = "10 s to a minute") -> None:
-    """Said once, when kernels must be compiled before the first solve."""
+def note_compile(takes: str = "10 s to a minute") -> AbstractContextManager[Any]:
+    """Say once, on stderr, that kernels must be compiled inside the block, if they must."""
     from ikde.kernels.cache_folder import CACHE_IS_WRITABLE
+    from ikde.kernels.jit import compile_clock
 
     often = "once on this machine" if CACHE_IS_WRITABLE else "every time, since no cache folder can be used"
-    print_note(f"compiling the kernels: {often}, {takes} ...")
+    return compile_clock(lambda: print_note(f"compiling the kernels: {often}, {takes} ..."))

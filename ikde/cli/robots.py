@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import AnglesOption, AngleUnit, DetectorOption, JsonOption, LengthUnit, UnitOption
+from ikde.cli.options import AnglesOption, AngleUnit, Command, DetectorOption, JsonOption, LengthUnit, UnitOption
 from ikde.cli.output import page_width, print_json, print_line, print_result, use_color
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def default(context: typer.Context, as_json: JsonOption = False) -> None:
         list_robots(as_json)
 
 
-@robots.command("list")
+@robots.command("list", cls=Command)
 def list_robots(as_json: JsonOption = False) -> None:
     """List the robots that ship with ikde."""
     from ikde.io.robots import load_robot, robot_names
@@ -34,14 +34,14 @@ def list_robots(as_json: JsonOption = False) -> None:
         print_result(format_robots(loaded, color=use_color()))
 
 
-@robots.command("show")
+@robots.command("show", cls=Command)
 def show(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
-    unit: UnitOption = LengthUnit.mm,
-    angles: AnglesOption = AngleUnit.deg,
     kernels: Annotated[bool, typer.Option("--kernels", help="Print the kernels written for it instead.")] = False,
     kind: Annotated[str, typer.Option(help="Of which targets: position, axis or pose.")] = "pose",
     detector: DetectorOption = None,
+    unit: UnitOption = LengthUnit.mm,
+    angles: AnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
 ) -> None:
     """Show a robot: joints, frames, detectors, pairs, and where its numbers come from; or the kernels written for it.
@@ -77,11 +77,11 @@ def _format_kernels(collision: "CollisionModel", kind: str) -> str:
     return format_module(collision, kind)
 
 
-@robots.command("validate")
+@robots.command("validate", cls=Command)
 def validate(
     file: Annotated[Path, typer.Argument(help="A robot file.")],
-    unit: UnitOption = LengthUnit.mm,
     detector: DetectorOption = None,
+    unit: UnitOption = LengthUnit.mm,
     as_json: JsonOption = False,
 ) -> None:
     """Check a robot file, and list every pair that its detector compares and leaves out.
@@ -104,7 +104,7 @@ def validate(
         print_result(format_pairs(chosen, Units(unit), color=use_color(), width=page_width()))
 
 
-@robots.command("export")
+@robots.command("export", cls=Command)
 def export(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
     urdf: Annotated[bool, typer.Option("--urdf", help="Write URDF.")] = False,

@@ -10,7 +10,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q
-from ikde.cli.output import announce_compile, as_words, print_json, print_result, use_color, working
+from ikde.cli.output import as_words, note_compile, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -85,7 +85,8 @@ def _follow(plan: "TrackPlan") -> "TrackSummary":
     from ikde.track.run import run_track
     from ikde.track.summary import summarise_track
 
-    trajectory = run_track(plan, announce_compile=lambda: announce_compile("a minute or two"))
+    with note_compile("a minute or two"):
+        trajectory = run_track(plan)
     return summarise_track(plan.collision, trajectory)
 
 

@@ -51,7 +51,7 @@ def _compile(function: F, **options: Any) -> F:
 
 
 class CompileClock(event.Listener):
-    """Adds up the seconds that numba spends compiling; loading from the cache does not count.
+    """Adds up the seconds that numba spends compiling, on any thread; loading from the cache does not count.
 
     `announce` is called once, when the first compilation begins.
     """
@@ -80,7 +80,7 @@ class CompileClock(event.Listener):
 
 @contextmanager
 def compile_clock(announce: Callable[[], None] | None = None) -> Iterator[CompileClock]:
-    """Measure the compile time spent inside the block."""
+    """Measure the compile time spent inside the block, and call `announce` once if kernels must be compiled there."""
     clock = CompileClock(announce)
     with event.install_listener("numba:compile", clock):
         yield clock

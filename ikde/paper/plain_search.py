@@ -14,7 +14,7 @@ from ikde.paper.inputs import Inputs
 from ikde.solver.figures import compute_clearances
 from ikde.solver.problem import Problem, make_problem
 from ikde.solver.rows import solve_rows
-from ikde.solver.settings import SolveSettings
+from ikde.solver.settings import DeSettings, SolveSettings
 
 SEED = 2021
 CHUNK = 1000  # solves at a time: a progress bar moves, Ctrl-C is heard
@@ -23,11 +23,8 @@ Limits = Literal["classical", "key_point", "half_turn", "full_turn"]
 STATED = SolveSettings(
     method="de",
     position_tolerance_m=5e-5,
-    strategy="best/1",
     restarts=1,
-    bounds="redraw",
-    update="in_place",
-    collision="reject",
+    de=DeSettings(strategy="best/1", bounds="redraw", update="in_place", collision="reject"),
 )
 
 

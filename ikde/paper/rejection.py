@@ -206,12 +206,14 @@ def compute_rejection(inputs: Inputs) -> Rejection:
 
 def describe_setup(setup: Setup) -> dict[str, Any]:
     """A setup, for the record."""
+    settings = setup.settings
+    tolerances = {name: getattr(settings, name) for name in ("position_tolerance_m", "orientation_tolerance_rad")}
     return {
         "source": "[Qiao2021, Table 4]",
         "seed": SEED,
         "base_half_width_mm": setup.base_half_width_m * 1e3,
         "limits": setup.limits,
-        "search": asdict(setup.settings),
+        "search": {**tolerances, "restarts": settings.restarts, **asdict(settings.evolution)},
     }
 
 

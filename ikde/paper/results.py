@@ -3,7 +3,7 @@
 import json
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -59,19 +59,16 @@ def count_solves(inputs: Inputs) -> int:
     return len(inputs.targets) * one
 
 
-def compute_paper(
-    inputs: Inputs, only: Sequence[str] = tuple(TOPICS), announce_compile: Callable[[], None] | None = None
-) -> Results:
+def compute_paper(inputs: Inputs, only: Sequence[str] = tuple(TOPICS)) -> Results:
     """Compute the report's sections.
 
     Args:
         inputs: robots and published figures, how much of everything, and what is called with progress.
         only: names of the sections to compute.
-        announce_compile: called once if kernels must be compiled first.
     """
     started, begin = datetime.now(UTC), time.perf_counter()
     sections, seconds = {}, {}
-    with compile_clock(announce_compile) as compiling:
+    with compile_clock() as compiling:
         for name in filter(set(only).__contains__, TOPICS):
             inputs.progress.begin(name)
             began = time.perf_counter()
@@ -112,17 +109,14 @@ def read_results(folder: Path) -> dict[str, Any]:
     return results
 
 
-def check_paper(
-    recorded: Mapping[str, Any], inputs: Inputs, announce_compile: Callable[[], None] | None = None
-) -> list[str]:
+def check_paper(recorded: Mapping[str, Any], inputs: Inputs) -> list[str]:
     """Compute the exact parts of a record again; returns a line for each difference.
 
     Args:
         recorded: what `read_results` gave.
         inputs: robots and published figures, with the budget on record.
-        announce_compile: called once if kernels must be compiled first.
     """
-    again = compute_paper(inputs, recorded["made"]["only"], announce_compile).as_json()
+    again = compute_paper(inputs, recorded["made"]["only"]).as_json()
     return list_differences(_drop_times(recorded["sections"]), _drop_times(again["sections"]))
 
 

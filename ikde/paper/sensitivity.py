@@ -94,10 +94,11 @@ def list_variations() -> list[Variation]:
     stated = Setup()
 
     def vary(group: str, values: Mapping[str, dict[str, Any]]) -> list[Variation]:
-        return [
-            Variation(group=group, value=value, setup=replace(stated, settings=stated.settings.with_changes(**changes)))
-            for value, changes in values.items()
-        ]
+        changed = {value: stated.settings.with_changes(**changes) for value, changes in values.items()}
+        return [Variation(group=group, value=v, setup=replace(stated, settings=s)) for v, s in changed.items()]
+
+    def vary_de(group: str, values: Mapping[str, dict[str, Any]]) -> list[Variation]:
+        return vary(group, {value: {"de": changes} for value, changes in values.items()})
 
     bases = (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
     limits = {
@@ -111,14 +112,14 @@ def list_variations() -> list[Variation]:
             Variation(group="base range", value=f"±{1e3 * b:g} mm", setup=replace(stated, base_half_width_m=b))
             for b in bases
         ),
-        *vary(
+        *vary_de(
             "start population", {f"middle {100 * s:g} % of each range": {"start_share": s} for s in (0.5, 0.25, 0.1)}
         ),
-        *vary("start population", {f"NP = {n}": {"population": n} for n in (20, 100, 200)}),
+        *vary_de("start population", {f"NP = {n}": {"population": n} for n in (20, 100, 200)}),
         *(Variation(group="joint limits", value=v, setup=replace(stated, limits=k)) for v, k in limits.items()),
-        *vary("out of range", {b: {"bounds": b} for b in ("clip", "parent", "midpoint", "none")}),
-        *vary("mutation", {s: {"strategy": s} for s in ("rand/1", "rand-to-best/1", "current-to-best/1")}),
-        *vary("update", {"at the end of the generation": {"update": "generation"}}),
+        *vary_de("out of range", {b: {"bounds": b} for b in ("clip", "parent", "midpoint", "none")}),
+        *vary_de("mutation", {s: {"strategy": s} for s in ("rand/1", "rand-to-best/1", "current-to-best/1")}),
+        *vary_de("update", {"at the end of the generation": {"update": "generation"}}),
         *vary("tolerance", {f"{1e3 * t:g} mm": {"position_tolerance_m": t} for t in (1e-5, 1e-3)}),
     ]
 

@@ -9,6 +9,7 @@ from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
 from ikde.report.numbers import Units, format_fixed, seconds
 from ikde.report.render import make_table, plain, render
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
@@ -79,18 +80,9 @@ def _bar(value: float, lower: float, upper: float) -> str:
     return "─" * at + "●" + "─" * (BAR - 1 - at)
 
 
-ENGINE_TEXTS = {
-    "lm": "lm: damped least squares from collision-free seeds",
-    "analytic": "analytic: closed form of a UR-type arm",
-    "memetic": "memetic: adaptive differential evolution, polished",
-}
-
-
 def describe_engine(result: SolveResult) -> str:
-    """The engine that answered, and of the paper's its knobs."""
-    told = result.settings
-    own = f"{result.method} {told.strategy}, population {told.population}, {told.collision}"
-    return ENGINE_TEXTS.get(result.method, own)
+    """The engine that answered, and of the paper's its settings."""
+    return ENGINES[result.method].label.format(de=result.settings.evolution)
 
 
 GRADERS = {

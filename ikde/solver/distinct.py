@@ -1,7 +1,6 @@
 """Several solutions of one target, far enough apart to be a choice, best first by a stated cost."""
 
 import time
-from collections.abc import Callable
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -12,6 +11,7 @@ from ikde.kernels.seeds import LUCKY_ATTEMPTS
 from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, Problem, make_problem
@@ -40,7 +40,6 @@ def solve_distinct(
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
-    announce_compile: Callable[[], None] | None = None,
 ) -> list[SolveResult]:
     """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
 
@@ -60,7 +59,6 @@ def solve_distinct(
         collision: as for `solve`.
         near: as for `solve`.
         freeze: as for `solve`.
-        announce_compile: called once if kernels must be compiled first.
     """
     if not 1 <= count <= MOST_WANTED:
         raise InputError(f"expected a whole number of at least 1, up to {MOST_WANTED:,}, got {count}", ("count",))
@@ -70,12 +68,11 @@ def solve_distinct(
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
-    options = {"seed": check_seed(seed), "strict": True, "announce_compile": announce_compile}
-    told = {"seed": seed, "collision": collision, "near": near, "freeze": freeze, "announce_compile": announce_compile}
-    first = confirm(robot, solve(robot, target, chosen, **told))
+    options = {"seed": check_seed(seed), "strict": True}
+    first = confirm(robot, solve(robot, target, chosen, seed=seed, collision=collision, near=near, freeze=freeze))
     if not first.reached or count == 1:
         return [first]
-    look = _go_on if chosen.evolves or chosen.method == "memetic" else _sample
+    look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(problem, target, count, first, options)
     return sort_solutions(problem, solutions, rank)[:count]
 
@@ -128,8 +125,8 @@ def _sample(
     begin = LUCKY_ATTEMPTS if problem.near is None else 1
     several = size if problem.settings.timeout_s is None else 1
     for stream in range(1, 1 + ROUNDS * size, several):
-        told = {"first_stream": stream, "first_attempt": begin, "probe": False, "spent_s": clock.spent_s}
-        rows = solve_rows(problem, [target] * several, **told, **options)
+        where = {"first_stream": stream, "first_attempt": begin, "probe": False, "spent_s": clock.spent_s}
+        rows = solve_rows(problem, [target] * several, **where, **options)
         for row in np.flatnonzero(rows.reached).tolist():
             if all(are_distinct(problem.robot, rows.q[row], other.q) for other in solutions):
                 solutions.append(rows.row(row))
@@ -147,8 +144,8 @@ def _go_on(
     solutions, attempt, clock = [first], first.attempts, Clock(problem, first)
     most = count * problem.settings.budget(first.method)
     while len(solutions) < count and attempt < most and not clock.is_up:
-        told = {"first_attempt": attempt, "probe": False, "spent_s": clock.spent_s}
-        result = solve_rows(problem, [target], **told, **options).row(0)
+        where = {"first_attempt": attempt, "probe": False, "spent_s": clock.spent_s}
+        result = solve_rows(problem, [target], **where, **options).row(0)
         attempt += result.attempts
         clock.leave_out(result.compile_seconds)
         if not result.reached:

@@ -9,6 +9,7 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.digits import at_least
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.found import Found
 from ikde.solver.hints import (
     Probe,
@@ -140,17 +141,17 @@ def _prove(problem: Problem, target: Target) -> Explanation | None:
 
 
 def _out_of_reach(far_m: float, off_rad: float = 0.0) -> str:
-    told = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
-    told += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
-    return f"out of reach: at least {' and '.join(told)}, whatever the joints do"
+    words = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
+    words += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
+    return f"out of reach: at least {' and '.join(words)}, whatever the joints do"
 
 
 def _colliding(met: _Met, remedy: str | None) -> Explanation:
     worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
-    told = f"{met.colliding} met the target, each in collision; blocked by {worst}"
+    collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
     return Explanation(
         stop_reason=StopReason.SELF_COLLISION,
-        reason=f"only colliding solutions found: {told}",
+        reason=f"only colliding solutions found: {collisions}",
         hint=remedy,
         blocking_pairs=met.blocking,
     )
@@ -189,10 +190,10 @@ def _read_counts(problem: Problem, found: Found) -> _Met:
 
 def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str | None]:
     """Collisions counted pair by pair, where the search did not; and what helps, if that finds a solution."""
-    if problem.settings.evolves:
-        if met.colliding > 0 or not problem.collision.pairs or problem.settings.knob("collision") == "reject":
+    if ENGINES[problem.settings.engines[-1]].counts_all_pairs:
+        if met.colliding > 0 or not problem.collision.pairs or problem.settings.evolution.collision == "reject":
             return met, None
-        rejecting = problem.with_settings(collision="reject")
+        rejecting = problem.with_settings(de={"collision": "reject"})
         tested = probe.run(rejecting)
         hint = "collision reject: a solution was found by testing the best of each population only"
         return _read_counts(problem, tested), hint if probe.confirms(rejecting, tested) else None
@@ -206,8 +207,8 @@ def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str |
 def _search_often(problem: Problem, probe: Probe) -> Found:
     """One attempt on each of many streams; attempt 0 with `near` is `near` itself, on every stream."""
     begin = 0 if problem.near is None else 1
-    told = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
-    return search(problem, [probe.target] * COUNTED, **told)
+    lanes = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
+    return search(problem, [probe.target] * COUNTED, **lanes)
 
 
 def _count_pairs(problem: Problem, found: Found) -> _Met:

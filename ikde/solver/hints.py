@@ -11,13 +11,13 @@ from ikde.model.reach import reach_excess_m
 from ikde.model.robot import FARTHEST
 from ikde.model.target import Target
 from ikde.solver.digits import round_up
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.found import Found
 from ikde.solver.problem import Problem
 from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Verification, verify_many
 
-PROBE_ATTEMPTS = {True: 24, False: 2}  # of the DE, of other engines
 WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
 
@@ -34,11 +34,11 @@ class Probe:
     stream: int
     spent_s: float
 
-    def run(self, problem: Problem, **told: int) -> Found:
+    def run(self, problem: Problem, **attempts: int) -> Found:
         """A few attempts at a question that may have been changed, at most as many as were asked for."""
-        few = PROBE_ATTEMPTS[problem.settings.evolves]
+        few = ENGINES[problem.settings.engines[-1]].attempts_of_probe
         brief = problem.with_settings(restarts=min(few, problem.settings.restarts or few))
-        found = search(brief, [self.target], seed=self.seed, streams=[self.stream], spent_s=self.spent_s, **told)
+        found = search(brief, [self.target], seed=self.seed, streams=[self.stream], spent_s=self.spent_s, **attempts)
         self.spent_s += float(found.seconds[0])
         return found
 
@@ -95,10 +95,10 @@ def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Verif
     if not is_near or orientation_rad > min(np.pi, GENEROUS * asked.orientation_tolerance_rad):
         return None
     wider = asked.with_changes(position_tolerance_m=position_m, orientation_tolerance_rad=orientation_rad)
-    told = _tell_tolerances(asked, wider)
-    if not told or not verify_many(problem.collision, [target], q[None], wider).accepted[0]:
+    wanted = _name_tolerances(asked, wider)
+    if not wanted or not verify_many(problem.collision, [target], q[None], wider).accepted[0]:
         return None
-    return f"a tolerance of {told} would accept the best"
+    return f"a tolerance of {wanted} would accept the best"
 
 
 def hint_at_stream(problem: Problem, target: Target, found: Found) -> str | None:
@@ -111,9 +111,9 @@ def hint_at_stream(problem: Problem, target: Target, found: Found) -> str | None
 
 def try_longer(problem: Problem, probe: Probe) -> str | None:
     """Whether the search, gone on with, finds a solution."""
-    last = "memetic" if problem.settings.method == "auto" else problem.settings.method
-    told = {"first_attempt": problem.settings.budget(last), "attempts": PROBE_ATTEMPTS[problem.settings.evolves]}
-    found = probe.run(problem, **told)
+    last = problem.settings.engines[-1]
+    attempts = {"first_attempt": problem.settings.budget(last), "attempts": ENGINES[last].attempts_of_probe}
+    found = probe.run(problem, **attempts)
     return "more restarts: a solution was found by going on" if probe.confirms(problem, found) else None
 
 
@@ -175,11 +175,11 @@ def _rounded(error: float) -> float:
     return round_up(error) if error > 0.0 else 0.0
 
 
-def _tell_tolerances(asked: SolveSettings, wider: SolveSettings) -> str:
+def _name_tolerances(asked: SolveSettings, wider: SolveSettings) -> str:
     """Those that are wider than what was asked for."""
-    told = []
+    words = []
     if wider.position_tolerance_m > asked.position_tolerance_m:
-        told.append(f"{wider.position_tolerance_m:.2g} m")
+        words.append(f"{wider.position_tolerance_m:.2g} m")
     if wider.orientation_tolerance_rad > asked.orientation_tolerance_rad:
-        told.append(f"{wider.orientation_tolerance_rad:.2g} rad")
-    return " and ".join(told)
+        words.append(f"{wider.orientation_tolerance_rad:.2g} rad")
+    return " and ".join(words)

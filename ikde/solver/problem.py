@@ -110,21 +110,21 @@ def pack_searched(collision: CollisionModel) -> tuple[RobotArrays, CollisionArra
 
 def pack_search(problem: Problem) -> SearchArrays:
     """The search's arrays for the kernels."""
-    settings, knob = problem.settings, problem.settings.knob
+    settings, de = problem.settings, problem.settings.evolution
     rules = {"reject": REJECT, "feasibility": FEASIBILITY}
     near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
     return SearchArrays(
         ranges=np.array([problem.lower, problem.upper, near]),
         first_box=1.0 if problem.near is None else NEAR_FIRST_BOX,
-        start_share=float(knob("start_share")),
+        start_share=float(de.start_share),
         position_tolerance=shrink(settings.position_tolerance_m),
         orientation_tolerance=shrink(settings.orientation_tolerance_rad),
-        population=int(knob("population")),
-        generations=int(knob("generations")),
-        strategy=STRATEGIES.index(knob("strategy")),
-        weight=float(knob("weight")),
-        crossover=float(knob("crossover")),
-        repair=REPAIRS.index(knob("bounds")),
-        in_place=knob("update") == "in_place",
-        collision_rule=rules[knob("collision")] if problem.collision.pairs else IGNORE,
+        population=int(de.population),
+        generations=int(de.generations),
+        strategy=STRATEGIES.index(de.strategy),
+        weight=float(de.weight),
+        crossover=float(de.crossover),
+        repair=REPAIRS.index(de.bounds),
+        in_place=de.update == "in_place",
+        collision_rule=rules[de.collision] if problem.collision.pairs else IGNORE,
     )

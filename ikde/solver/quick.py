@@ -4,7 +4,6 @@ The answer is that of the long way (`solver.rows`), bit for bit; what this way c
 """
 
 import time
-from collections.abc import Callable
 from functools import lru_cache, partial
 
 import numpy as np
@@ -16,15 +15,18 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds, runs_on_tables
 from ikde.solver.explain import count_blocking_pairs
 from ikde.solver.figures import pack_grader
 from ikde.solver.problem import make_problem, pack_searched
 from ikde.solver.result import SolveResult, StopReason, reached_reason
-from ikde.solver.search import FEW, choose_engines
+from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings, choose_settings
 from ikde.solver.verify import verify
+
+ENGINE = "lm"
 
 
 class Quick:
@@ -37,7 +39,7 @@ class Quick:
         self._kind.setflags(write=False)
         self._search = load_kernels(collision, kind).solve_target
         self._block = flatten_search(*pack_searched(collision), *search)
-        self._last = min(FEW["lm"], int(settings.budget("lm")))
+        self._last = min(ENGINES[ENGINE].attempts_before_proof, int(settings.budget(ENGINE)))
         self._grader = pack_grader(collision, settings)
         self._joints, self._pairs = len(collision.robot.joints), collision.pairs
         self._no_score = np.full(2, np.inf)
@@ -49,7 +51,7 @@ class Quick:
             "joint_names": collision.robot.joint_names,
             "self_collision": False if self._pairs else None,
             "verified": None,
-            "method": "lm",
+            "method": ENGINE,
             "settings": settings,
             "detector": collision.name,
             "verify": partial(verify, collision.robot, settings=settings, collision=collision),
@@ -57,13 +59,11 @@ class Quick:
         }
         self._is_ready = False
 
-    def solve(
-        self, target: Target, seed: int, stream: int, announce_compile: Callable[[], None] | None
-    ) -> SolveResult | None:
+    def solve(self, target: Target, seed: int, stream: int) -> SolveResult | None:
         """A graded solution, or None if this target needs another engine, more attempts, or a reason."""
         if self._is_ready:
             return self._try(target, seed, stream)
-        with compile_clock(announce_compile) as clock:
+        with compile_clock() as clock:
             self._try(target, seed, stream)
             result = self._try(target, seed, stream)
         if result is not None:
@@ -116,7 +116,7 @@ def find_quick(
     On tables, engine and grader would share their code.
     """
     chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
-    engines = choose_engines(robot, chosen, only_poses=kind == "pose")
-    if engines[0] != "lm" or runs_on_tables():
+    engines = choose_engines(robot, chosen, {kind})
+    if engines[0] != ENGINE or runs_on_tables():
         return None
     return Quick(collision, chosen, kind)

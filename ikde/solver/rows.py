@@ -1,6 +1,6 @@
 """Many solves at once, a row each: searched on all cores, graded, explained."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -9,7 +9,8 @@ import numpy as np
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
-from ikde.solver.engines.found import ENGINES, Found
+from ikde.solver.engine_table import NAMES
+from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, count_blocking_pairs, reason_from_counts
 from ikde.solver.grade import Graded, Verify, grade
 from ikde.solver.problem import Problem
@@ -95,7 +96,7 @@ class Rows:
 
     @property
     def engines(self) -> Ints:
-        """Who answered [T]: index into `solver.search.ENGINES`."""
+        """Which engine answered [T]: its place in `engine_table.NAMES`."""
         return self.found.engine
 
     def __len__(self) -> int:
@@ -152,7 +153,7 @@ class Rows:
             closest_pair=pairs[closest] if closest >= 0 else None,
             self_collision=_verdict(self.self_collision, index),
             verified=_verdict(self.verified, index),
-            method=ENGINES[self.engines[index]],
+            method=NAMES[self.engines[index]],
             settings=problem.settings,
             detector=problem.collision.name,
             seed=self.seed,
@@ -185,7 +186,6 @@ def solve_rows(
     strict: bool = False,
     verify: Verify = "all",
     spent_s: float = 0.0,
-    announce_compile: Callable[[], None] | None = None,
 ) -> Rows:
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
 
@@ -201,14 +201,13 @@ def solve_rows(
         verify: which rows plain numpy grades too: `"all"`, `"sample"` (one stream in 64), or `"none"`; beyond those,
             every unreached row that is probed.
         spent_s: what is gone of each target's time, if the settings have a timeout.
-        announce_compile: called once if kernels must be compiled first.
 
     Raises:
         VerificationError: with `strict`, for a disagreement of more than 1e-11: a bug.
     """
     targets = Targets.of(targets)
     streams = range(first_stream, first_stream + len(targets))
-    with compile_clock(announce_compile) as clock:
+    with compile_clock() as clock:
         found = search(
             problem,
             targets,

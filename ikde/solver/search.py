@@ -5,26 +5,25 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.kernels.arrays import ATTEMPTS, POSE, REACHED, Floats, Ints
+from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Robot
-from ikde.model.target import Target, Targets
+from ikde.model.target import KINDS, Target, Targets
+from ikde.solver.engine_table import AUTO, ENGINES, NAMES
 from ikde.solver.engines.engine import Engine, Question
-from ikde.solver.engines.found import ENGINES, Found, make_found
+from ikde.solver.engines.found import Found, make_found
 from ikde.solver.problem import Problem
 from ikde.solver.referee import Referee
 from ikde.solver.settings import SolveSettings
 from ikde.solver.stopping import get_brake
 
-FIRST_ATTEMPTS = 300  # of `lm` under `auto`, before `memetic` takes over
-FEW = {"de": 4, "lm": 64, "analytic": 64, "memetic": 1}  # attempts after which who is unreached is asked for proof
 REFUSALS = 16  # of one row by the grader, before the next engine takes over
-HASTY = {"de": 1, "lm": 64, "analytic": 64, "memetic": 1}  # attempts between two looks at the clock: milliseconds
 
 
 def search(
@@ -53,53 +52,47 @@ def search(
     referee = Referee(problem, targets, found)
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
     question = Question(problem, targets, found, seed=seed, streams=streams)
-    for name, budget in _plan(problem, question, attempts):
+    plan = _plan(problem, question, attempts)
+    found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
+    for name, budget in plan:
         rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0) & (found.seconds < left_s))
         if not len(rows):
             break
         before, spent = found.score[rows].copy(), found.counts[:, ATTEMPTS] - first_attempt
         lanes = _Lanes(make_engine(name, question), found, threads or usable_cores(), left_s)
-        few = min(FEW[name], budget)
+        few = min(ENGINES[name].attempts_before_proof, budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         if attempts is None:
             _prove(problem, targets, found)
         lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
         _go_on(lanes, referee, found, spent, first_attempt + budget)
-        found.engine[rows[(found.score[rows] != before).any(axis=1)]] = ENGINES.index(name)
+        found.engine[rows[(found.score[rows] != before).any(axis=1)]] = NAMES.index(name)
     referee.refuse()  # also what no engine had time for has figures
     return found
 
 
 def make_engine(name: str, question: Question) -> Engine:
     """An engine by name; each brings its kernels along, so only the one that is needed is imported."""
-    if name == "lm":
-        from ikde.solver.engines.lm import DampedLeastSquares as Maker
-    elif name == "analytic":
-        from ikde.solver.engines.analytic import Analytic as Maker
-    elif name == "memetic":
-        from ikde.solver.engines.memetic import Memetic as Maker
-    else:
-        from ikde.solver.engines.de import DifferentialEvolution as Maker
-    return Maker(question)
+    module, maker = ENGINES[name].maker.split(":")
+    return getattr(import_module(f"ikde.solver.engines.{module}"), maker)(question)
 
 
 def choose_engines(
-    robot: Robot, settings: SolveSettings, *, only_poses: bool, inside: bool = True, free: set[int] | None = None
+    robot: Robot, settings: SolveSettings, kinds: set[str], *, inside: bool = True, free: set[int] | None = None
 ) -> list[str]:
     """Engines in the order in which they try; the later ones take over what the first leaves.
 
-    `inside`: the joint ranges are within the limits, where the collision checks of `lm` and `analytic` hold. `free`:
-    the joints that may move; by default those that the limits leave free.
+    `kinds` of the targets. `inside`: the joint ranges are within the limits. `free`: the joints that may move; by
+    default those that the limits leave free.
     """
-    if settings.evolves:
-        return ["de"]
     if not inside:
-        return ["memetic"]
-    if settings.method != "auto":
-        return [settings.method]
+        return [name for name in settings.engines if not ENGINES[name].stays_in_limits] or [AUTO[-1]]
+    if len(settings.engines) == 1:
+        return [*settings.engines]
     arm, free = find_ur_arm(robot), _find_free(robot.lower, robot.upper) if free is None else free
-    is_closed = only_poses and arm is not None and free == set(arm.coordinates)
-    return ["lm", *(["analytic"] if is_closed else []), "memetic"]
+    is_closed = arm is not None and free == set(arm.coordinates)
+    rows = {name: ENGINES[name] for name in settings.engines}
+    return [n for n, row in rows.items() if kinds <= {*row.target_kinds} and (is_closed or not row.is_closed_form)]
 
 
 def _find_free(lower: Floats, upper: Floats) -> set[int]:
@@ -111,19 +104,22 @@ def _plan(problem: Problem, question: Question, attempts: int | None) -> list[tu
     """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""
     robot, settings, arm = problem.robot, problem.settings, find_ur_arm(problem.robot)
     inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
-    only_poses = bool((question.targets.kind == POSE).all())
+    kinds = {KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
     free = _find_free(problem.lower, problem.upper)
-    names = choose_engines(robot, settings, only_poses=only_poses, inside=inside, free=free)
-    budgets = {name: attempts or settings.budget(name) for name in names}
-    if len(names) > 1:
-        budgets["lm"] = attempts or FIRST_ATTEMPTS
-    if arm is not None and free <= set(arm.coordinates):
-        budgets["analytic"] = 1
-    return [(name, budgets[name]) for name in names]
+    names = choose_engines(robot, settings, kinds, inside=inside, free=free)
+    stands_still = arm is not None and free <= set(arm.coordinates)
+
+    def budget(name: str) -> int:
+        if stands_still and ENGINES[name].is_closed_form:
+            return 1
+        before_next = ENGINES[name].attempts_before_next if name != names[-1] else None
+        return attempts or before_next or settings.budget(name)
+
+    return [(name, budget(name)) for name in names]
 
 
 def _prove(problem: Problem, targets: Targets, found: Found) -> None:
-    """Find out which targets are out of reach, of those that are not reached."""
+    """Find out which of the unreached targets are out of reach."""
     rows = np.flatnonzero(found.counts[:, REACHED] == 0)
     if len(rows):
         excess = reach_excess_m(problem.robot, targets.p_world_tool[rows], problem.lower, problem.upper)
@@ -135,9 +131,11 @@ class _Lanes:
 
     def __init__(self, engine: Engine, found: Found, threads: int, left_s: float) -> None:
         self._engine, self._found, self._threads, self._left_s = engine, found, threads, left_s
-        engine.prepare()
+        count = len(found.q)
         if left_s < np.inf:
-            _hurry(engine, len(found.q))
+            _hurry(engine, count)
+        # No attempts at all: what `run` needs is compiled or loaded, and no clock counts it.
+        engine.call(range(min(count, 1)), 0, np.zeros(count, dtype=np.int64))
 
     def run(self, first: int, last: Ints) -> None:
         """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet."""
@@ -177,10 +175,10 @@ def _go_on(lanes: _Lanes, referee: Referee, found: Found, spent: Ints, last_atte
 
 
 def _hurry(engine: Engine, count: int) -> None:
-    """Cut the calls so short that the clock is looked at often, and compile what the last of `count` rows need."""
-    engine.rows_per_call = size = min(engine.rows_per_call, HASTY[engine.name])
-    engine.attempts_per_call = min(engine.attempts_per_call, max(1, HASTY[engine.name] // min(size, count)))
-    engine.call(range((count - 1) // size * size, count), 0, np.zeros(count, dtype=np.int64))
+    """Cut the calls for `count` rows so short that the clock is checked often."""
+    attempts = ENGINES[engine.name].attempts_between_clocks
+    engine.rows_per_call = size = min(engine.rows_per_call, attempts)
+    engine.attempts_per_call = min(engine.attempts_per_call, max(1, attempts // min(size, count)))
 
 
 def _cut(open_rows: NDArray[np.bool_], size: int) -> list[range]:

@@ -1,7 +1,7 @@
 """How to search: plain numbers with their defaults, checked once."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any, Literal, get_args
 
@@ -10,88 +10,92 @@ import numpy as np
 from ikde.errors import InputError, nearest
 from ikde.kernels.mutation import MAX_DRAWN, REPAIRS, STRATEGIES
 from ikde.model.numbers import is_number
+from ikde.solver.engine_table import AUTO, ENGINES, Method
 
-Method = Literal["auto", "lm", "analytic", "memetic", "de"]
 Collision = Literal["reject", "feasibility"]
 Update = Literal["generation", "in_place"]
+Rule = tuple[Callable[[Any], bool], str]
+"""What is accepted, and how it is asked for."""
 
-CHOICES = {
-    "method": get_args(Method),
-    "collision": get_args(Collision),
-    "update": get_args(Update),
-    "strategy": STRATEGIES,
-    "bounds": REPAIRS,
-}
+MAX_COUNT = 10**9
+"""Of what is counted one by one."""
+MAX_POPULATION = 10**5
+"""Members, which are all in memory."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeSettings:
+    """Settings of the differential evolution (DE), the method `de`.
+
+    Raises:
+        InputError: for a population below 6, a crossover rate above 1, and so on.
+    """
+
+    strategy: str = "rand/1"
+    """Mutation: one of `kernels.mutation.STRATEGIES`."""
+    population: int = 50
+    """NP [Qiao2022]."""
+    start_share: float = 1.0
+    """Share of each joint's range, about its middle, that the first population is drawn from, (0, 1]."""
+    weight: float = 0.5
+    """F, the differential weight [Qiao2022]."""
+    crossover: float = 0.9
+    """CR, the crossover rate, [0, 1] [Qiao2022]."""
+    generations: int = 1000
+    """G, generations of one attempt [Qiao2022]."""
+    bounds: str = "redraw"
+    """What happens to a coordinate out of its range: drawn again uniformly, clipped, its parent's value, the midpoint
+    between parent and bound, or none (then a solution out of range counts as not reached). The paper does not say."""
+    update: Update = "in_place"
+    """When a better trial replaces its parent: at the end of the generation [Storn1997], or in place."""
+    collision: Collision = "feasibility"
+    """`reject`: search on the pose error alone, test the best, start again until it is free [Qiao2021].
+    `feasibility`: Deb's rules with the penetration depth, inside the selection [Deb2000]."""
+
+    def __post_init__(self) -> None:
+        check_rules(self, DE_RULES, ("settings", "de"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolveSettings:
-    """Method, tolerances, attempts, and the knobs of the differential evolution (DE), whose defaults are `KNOBS`.
+    """Method, tolerances, attempts, and the settings that belong to the method.
 
     Raises:
-        InputError: for a tolerance of 0, a population below 6, a knob that the method has not, and so on.
+        InputError: for a tolerance of 0, settings of a method that is not the one asked for, and so on.
     """
 
     method: Method = "auto"
     """The engine: `lm`, damped least squares from collision-free seeds; `analytic`, the closed form of a UR-type arm;
     `memetic`, a DE that adapts itself and is polished; `de`, that of the papers. `auto` takes the fastest that fits and
-    falls back on `memetic`; if a knob of the DE is set, it becomes `de`."""
+    falls back on `memetic`."""
     position_tolerance_m: float = 1e-5
     """Above 0."""
     orientation_tolerance_rad: float = 1e-4
     """At most pi: no two orientations are farther apart."""
     restarts: int | None = None
-    """Attempts before the budget is spent; None for the engine's own number (`RESTARTS`). Under `auto` it is
+    """Attempts before the budget is spent; None for the engine's own number (`EngineRow.attempts`). Under `auto` it is
     that of the engine that comes last."""
     timeout_s: float | None = None
     """Seconds of search, compiling not counted, after which no further attempt at a target is begun; what is reached by
     then stays. Answers may then depend on the machine and on what else it does. None: on nothing but the attempts."""
-    strategy: str | None = None
-    """Mutation: one of `kernels.mutation.STRATEGIES`."""
-    population: int | None = None
-    """NP [Qiao2022]."""
-    start_share: float | None = None
-    """Share of each joint's range, about its middle, that the first population is drawn from, (0, 1]."""
-    weight: float | None = None
-    """F, the differential weight [Qiao2022]."""
-    crossover: float | None = None
-    """CR, the crossover rate, [0, 1] [Qiao2022]."""
-    generations: int | None = None
-    """G, generations of one attempt [Qiao2022]."""
-    bounds: str | None = None
-    """What happens to a coordinate out of its range: drawn again uniformly, clipped, its parent's value, the midpoint
-    between parent and bound, or none (then a solution out of range counts as not reached). The paper does not say."""
-    update: Update | None = None
-    """When a better trial replaces its parent: at the end of the generation [Storn1997], or in place."""
-    collision: Collision | None = None
-    """`reject`: search on the pose error alone, test the best, start again until it is free [Qiao2021].
-    `feasibility`: Deb's rules with the penetration depth, inside the selection [Deb2000]."""
+    de: DeSettings | None = None
+    """Of the method `de`, which has its defaults if left out. Of another method None; but `memetic` uses `bounds` and
+    `collision`."""
 
     def __post_init__(self) -> None:
-        for name, (is_good, expected) in TOLERANCES.items():
-            value = getattr(self, name)
-            require(is_number(value) and bool(is_good(value)), name, expected, value)
-        for name, (is_good, expected) in OPTIONAL.items():
-            value = getattr(self, name)
-            require(value is None or is_good(value), name, expected, value)
-        for name, choices in CHOICES.items():
-            value = getattr(self, name)
-            require(value in choices or (value is None and name in KNOBS), name, f"one of {', '.join(choices)}", value)
-        self._settle_knobs()
+        check_rules(self, RULES, ("settings",))
+        if self.de is None and self.method == "de":
+            object.__setattr__(self, "de", DeSettings())
+        elif self.de is not None and self.method != "de":
+            self._refuse_unused(self.de)
 
-    def _settle_knobs(self) -> None:
-        """A knob under `auto` asks for `de`, whose other knobs take their defaults; other engines refuse it."""
-        given = [name for name in KNOBS if getattr(self, name) is not None]
-        if given and self.method == "auto":
-            object.__setattr__(self, "method", "de")
-        if self.method == "de":
-            for name in KNOBS:
-                object.__setattr__(self, name, self.knob(name))
-            return
-        refused = [name for name in given if name not in HEEDED.get(self.method, ())]
-        if refused:
-            own = next((name for name in refused if getattr(self, name) != KNOBS[name]), refused[0])
-            raise InputError(f"{self.method} has no such knob; it is one of the method de", ("settings", own))
+    def _refuse_unused(self, given: DeSettings) -> None:
+        shared = ENGINES[self.method].shared_settings if self.method in ENGINES else ()
+        changed = [f.name for f in fields(given) if f.name not in shared and getattr(given, f.name) != f.default]
+        if changed or not shared:
+            ask = ": ask for the method de" if self.method == "auto" else ""
+            message = f"`{(changed or ['de'])[0]}` is a setting of the method de; {self.method} does not use it{ask}"
+            raise InputError(message, ("settings", "de", *changed[:1]))
 
     @staticmethod
     @lru_cache
@@ -102,29 +106,30 @@ class SolveSettings:
             raise InputError(
                 f"no method is called {method!r}{nearest(method, get_args(Method))}; it is one of {known}", ("method",)
             )
-        if method == "de":
-            return SolveSettings(
-                method="de", position_tolerance_m=5e-5, collision="reject", update="generation", restarts=1000
-            )
-        return SolveSettings(method=method)  # type: ignore[arg-type]
+        own = ENGINES[method].defaults if method in ENGINES else {}
+        return SolveSettings(method=method).with_changes(**own)  # type: ignore[arg-type]
 
     @property
-    def evolves(self) -> bool:
-        """True if the DE is what searches: asked for by name, or by one of its knobs."""
-        return self.method == "de"
+    def engines(self) -> tuple[str, ...]:
+        """The engines that may search, in their order."""
+        return AUTO if self.method == "auto" else (self.method,)
 
-    def knob(self, name: str) -> Any:
-        """A knob of the DE, or its default."""
-        value = getattr(self, name)
-        return KNOBS[name] if value is None else value
+    @property
+    def evolution(self) -> DeSettings:
+        """Settings of the DE, or their defaults."""
+        return self.de or DeSettings()
 
     def budget(self, engine: str) -> int:
         """Attempts of one engine before it gives up."""
-        return self.restarts or RESTARTS[engine]
+        return self.restarts or ENGINES[engine].attempts
 
     def with_changes(self, **changes: object) -> "SolveSettings":
-        """A copy with some values changed; None leaves a value as it is."""
-        return replace(self, **{name: value for name, value in changes.items() if value is not None})  # type: ignore[arg-type]
+        """A copy with some values changed; None leaves a value as it is, `de={"population": 80}` the DE's others."""
+        given: dict[str, Any] = {name: value for name, value in changes.items() if value is not None}
+        if isinstance(given.get("de"), Mapping):
+            part = given.pop("de")
+            given |= {"de": replace(self.evolution, **part)} if part else {}
+        return replace(self, **given)
 
 
 def is_count(least: int, most: int) -> Callable[[Any], bool]:
@@ -139,29 +144,42 @@ def describe_count(least: int, most: int) -> str:
     return f"a whole number of at least {least}, up to {most:,}"
 
 
-def require(condition: bool, name: str, expected: str, value: object) -> None:
+def one_of(choices: tuple[str, ...]) -> Rule:
+    """A rule for words."""
+    return lambda value: value in choices, f"one of {', '.join(choices)}"
+
+
+def require(condition: bool, name: str, expected: str, value: object, where: tuple[str, ...] = ("settings",)) -> None:
     """Raise `InputError` about a setting unless the condition holds."""
     if not condition:
-        raise InputError(f"expected {expected}, got {value!r}", ("settings", name))
+        raise InputError(f"expected {expected}, got {value!r}", (*where, name))
+
+
+def check_rules(settings: Any, rules: Mapping[str, Rule], where: tuple[str, ...]) -> None:
+    """Raise `InputError` for the first setting that breaks its rule; what is None by default may be None."""
+    for name, (is_good, expected) in rules.items():
+        value, default = getattr(settings, name), type(settings).__dataclass_fields__[name].default
+        require((value is None and default is None) or bool(is_good(value)), name, expected, value, where)
 
 
 def check_seed(seed: int) -> int:
     """Return the seed; raises `InputError` unless it is a whole number, 0 <= seed < 2^64."""
     if type(seed) is int and 0 <= seed < 2**64:  # the common case at half a microsecond less
         return seed
-    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or not 0 <= seed < 2**64:
-        raise InputError(f"expected a whole number from 0 to 2^64 - 1, got {seed!r}", ("seed",))
-    return int(seed)
+    return _check_bits(seed, 64, "seed")
 
 
 def check_stream(stream: int) -> int:
     """Return the stream; raises `InputError` unless it is a whole number, 0 <= stream < 2^63."""
     if type(stream) is int and 0 <= stream < 2**63:
         return stream
-    is_whole = isinstance(stream, int | np.integer) and not isinstance(stream, bool)
-    if not (is_whole and 0 <= stream < 2**63):
-        raise InputError(f"expected a whole number from 0 to 2^63 - 1, got {stream!r}", ("stream",))
-    return int(stream)
+    return _check_bits(stream, 63, "stream")
+
+
+def _check_bits(value: Any, bits: int, name: str) -> int:
+    if not is_count(0, 2**bits - 1)(value):
+        raise InputError(f"expected a whole number from 0 to 2^{bits} - 1, got {value!r}", (name,))
+    return int(value)
 
 
 def choose_settings(settings: SolveSettings | None, method: str) -> SolveSettings:
@@ -172,36 +190,26 @@ def choose_settings(settings: SolveSettings | None, method: str) -> SolveSetting
     return settings if method == "auto" else settings.with_changes(method=method)
 
 
-MOST = 10**9
-"""Of what is counted one by one."""
-MOST_MEMBERS = 10**5
-"""Of a population, which is all in memory."""
-RESTARTS = {"de": 40, "lm": 1000, "analytic": 1000, "memetic": 20}
-KNOBS: Mapping[str, Any] = {
-    "strategy": "rand/1",
-    "population": 50,
-    "start_share": 1.0,
-    "weight": 0.5,
-    "crossover": 0.9,
-    "generations": 1000,
-    "bounds": "redraw",
-    "update": "in_place",
-    "collision": "feasibility",
+POSITIVE: Rule = (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0")
+RULES: Mapping[str, Rule] = {
+    "method": one_of(get_args(Method)),
+    "position_tolerance_m": POSITIVE,
+    "orientation_tolerance_rad": (
+        lambda value: is_number(value) and 0.0 < value <= np.pi,
+        "a number above 0, at most pi",
+    ),
+    "restarts": (is_count(1, MAX_COUNT), describe_count(1, MAX_COUNT)),
+    "timeout_s": POSITIVE,
+    "de": (lambda value: isinstance(value, DeSettings), "DeSettings"),
 }
-"""Those of the DE, with their defaults."""
-HEEDED = {"memetic": ("bounds", "collision")}
-"""Knobs that another engine heeds as well."""
-TOLERANCES: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "position_tolerance_m": (lambda value: 0.0 < value < np.inf, "a finite number above 0"),
-    "orientation_tolerance_rad": (lambda value: 0.0 < value <= np.pi, "a number above 0, at most pi"),
-}
-OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "restarts": (is_count(1, MOST), describe_count(1, MOST)),
-    "timeout_s": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
-    "population": (is_count(MAX_DRAWN + 1, MOST_MEMBERS), describe_count(MAX_DRAWN + 1, MOST_MEMBERS)),
-    "generations": (is_count(1, MOST), describe_count(1, MOST)),
-    "weight": (lambda value: is_number(value) and 0.0 < value < np.inf, "a finite number above 0"),
-    "crossover": (lambda value: is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),
+DE_RULES: Mapping[str, Rule] = {
+    "strategy": one_of(STRATEGIES),
+    "population": (is_count(MAX_DRAWN + 1, MAX_POPULATION), describe_count(MAX_DRAWN + 1, MAX_POPULATION)),
     "start_share": (lambda value: is_number(value) and 0.0 < value <= 1.0, "above 0, up to 1"),
+    "weight": POSITIVE,
+    "crossover": (lambda value: is_number(value) and 0.0 <= value <= 1.0, "0 to 1"),
+    "generations": (is_count(1, MAX_COUNT), describe_count(1, MAX_COUNT)),
+    "bounds": one_of(REPAIRS),
+    "update": one_of(get_args(Update)),
+    "collision": one_of(get_args(Collision)),
 }
-"""Numbers that may be left out: what is accepted, and how it is asked for."""

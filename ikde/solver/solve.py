@@ -1,6 +1,6 @@
 """`solve` and `solve_many`: search, grade, explain."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionChoice
@@ -26,7 +26,6 @@ def solve(
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
-    announce_compile: Callable[[], None] | None = None,
 ) -> SolveResult:
     """Find a configuration that meets the target, inside all limits and free of self-collision.
 
@@ -41,7 +40,6 @@ def solve(
             checked), or None for the robot's default.
         near: joint values to stay close to: the joint ranges are searched in growing boxes around them.
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
-        announce_compile: called once if kernels must be compiled first.
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
@@ -55,12 +53,11 @@ def solve(
     seed, stream = check_seed(seed), check_stream(stream)
     if near is None and freeze is None:
         quick = find_quick(robot, settings, method, collision, target.kind)
-        result = quick.solve(target, seed, stream, announce_compile) if quick else None
+        result = quick.solve(target, seed, stream) if quick else None
         if result is not None:
             return result
     problem = make_problem(robot, choose_settings(settings, method), collision=collision, near=near, freeze=freeze)
-    options = {"seed": seed, "first_stream": stream, "announce_compile": announce_compile}
-    return solve_rows(problem, [target], strict=True, **options).row(0)
+    return solve_rows(problem, [target], seed=seed, first_stream=stream, strict=True).row(0)
 
 
 def solve_many(
@@ -76,7 +73,6 @@ def solve_many(
     threads: int | None = None,
     explain_failures: bool = True,
     verify: Verify = "sample",
-    announce_compile: Callable[[], None] | None = None,
 ) -> Rows:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
@@ -99,5 +95,4 @@ def solve_many(
         threads=threads,
         probe=explain_failures,
         verify=verify,
-        announce_compile=announce_compile,
     )

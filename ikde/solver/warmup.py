@@ -6,14 +6,13 @@ from functools import partial
 
 from ikde.kernels.jit import compile_clock
 from ikde.model.closed_form import find_ur_arm
-from ikde.model.collision_model import CollisionChoice
+from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.solver.engine_table import ENGINES, SEVERAL
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import SolveSettings
 from ikde.solver.solve import solve, solve_many
-
-SEVERAL = 5  # targets: as many are solved side by side
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,17 +39,20 @@ def list_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
         "axis": Target(T[:3, 3], axis_world_tool=T[:3, 2]),
         "pose": Target(T[:3, 3], R_world_tool=T[:3, :3]),
     }
-    lm, closed, memetic = (SolveSettings(method=m, restarts=1) for m in ("lm", "analytic", "memetic"))
-    paper = SolveSettings.for_method("de").with_changes(restarts=1, generations=1)
+    collision = CollisionModel.of(robot, collision)  # a wrong name is found before anything is compiled
     one, many = partial(solve, robot, collision=collision), partial(_solve_many, robot, collision)
     stages = {}
-    for kind, target in targets.items():
-        stages[f"lm, one {kind}"] = partial(one, target, lm)
-        stages[f"lm, many of {kind}"] = partial(many, [target] * SEVERAL, lm)
-    if find_ur_arm(robot) is not None:
-        stages["analytic"] = partial(many, [targets["pose"]], closed)
-    stages |= {"memetic": partial(many, [targets["position"]], memetic)}
-    stages |= {"de": partial(many, [targets["position"]], paper)}
+    for name, row in ENGINES.items():
+        if row.is_closed_form and find_ur_arm(robot) is None:
+            continue
+        settings = SolveSettings.for_method(name).with_changes(restarts=1)
+        settings = settings.with_changes(de=settings.de and {"generations": 1})
+        for kind in row.compiled_kinds:
+            if row.one_by_one:
+                stages[f"{name}, one {kind}"] = partial(one, targets[kind], settings)
+                stages[f"{name}, many of {kind}"] = partial(many, [targets[kind]] * SEVERAL, settings)
+            else:
+                stages[name] = partial(many, [targets[kind]] * SEVERAL, settings)
     return [Stage(name=name, run=run) for name, run in stages.items()]
 
 
@@ -67,5 +69,5 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
 
 
 def _solve_many(robot: Robot, collision: CollisionChoice, targets: list[Target], settings: SolveSettings) -> object:
-    """Solves whose answers nobody is going to read: no search for reasons."""
+    """Solves whose answers are not read: no search for reasons."""
     return solve_many(robot, targets, settings, collision=collision, explain_failures=False)

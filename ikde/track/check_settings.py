@@ -5,7 +5,7 @@ from typing import Any
 
 from ikde.kernels.mutation import MAX_DRAWN
 from ikde.model.numbers import is_number
-from ikde.solver.settings import MOST, MOST_MEMBERS, describe_count, is_count, require
+from ikde.solver.settings import MAX_COUNT, MAX_POPULATION, describe_count, is_count, require
 
 LEAST_POPULATION = MAX_DRAWN + 1  # a mutation draws that many different members, and not the one it changes
 
@@ -13,7 +13,7 @@ LEAST_POPULATION = MAX_DRAWN + 1  # a mutation draws that many different members
 def check_counts(settings: Any, least: Mapping[str, int]) -> None:
     """Raises `InputError` for what is no whole number, too small, or too large to be meant."""
     for name, fewest in least.items():
-        value, most = getattr(settings, name), MOST_MEMBERS if name == "population" else MOST
+        value, most = getattr(settings, name), MAX_POPULATION if name == "population" else MAX_COUNT
         require(is_count(fewest, most)(value), name, describe_count(fewest, most), value)
 
 

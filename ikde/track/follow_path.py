@@ -1,7 +1,5 @@
 """`follow_path`: follow a path of the tool with the whole robot, or say where and why it ends."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from ikde.errors import InputError
@@ -38,7 +36,6 @@ def follow_path(
     collision: CollisionChoice = None,
     freeze: Freeze | None = None,
     settings: TrackSettings | None = None,
-    announce_compile: Callable[[], None] | None = None,
 ) -> Trajectory:
     """Follow the path inside all limits, free of self-collision at the samples and between them if there is a detector.
 
@@ -56,7 +53,6 @@ def follow_path(
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
         settings: of that method: `ContinuationSettings`, `OptimizedSettings` or `TypicalSettings`; None for its
             usual ones.
-        announce_compile: called once if kernels must be compiled first.
 
     Returns:
         The motion, as far as it goes; except for `typical` it never jumps. `stop` says where and why it ended
@@ -79,7 +75,7 @@ def follow_path(
     follower = make_follower(model, path, drive=drive, limits=limits, frozen=problem.frozen)
     wanted = settings if isinstance(settings, ContinuationSettings) else ContinuationSettings()
     search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), settings=wanted)
-    followed = follow_by(method, search, start, settings, announce_compile)
+    followed = follow_by(method, search, start, settings)
     return grade_motion(model, path, followed, drive=drive, method=method, limits=limits)
 
 

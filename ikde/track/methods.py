@@ -1,7 +1,6 @@
 """The three ways to follow a path, from a start that is given or the one that `continuation` finds best."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from ikde.errors import InputError
@@ -51,11 +50,10 @@ def follow_by(
     search: Continuation,
     start: Floats | None,
     settings: TrackSettings | None,
-    announce_compile: Callable[[], None] | None,
 ) -> Followed:
     """The motion by one of the methods; `start` [N] is near the first pose."""
     follower = search.follower
-    with compile_clock(announce_compile) as clock:
+    with compile_clock() as clock:
         began = time.perf_counter()
 
         def spent() -> float:

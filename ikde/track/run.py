@@ -1,7 +1,5 @@
 """A loaded track file run as it says, or with what the caller wants otherwise."""
 
-from collections.abc import Callable
-
 from ikde.errors import InputError
 from ikde.solver.joints import JointValues
 from ikde.track.follow_path import follow_path
@@ -17,7 +15,6 @@ def run_track(
     drive: Drive | None = None,
     seed: int | None = None,
     start: JointValues | None = None,
-    announce_compile: Callable[[], None] | None = None,
 ) -> Trajectory:
     """Follow a track file's path inside its limits.
 
@@ -27,7 +24,6 @@ def run_track(
         drive: `differential` or `omnidirectional`; None for the plan's.
         seed: same seed, same bits; None for the plan's.
         start: the configuration at the first pose, [N] or by joint name, m and rad; None for the plan's.
-        announce_compile: called once if kernels must be compiled first.
 
     Returns:
         The motion, as far as it goes. `stop` says where and why it ended before the path did.
@@ -49,7 +45,6 @@ def run_track(
             start=plan.start,
             seed=plan.seed,
             collision=plan.collision,
-            announce_compile=announce_compile,
         )
     except InputError as error:
         if not error.where or error.where[0] in plan.replaced:

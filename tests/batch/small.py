@@ -6,6 +6,7 @@ import ikde
 from ikde.batch.columns import GROUPS
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.sources import ListSource
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 
 ROBOT = ikde.load_robot("qiao2021")
@@ -23,9 +24,9 @@ def target_bits(targets):
 
 
 def make_arm(name="auto", detector=None, method="auto", **settings):
-    chosen = ikde.SolveSettings.for_method(method).with_changes(**settings)
+    chosen = flat_settings(ikde.SolveSettings.for_method(method), **settings)
     problem = problem_of(ROBOT, chosen, collision=detector)
-    return Arm(name=name, method=method, problem=problem)
+    return Arm(name=name, method=chosen.method, problem=problem)
 
 
 def make_batch(**changes):

@@ -60,29 +60,42 @@ def test_one_arm_is_called_like_its_method(qiao):
 
 
 def test_arms_are_laid_over_solve(qiao):
-    solve = {"method": "de", "settings": {"population": 20, "weight": 0.7}, "ranges": {"d_x": [-1, 1]}}
-    over = {"detector": "typical", "settings": {"population": 30}, "ranges": {"d_y": [-2, 2]}}
+    solve = {
+        "method": "de",
+        "settings": {"restarts": 3, "de": {"population": 20, "weight": 0.7}},
+        "ranges": {"d_x": [-1, 1]},
+    }
+    over = {"detector": "typical", "settings": {"de": {"population": 30}}, "ranges": {"d_y": [-2, 2]}}
     plain, changed = make_arms(spec(solve=solve, arms={"plain": {}, "changed": over}), qiao)
     assert (plain.method, changed.method) == ("de", "de")
     assert (plain.problem.collision.name, changed.problem.collision.name) == ("improved", "typical")
-    assert (plain.problem.settings.population, changed.problem.settings.population) == (20, 30)
-    assert changed.problem.settings.weight == 0.7
+    assert (plain.problem.settings.de.population, changed.problem.settings.de.population) == (20, 30)
+    assert (changed.problem.settings.de.weight, changed.problem.settings.restarts) == (0.7, 3)
     np.testing.assert_array_equal(plain.problem.upper[:2], [1, 5])
     np.testing.assert_array_equal(changed.problem.upper[:2], [1, 2])
 
 
 def test_an_error_stands_where_it_was_written(qiao):
-    inherited = spec(solve={"settings": {"population": 2}}, arms={"a": {"settings": {"weight": 0.6}}})
-    assert complaint(make_arms, inherited, qiao).startswith("solve.settings.population: ")
-    own = spec(solve={"settings": {"population": 20}}, arms={"a": {"settings": {"population": 2}}})
-    assert complaint(make_arms, own, qiao).startswith("arms.a.settings.population: ")
+    few, more, weight = ({"settings": {"de": de}} for de in ({"population": 2}, {"population": 20}, {"weight": 0.6}))
+    inherited = spec(solve={"method": "de", **few}, arms={"a": weight})
+    assert complaint(make_arms, inherited, qiao).startswith("solve.settings.de.population: ")
+    own = spec(solve={"method": "de", **more}, arms={"a": few})
+    assert complaint(make_arms, own, qiao).startswith("arms.a.settings.de.population: ")
 
 
-def test_a_knob_that_the_method_would_ignore_is_refused_where_it_was_written(qiao):
-    knob, lm = {"settings": {"population": 20}}, {"a": {"method": "lm"}}
-    assert complaint(make_arms, spec(solve=knob, arms=lm), qiao).startswith("solve.settings.population: lm has no such")
-    own = {"a": {"method": "memetic", **knob}}
-    assert complaint(make_arms, spec(arms=own), qiao).startswith("arms.a.settings.population: memetic has no such")
+@pytest.mark.parametrize("method", ["auto", "lm", "memetic"])
+def test_what_the_method_would_ignore_is_refused_where_it_was_written(qiao, method):
+    de, refused = {"settings": {"de": {"population": 20}}}, "`population` is a setting of the method de; "
+    inherited = spec(solve={"method": "de", **de}, arms={"a": {"method": method}})
+    assert complaint(make_arms, inherited, qiao).startswith(f"solve.settings.de.population: {refused}{method} does not")
+    own = spec(arms={"a": {"method": method, **de}})
+    assert complaint(make_arms, own, qiao).startswith(f"arms.a.settings.de.population: {refused}{method} does not")
+
+
+def test_an_arm_may_leave_out_the_settings_of_another_method(qiao):
+    solve = {"method": "de", "settings": {"restarts": 3, "de": {"population": 20}}}
+    (arm,) = make_arms(spec(solve=solve, arms={"a": {"method": "lm", "settings": {"de": None}}}), qiao)
+    assert (arm.problem.settings.de, arm.problem.settings.restarts) == (None, 3)
 
 
 def test_names_of_arms_can_name_files(qiao):
@@ -96,7 +109,7 @@ def test_names_of_arms_can_name_files(qiao):
         ({"detector": {"name": "x", "spheres": "typcal"}}, "detector.spheres: no approximation is called 'typcal'"),
         ({"detector": {"name": "none", "spheres": "typical"}}, "detector.name: 'none' is taken"),
         ({"settings": {"position_tolerance": -1}}, "settings.position_tolerance: expected a finite number above 0"),
-        ({"settings": {"strategy": "best"}}, "settings.strategy: expected one of rand/1"),
+        ({"method": "de", "settings": {"de": {"strategy": "best"}}}, "settings.de.strategy: expected one of rand/1"),
         ({"ranges": {"d_z": [0, 1]}}, "ranges.d_z: qiao2021 has no joint 'd_z' (did you mean"),
         ({"ranges": {"d_x": [1, 0]}}, "ranges.d_x: this range is upside down"),
         ({"near": {"elbow": 0}}, "near.elbow: qiao2021 has no joint 'elbow'; it has d_x"),
@@ -115,4 +128,4 @@ def test_the_description_holds_what_the_answers_hang_on(qiao):
     assert (plain["near"]["q1"], plain["near"]["q_z"]) == (1.0, 0.5)
     assert (plain["ranges"]["d_x"], plain["ranges"]["d_y"]) == ([-1.0, 1.0], [-5.0, 5.0])
     assert plain["detector"]["spheres"] == "improved"
-    assert (plain["method"], plain["settings"]["method"], plain["settings"]["population"]) == ("auto", "auto", None)
+    assert (plain["method"], plain["settings"]["method"], plain["settings"]["de"]) == ("auto", "auto", None)

@@ -16,7 +16,7 @@ targets: {box: {from: [-1, -1, 0.3], to: [1, 1, 1.2], count: 600}}
 seed: 3
 chunk: 5
 explain: false
-solve: {settings: {population: 6, generations: 1, restarts: 1}}
+solve: {method: de, settings: {restarts: 1, de: {population: 6, generations: 1}}}
 grade: [typical]
 """
 PARTS = 120

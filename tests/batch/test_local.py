@@ -14,7 +14,7 @@ from ikde.errors import InputError
 from tests.batch.small import BLINK, make_arm, make_batch
 from tests.substitutes import never
 
-ENDLESS = {"method": "de", "restarts": 10**6, "generations": 20, "population": 20, "position_tolerance_m": 1e-12}
+ENDLESS = {"restarts": 10**6, "generations": 20, "population": 20, "position_tolerance_m": 1e-12}
 ARMS = (make_arm("free", detector="none", **BLINK), make_arm("careful", **BLINK))
 
 
@@ -36,7 +36,7 @@ class Watch:
 
     def __init__(self, substitute, delay=0.0, broken=()):
         self.honest, self.delay, self.broken = solve_task, delay, broken
-        self.begun, self.inside, self.told, self.warmed, self.lock = [], {}, [], [], threading.Lock()
+        self.begun, self.inside, self.warmed, self.lock = [], {}, [], threading.Lock()
         self.is_warming, self.warm_up = False, module._warm_up
         substitute(solve_task, self)
         substitute(module._warm_up, self.watch_warm_up)
@@ -46,19 +46,18 @@ class Watch:
         self.warm_up(*arguments)
         self.is_warming = False
 
-    def __call__(self, task, threads, announce_compile):
+    def __call__(self, task, threads):
         part = task.part
         if self.is_warming:
-            self.warmed.append((part.arm, part.first, task.explain, announce_compile))
-            return self.honest(task, threads, announce_compile)
+            self.warmed.append((part.arm, part.first, task.explain))
+            return self.honest(task, threads)
         with self.lock:
-            self.told.append(announce_compile)
             self.begun.append(part)
             self.inside[part] = threads
         if part in self.broken:
             raise InputError(f"part {part.number} of {part.arm} is broken")
         time.sleep(self.delay * (part.number % 3))
-        return self.honest(task, 1, announce_compile)
+        return self.honest(task, 1)
 
 
 @pytest.mark.parametrize("threads", [2, 3, 16, None])
@@ -121,8 +120,7 @@ def test_when_nobody_takes_parts_any_more_searches_stop(monkeypatch, substitute)
     assert len(watch.begun) == 2
 
 
-def test_each_arm_is_compiled_first_and_who_waits_is_told(batch, substitute):
+def test_each_arm_is_compiled_first(batch, substitute):
     watch, parts = Watch(substitute), parts_of(batch)
-    list(solve_parts(batch, parts[3:], 2, print))
-    assert sorted(watch.warmed) == [("careful", 0, False, print), ("free", 15, False, print)]
-    assert watch.told == [None] * 7
+    list(solve_parts(batch, parts[3:], 2))
+    assert sorted(watch.warmed) == [("careful", 0, False), ("free", 15, False)]

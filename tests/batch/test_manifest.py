@@ -25,10 +25,10 @@ def test_it_says_what_runs(manifest):
     assert (manifest.targets, manifest.repeats, manifest.solves, manifest.chunk) == (12, 2, 24, 5)
     assert manifest.parts == len(list(manifest.list_parts())) == 10
     assert [(arm.name, arm.method, arm.detector) for arm in manifest.arms] == [
-        ("a", "auto", "improved"),
+        ("a", "de", "improved"),
         ("b", "de", "none"),
     ]
-    assert manifest.arms[0].settings["population"] == 6
+    assert manifest.arms[0].settings["de"]["population"] == 6
     assert manifest.graders == ("typical",)
     assert manifest.hash == make_batch().hash
     assert manifest.started.endswith("+00:00")

@@ -14,7 +14,7 @@ def test_plain_data_survives_json(qiao):
     plain = as_plain({"a": (1, np.float64(0.1)), "b": np.arange(3), "c": SolveSettings(), "d": None, "e": qiao})
     assert json.loads(json.dumps(plain)) == plain
     assert plain["a"] == [1, 0.1]
-    assert (plain["c"]["method"], plain["c"]["population"]) == ("auto", None)
+    assert (plain["c"]["method"], plain["c"]["de"]) == ("auto", None)
 
 
 def test_the_order_of_keys_does_not_matter_and_the_last_bit_does():

@@ -54,7 +54,7 @@ def test_the_recipe_is_json_and_the_batch_can_travel(qiao):
         {"explain": False},
         {"output": {"columns": ["q"]}},
         {"grade": ["typical"]},
-        {"solve": {"settings": {"population": 51}}},
+        {"solve": {"settings": {"restarts": 51}}},
         {"solve": {"near": {"q1": 0.1}}},
         {"solve": {"freeze": {"q1": 0.1}}},
         {"solve": {"ranges": {"q1": [0, 1]}}},
@@ -79,10 +79,11 @@ def test_what_changes_nothing_keeps_the_hash(qiao, keys):
     assert make(qiao, **keys).hash == make(qiao).hash
 
 
-def test_a_knob_at_its_default_changes_the_engine_under_auto_and_nothing_under_de(qiao):
-    knob, de = {"settings": {"population": 50}}, {"method": "de"}
-    assert make(qiao, solve=knob).hash != make(qiao).hash
-    assert make(qiao, solve=knob | de).hash == make(qiao, solve=de).hash
+def test_a_default_that_is_written_keeps_the_hash(qiao):
+    written, changed = ({"settings": {"de": {"population": count}}} for count in (50, 51))
+    de = {"method": "de"}
+    assert make(qiao, solve=de | written).hash == make(qiao, solve=de).hash
+    assert make(qiao, solve=de | changed).hash != make(qiao, solve=de).hash
 
 
 @pytest.mark.parametrize(

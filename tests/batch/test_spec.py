@@ -8,9 +8,10 @@ import pytest
 import yaml
 from pydantic import ValidationError
 
-from ikde.batch.spec import COLUMN_GROUPS, BatchSpec, SettingsEntry, TargetsEntry
+from ikde.batch.spec import COLUMN_GROUPS, BatchSpec, DeEntry, SettingsEntry, TargetsEntry
 from ikde.files.entries import Entry
-from ikde.solver.settings import CHOICES, SolveSettings
+from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.solver.settings import DeSettings, SolveSettings
 
 DOCUMENTATION = (Path(__file__).parents[2] / "docs" / "batch.md").read_text(encoding="utf-8")
 LEAST = {"robot": "qiao2021", "targets": {"inline": [{"position": [1, 2, 3]}]}}
@@ -32,12 +33,13 @@ def test_the_least_run_file_has_defaults():
 def test_every_setting_of_a_search_can_be_written():
     written = {field.name.removesuffix("_m").removesuffix("_rad") for field in fields(SolveSettings)}
     assert {"method", *SettingsEntry.model_fields} == written  # the method stands beside the settings
+    assert set(DeEntry.model_fields) == {field.name for field in fields(DeSettings)}
 
 
 def test_editors_are_told_the_choices():
-    properties = SettingsEntry.model_json_schema()["properties"]
-    assert tuple(properties["strategy"]["enum"][:-1]) == CHOICES["strategy"]
-    assert tuple(properties["bounds"]["enum"][:-1]) == CHOICES["bounds"]
+    properties = DeEntry.model_json_schema()["properties"]
+    assert tuple(properties["strategy"]["enum"][:-1]) == STRATEGIES
+    assert tuple(properties["bounds"]["enum"][:-1]) == REPAIRS
 
 
 @pytest.mark.parametrize("model", entries(), ids=lambda model: model.__name__)

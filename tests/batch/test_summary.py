@@ -39,7 +39,7 @@ def test_a_summary_can_be_had_again(run):
 def test_each_arm_is_counted(run):
     _, summary, rows = run
     assert [(arm.name, arm.method, arm.detector) for arm in summary.arms] == [
-        ("free", "auto", "none"),
+        ("free", "de", "none"),
         ("careful", "de", "improved"),
     ]
     for arm in summary.arms:

@@ -3,8 +3,7 @@
 from types import SimpleNamespace
 
 from ikde import __version__
-from ikde.cli import machine
-from ikde.cli.machine import PACKAGES, describe_machine
+from ikde.cli.doctor import PACKAGES, describe_machine
 
 FACTS = {
     "ikde",
@@ -44,9 +43,9 @@ def test_the_times_are_told_apart(monkeypatch):
     ticks = iter([10.0, 11.0, 12.0, 20.0])
     answers = iter([SimpleNamespace(compile_seconds=5.0, solve_seconds=1.0)])
     second = SimpleNamespace(compile_seconds=0.0, solve_seconds=0.25, reached=True)
-    monkeypatch.setattr(machine, "time", SimpleNamespace(perf_counter=lambda: next(ticks)))
+    monkeypatch.setattr("ikde.cli.doctor.time", SimpleNamespace(perf_counter=lambda: next(ticks)))
     monkeypatch.setattr("ikde.solver.solve.solve", lambda *_, **__: next(answers, second))
-    facts = describe_machine(lambda: None)
+    facts = describe_machine()
     assert [facts[f"{name}_seconds"] for name in ("import", "compile", "load", "solve")] == [1.0, 5.0, 2.0, 0.25]
 
 

@@ -26,7 +26,7 @@ default_detector: {name}
 RUN = """
 robot: qiao2021
 targets: {file: {path: points.npz, columns: {name: n, position: p}}}
-solve: {detector: none, settings: {population: 6, generations: 1, restarts: 1}}
+solve: {detector: none, method: de, settings: {restarts: 1, de: {population: 6, generations: 1}}}
 """
 
 REACHED = ("--position", 0.5, 0, 0)

@@ -15,6 +15,7 @@ from ikde.cli.options import (
     draw,
     note_unchecked,
     read_collision,
+    read_de,
     read_freeze,
     read_q,
 )
@@ -176,3 +177,26 @@ def test_nothing_is_drawn_without_a_path(qiao, tmp_path, monkeypatch):
 def test_drawing_writes_the_file(qiao, tmp_path):
     draw(tmp_path / "a.png", CollisionModel.of(qiao, "none"), qiao.home)
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_settings_of_the_de_are_read_by_their_kind():
+    text = "population=80, strategy=best/1 weight=1,crossover=.5"
+    assert read_de(text) == {"population": 80, "strategy": "best/1", "weight": 1.0, "crossover": 0.5}
+    assert read_de(None) == read_de("") == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("populaton=8", "--de: unknown key 'populaton' (did you mean 'population'?); expected strategy, population, "),
+        ("best/1", "--de: unknown key 'best/1'; expected strategy, population, start_share, weight, crossover, "),
+        ("population=8.5", "--de.population: expected population=a whole number, got 'population=8.5'"),
+        ("population", "--de.population: expected population=a whole number, got 'population'"),
+        ("weight=much", "--de.weight: expected weight=a number, got 'weight=much'"),
+        ("weight=1,weight=2", "--de.weight: this key is given twice"),
+    ],
+)
+def test_what_is_no_setting_of_the_de_is_refused(text, words):
+    with pytest.raises(InputError) as caught:
+        read_de(text)
+    assert str(caught.value).startswith(words)

@@ -4,14 +4,20 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.main import get_command
 
 import ikde
+from ikde.cli.app import app
+from ikde.solver.engine_table import ENGINES
+from ikde.solver.settings import DeSettings
 from tests.problems import are_apart
 
+PAPER = ikde.SolveSettings.for_method("de").de
 GOLDEN = Path(__file__).parent / "golden_solve.json"
 PROMISED = {
     "reached",
@@ -127,12 +133,34 @@ def test_an_axis_is_met(cli, qiao):
     assert ikde.forward(qiao, outcome.data["q"])["tool"][:3, 2] == pytest.approx([0, 0, -1], abs=2e-4)
 
 
-def test_a_knob_of_the_de_asks_for_it_and_other_engines_refuse_it(cli):
-    assert cli(*SOLVE, "--population", 50, "--json").data["method"] == "de"
-    refused = cli(*SOLVE, "--population", 50, "--method", "lm")
+def test_settings_of_the_de_are_laid_over_its_own_defaults(cli):
+    data = cli(*SOLVE, "--method", "de", "--de", "population=40,strategy=best/1", "--json").data
+    assert data["method"] == "de"
+    assert data["settings"]["de"] == asdict(PAPER) | {"population": 40, "strategy": "best/1"}
+    assert data["settings"]["position_tolerance_m"] == 5e-5
+
+
+@pytest.mark.parametrize("method", ["lm", "auto"])
+def test_other_methods_refuse_settings_of_the_de(cli, method):
+    refused = cli(*SOLVE, "--de", "population=40", "--method", method)
     assert (refused.code, refused.out) == (2, "")
-    assert "settings.population: lm has no such knob" in refused.err
+    told = f"ikde: settings.de.population: `population` is a setting of the method de; {method} does not use it"
+    assert refused.err.startswith(told)
     assert refused.err.count("\n") == 1
+
+
+def test_options_are_few_and_stand_under_headings():
+    options = [p for p in get_command(app).commands["solve"].params if p.name != "help"]
+    assert len(options) < 30
+    headings = dict.fromkeys(option.rich_help_panel for option in options)
+    assert [*headings] == ["Target", "Robot", "Collision", "Search", "Units and output"]
+
+
+def test_help_names_every_method_and_every_setting_of_the_de(cli):
+    words = " ".join(cli("solve", "--help").out.replace("│", " ").split())
+    for row in ENGINES.values():
+        assert row.brief in words
+    assert ", ".join(field.name for field in fields(DeSettings)) in words
 
 
 def test_a_timeout_ends_the_search(cli):
@@ -281,15 +309,16 @@ def test_a_figure_is_written(cli, tmp_path):
         ("--count 0", "count"),
         ("--count -2", "count"),
         ("--method ga", "method"),
-        ("--collision no", "settings.collision"),
-        ("--strategy rand/9", "settings.strategy"),
-        ("--bounds wrap", "settings.bounds"),
-        ("--update never", "settings.update"),
-        ("--population 5", "settings.population"),
-        ("--generations 0", "settings.generations"),
         ("--restarts 0", "settings.restarts"),
-        ("--weight nan", "settings.weight"),
-        ("--crossover 1.5", "settings.crossover"),
+        ("--method de --de collision=no", "settings.de.collision: expected one of reject, feasibility, got 'no'"),
+        ("--method de --de strategy=rand/9", "settings.de.strategy"),
+        ("--method de --de bounds=wrap", "settings.de.bounds"),
+        ("--method de --de update=never", "settings.de.update"),
+        ("--method de --de population=5", "settings.de.population: expected a whole number of at least 6"),
+        ("--method de --de generations=0", "settings.de.generations"),
+        ("--method de --de weight=nan", "settings.de.weight"),
+        ("--method de --de crossover=1.5", "settings.de.crossover: expected 0 to 1, got 1.5"),
+        ("--method de --de start_share=0", "settings.de.start_share"),
         ("--freeze d_z", "did you mean 'q_z'"),
         ("--freeze d_x=a", "freeze.d_x"),
         ("--freeze d_x=9", "outside the limits"),

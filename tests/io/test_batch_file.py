@@ -30,9 +30,9 @@ solve:
   settings: {position_tolerance: 0.05}
   ranges: {d_x: [-60, 60]}
 arms:
-  few: {settings: {population: 20}}
+  few: {settings: {de: {population: 20}}}
   many:
-    settings: {population: 80}
+    settings: {de: {population: 80}}
 grade: [improved]
 repeats: 2
 seed: 7
@@ -75,8 +75,8 @@ def test_the_run_of_table_4_is_as_the_paper_has_it():
     arm = batch.arms[0]
     assert (batch.name, batch.file, batch.solves) == ("Table 4", str(path), 20_000)
     assert arm.problem.collision.detector is None
-    told = {"strategy": "best/1", "update": "in_place", "bounds": "redraw", "restarts": 1, "collision": "reject"}
-    assert arm.problem.settings == ikde.SolveSettings(method="de", position_tolerance_m=5e-5, **told)
+    de = ikde.DeSettings(strategy="best/1", update="in_place", bounds="redraw", collision="reject")
+    assert arm.problem.settings == ikde.SolveSettings(method="de", position_tolerance_m=5e-5, restarts=1, de=de)
     assert [d.name for d in batch.graders] == ["typical_all", "improved_printed", "typical", "improved"]
 
 
@@ -146,8 +146,8 @@ def test_a_detector_of_a_run_file_is_never_run(tmp_path, monkeypatch):
         ("d_x: [-60, 60]", "d_x: [60]", ":11 → solve.ranges.d_x:", "expected 2 values, got 1"),
         ("d_x: [-60, 60]", "d_x: [60, -60]", ":11 → solve.ranges.d_x:", "upside down"),
         ("d_x: [-60, 60]", "dx: [-60, 60]", ":11 → solve.ranges.dx:", "no joint 'dx' (did you mean 'd_x'?)"),
-        ("population: 80", "population: 3", ":15 → arms.many.settings.population:", "at least 6"),
-        ("population: 80", "populaton: 3", ":15 → arms.many.settings.populaton:", "did you mean 'population'?"),
+        ("population: 80", "population: 3", ":15 → arms.many.settings.de.population:", "at least 6"),
+        ("population: 80", "populaton: 3", ":15 → arms.many.settings.de.populaton:", "did you mean 'population'?"),
         ("few:", "a few:", ":13 → arms.a few:", "names files"),
         ("grade: [improved]", "grade: [typ]", ":16 → grade[0]:", "no detector 'typ'"),
         ("grade: [improved]", "grade: [{name: a}]", ":16 → grade[0].spheres:", "this key is missing"),
@@ -199,7 +199,7 @@ def test_a_mapping_is_refused_by_key_alone():
     assert not isinstance(caught.value, FileError)
     assert str(caught.value) == "repeat: unknown key (did you mean 'repeats'?)"
     with pytest.raises(InputError, match=r"^solve\.freeze\.q9: qiao2021 has no joint 'q9'"):
-        load_batch({**yaml.safe_load(GOOD), "solve": {"freeze": {"q9": None}}})
+        load_batch({**yaml.safe_load(TABLE), "solve": {"freeze": {"q9": None}}})
 
 
 @pytest.mark.parametrize(("source", "kind"), [(None, "NoneType"), ([1], "list"), (b"run.yaml", "bytes")])

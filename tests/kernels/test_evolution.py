@@ -15,11 +15,11 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import pack_search
-from ikde.solver.settings import SolveSettings
 from ikde.track.typical import TypicalSettings, bound_sample
 from ikde.track.typical import pack_search as pack_sample_search
 from tests import reference
 from tests.conftest import random_q
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 from tests.random_robots import random_robot
 from tests.targets import make_target
@@ -34,13 +34,13 @@ def make_case(robot, *, rule="feasibility", freeze=None, **changes):
     """A small problem; the rule `ignore` is that of a robot without a detector."""
     chosen = {"population": 8, "generations": 10, "collision": "reject" if rule == "ignore" else rule, **changes}
     detector = "none" if rule == "ignore" else None
-    return problem_of(robot, SolveSettings(**chosen), collision=detector, freeze=freeze)
+    return problem_of(robot, flat_settings(**chosen), collision=detector, freeze=freeze)
 
 
 def run_evolve(problem, target, seed=1):
     """The kernel's outcome as the twin returns it."""
     robot, detector = pack_robot(problem.robot), problem.collision.arrays
-    work = make_workspace(robot, detector, len(problem.lower), problem.settings.population)
+    work = make_workspace(robot, detector, len(problem.lower), problem.settings.de.population)
     state = np.zeros(1, dtype=np.uint64)
     seed_stream(np.uint64(seed), np.int64(2), 3, state)
     search, lower, upper = pack_search(problem), problem.lower.copy(), problem.upper.copy()
@@ -55,7 +55,7 @@ def assert_like_twin(problem, target, seed=1):
     x_twin, scores, best_twin, meets_twin, evaluations_twin = reference.evolve(problem, target, stream)
     assert (best, meets, evaluations, state) == (best_twin, meets_twin, evaluations_twin, stream.state)
     np.testing.assert_allclose(x[best], x_twin[best], rtol=0, atol=1e-12)
-    if evaluations >= problem.settings.population:  # else the first generation is not full
+    if evaluations >= problem.settings.de.population:  # else the first generation is not full
         np.testing.assert_allclose(x, x_twin, rtol=0, atol=1e-12)
     assert tuple(score[best][::-1]) == pytest.approx(scores[best], rel=1e-12, abs=1e-12)
     return meets
@@ -201,7 +201,7 @@ HARD = Target([0.54, -0.131, 0.974])
 
 def run_lane(robot, target, blocks, *, seed=3, detector=None, near=None, **changes):
     """Run the attempts block by block: (q, score, counts, pair counts)."""
-    settings = SolveSettings(**{"population": 8, "generations": 40, "update": "generation", **changes})
+    settings = flat_settings(**{"population": 8, "generations": 40, "update": "generation", **changes})
     problem = problem_of(robot, settings, collision=detector, near=near)
     packed, spheres = pack_robot(robot), problem.collision.arrays
     q, score, counts = np.zeros(len(robot.joints)), np.full(2, np.inf), np.zeros(COUNTS, dtype=np.int64)

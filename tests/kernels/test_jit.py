@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -11,6 +12,7 @@ import pytest
 
 import ikde
 from ikde.kernels import jit
+from tests.flat_settings import flat_settings
 
 ROOT = Path(__file__).parents[2]
 needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
@@ -78,8 +80,17 @@ def test_the_clock_counts_and_announces_a_compilation_once():
 
 
 @needs_compiler
+def test_a_compilation_on_another_thread_is_announced_and_none_after_the_block():
+    announced, (double, triple) = [], (numba.njit(lambda x, n=n: n * x) for n in (2.0, 3.0))
+    with jit.compile_clock(lambda: announced.append("compiling")), ThreadPoolExecutor(1) as pool:
+        assert pool.submit(double, 1.0).result() == 2.0
+    assert triple(1.0) == 3.0
+    assert announced == ["compiling"]
+
+
+@needs_compiler
 def test_the_clock_stands_still_when_nothing_compiles(qiao):
-    target, settings = ikde.Target([0.8, 0.5, 1.0]), ikde.SolveSettings(population=8, generations=2, restarts=1)
+    target, settings = ikde.Target([0.8, 0.5, 1.0]), flat_settings(population=8, generations=2, restarts=1)
     ikde.solve(qiao, target, settings)
     announced = []
     with jit.compile_clock(lambda: announced.append("compiling")) as clock:
@@ -93,16 +104,17 @@ ONE_SIGNATURE = """
 import ikde
 from ikde.kernels.grade_many import grade_many
 from ikde.kernels.evolution import solve_lanes
+from tests.flat_settings import flat_settings
 from tests.random_robots import random_robot
 
-settings = ikde.SolveSettings(population=8, generations=5, restarts=2)
+settings = flat_settings(population=8, generations=5, restarts=2)
 for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
     p = ikde.forward(robot, robot.home)[robot.tool][:3, 3]
     pose = ikde.Target(p, R_world_tool=[[1, 0, 0], [0, 1, 0], [0, 0, 1]])
     for target in (ikde.Target(p), ikde.Target(p, axis_world_tool=[0, 0, 1]), pose):
         for detector in (None, "none"):
             for collision in ("reject", "feasibility"):
-                changed = settings.with_changes(collision=collision)
+                changed = settings.with_changes(de={"collision": collision})
                 ikde.solve(robot, target, changed, collision=detector, near=robot.home)
                 ikde.solve(robot, target, settings, collision=detector, freeze=robot.joint_names[:1])
     ikde.solve_many(robot, [pose, pose], settings, threads=2)

@@ -23,9 +23,9 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import pack_search
-from ikde.solver.settings import SolveSettings
 from tests import reference, reference_memetic
 from tests.conftest import random_q
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 from tests.random_robots import random_robot
 from tests.targets import make_target
@@ -39,7 +39,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarn
 
 
 def make_case(robot, *, detector=None, near=None, freeze=None, **changes):
-    settings = SolveSettings(bounds="midpoint", **changes)
+    settings = flat_settings(bounds="midpoint", **changes)
     return problem_of(robot, settings, collision=detector, near=near, freeze=freeze)
 
 

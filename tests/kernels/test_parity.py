@@ -10,11 +10,13 @@ import numba
 import pytest
 
 import ikde
+from tests.flat_settings import flat_settings
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """
 import json
 from tests.kernels.test_parity import solve_all
+from tests.flat_settings import flat_settings
 print(json.dumps(solve_all()))
 """
 RUN_UNCOMPILED = ("-W", "ignore:overflow encountered:RuntimeWarning")  # numpy's scalars wrap around, but complain
@@ -28,7 +30,7 @@ TARGETS = [
 
 
 def make_settings(**changes):
-    return ikde.SolveSettings(population=8, generations=5, restarts=1, **changes)
+    return flat_settings(population=8, generations=5, restarts=1, **changes)
 
 
 def solve_all():

@@ -1,6 +1,6 @@
 """One setting changed at a time: every change is one, and the distance to the print is the largest of four."""
 
-from dataclasses import fields, replace
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -20,11 +20,13 @@ GROUPS = {
 }
 
 
+def flatten(data):
+    inner = [flatten(value) if isinstance(value, dict) else {name: value} for name, value in data.items()]
+    return {name: value for part in inner for name, value in part.items()}
+
+
 def differences(setup, other):
-    own = {f.name: getattr(setup, f.name) for f in fields(setup) if f.name != "settings"}
-    theirs = {f.name: getattr(other, f.name) for f in fields(other) if f.name != "settings"}
-    own |= {f.name: getattr(setup.settings, f.name) for f in fields(setup.settings)}
-    theirs |= {f.name: getattr(other.settings, f.name) for f in fields(other.settings)}
+    own, theirs = flatten(asdict(setup)), flatten(asdict(other))
     return {name for name in own if own[name] != theirs[name]}
 
 

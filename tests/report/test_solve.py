@@ -9,6 +9,7 @@ import pytest
 import ikde
 from ikde.report.numbers import Units
 from ikde.report.solve import BAR, format_solve, solve_json
+from tests.flat_settings import flat_settings
 
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 MM_DEG = Units("mm", "deg")
@@ -22,7 +23,7 @@ def result(qiao):
 @pytest.fixture(scope="module")
 def blocked(qiao):
     """A target inside the platform, which stands still."""
-    settings = ikde.SolveSettings.for_method("auto").with_changes(restarts=2, generations=500)
+    settings = flat_settings(restarts=2, generations=500)
     return ikde.solve(qiao, ikde.Target((0.34, 0, 0.2)), settings, freeze={"d_x": 0, "d_y": 0, "q_z": 0})
 
 

@@ -16,10 +16,11 @@ from ikde.solver.figures import compute_figures
 from ikde.solver.search import Found, search
 from ikde.solver.touching import find_always_touching
 from tests.bare_robot import BARE
+from tests.flat_settings import flat_settings
 from tests.scara import make_scara
 from tests.substitutes import never
 
-QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=6, generations=500)
+QUICK = flat_settings(restarts=6, generations=500)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 INSIDE_THE_PLATFORM = ikde.Target((0.34, 0.0, 0.2))
 PARKED = {"d_x": 0.0, "d_y": 0.0, "q_z": 0.0}
@@ -88,7 +89,7 @@ def test_a_tool_that_no_joint_tilts_is_told_by_how_much_it_stays_off(quill_m):
     [("feasibility", "free d_x, d_y, q_z: a solution was found without freezing"), ("reject", None)],
 )
 def test_a_target_inside_the_platform_is_met_by_colliding_configurations_only(qiao, collision, hint):
-    settings = QUICK.with_changes(collision=collision)
+    settings = QUICK.with_changes(de={"collision": collision})
     result = ikde.solve(qiao, INSIDE_THE_PLATFORM, settings, freeze=PARKED)
     assert result.stop_reason == "self_collision"
     assert not result.reached
@@ -101,7 +102,7 @@ def test_a_target_inside_the_platform_is_met_by_colliding_configurations_only(qi
 
 
 def test_blocking_pairs_count_at_most_once_an_attempt(qiao):
-    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK.with_changes(collision="reject"), freeze=PARKED)
+    result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK.with_changes(de={"collision": "reject"}), freeze=PARKED)
     assert max(result.blocking_pairs.values()) <= result.rejected <= result.attempts
 
 
@@ -166,7 +167,7 @@ def test_a_target_that_frozen_joints_exclude_names_them(qiao):
 
 
 def test_a_spent_budget_is_called_so(qiao):
-    settings = QUICK.with_changes(restarts=1, generations=3)
+    settings = QUICK.with_changes(restarts=1, de={"generations": 3})
     result = ikde.solve(qiao, TARGET, settings)
     assert result.stop_reason == "budget"
     assert result.reason.startswith("1 attempt")
@@ -201,7 +202,7 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, subs
         return Found(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)
 
     substitute(search, after_the_first(search, probe))
-    result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, generations=3))
+    result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, de={"generations": 3}))
     assert result.stop_reason == "budget"
     assert result.hint.startswith("collision reject: a solution was found")
 
@@ -272,6 +273,6 @@ def test_short_searches_share_what_is_left_of_the_time(qiao, substitute):
         return found
 
     substitute(search, after_the_first(search, probe))
-    timed = ikde.SolveSettings(population=6, generations=1, restarts=1, timeout_s=1e6)
+    timed = flat_settings(population=6, generations=1, restarts=1, timeout_s=1e6)
     searched_s = ikde.solve(qiao, TARGET, timed, freeze=PARKED | {"q1": 0.0}).solve_seconds
     assert spent == [searched_s, searched_s + 2.0, searched_s + 4.0, searched_s + 6.0]

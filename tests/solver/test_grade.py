@@ -17,6 +17,7 @@ from ikde.solver.forward import forward
 from ikde.solver.grade import confirm, grade
 from ikde.solver.search import Found, search
 from ikde.solver.verify import verify
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 
 QUICK = ikde.SolveSettings.for_method("auto").with_changes(restarts=4)
@@ -89,7 +90,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
         return Found(q=q, counts=counts, pair_counts=pair_counts, **some)
 
     substitute(search, boast)
-    result = ikde.solve(qiao, TARGETS[0], QUICK.with_changes(restarts=1, generations=3))
+    result = ikde.solve(qiao, TARGETS[0], flat_settings(QUICK, restarts=1, generations=3))
     assert not result.reached
     assert result.verified
     assert result.position_error_m > 0.1

@@ -12,6 +12,7 @@ from ikde.model.orientation_reach import orientation_excess_rad
 from ikde.model.reach import reach_excess_m
 from ikde.solver.hints import Probe, hint_at_tolerance, meets, try_longer, try_widening
 from ikde.solver.verify import verify
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 from tests.random_robots import make_frame, make_robot, random_robot, with_ranges
 from tests.scara import make_scara
@@ -209,7 +210,7 @@ def test_a_solution_inside_the_limits_asks_for_no_wider_range(qiao, monkeypatch)
 
 @pytest.mark.parametrize("seed", [2, 5])
 def test_going_on_is_told_if_it_helps(qiao, seed):
-    coarse = ikde.SolveSettings(update="in_place", generations=400, restarts=1, position_tolerance_m=1e-5)
+    coarse = flat_settings(update="in_place", generations=400, restarts=1, position_tolerance_m=1e-5)
     missed = ikde.solve(qiao, TARGET, coarse, collision="none", seed=seed)
     assert missed.hint == "more restarts: a solution was found by going on"
     again = ikde.solve(qiao, TARGET, coarse.with_changes(restarts=25), collision="none", seed=seed)

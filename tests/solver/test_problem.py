@@ -8,6 +8,7 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.problem import pack_search
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 
 
@@ -107,12 +108,12 @@ def test_changed_settings_leave_the_rest(qiao):
     [(None, "reject", REJECT), (None, "feasibility", FEASIBILITY), ("none", "reject", IGNORE)],
 )
 def test_the_collision_rule_is_packed(qiao, detector, collision, rule):
-    settings = ikde.SolveSettings(collision=collision)
+    settings = flat_settings(collision=collision)
     assert pack_search(problem_of(qiao, settings, collision=detector)).collision_rule == rule
 
 
 def test_numbers_are_packed_as_they_are(qiao):
-    settings = ikde.SolveSettings(
+    settings = flat_settings(
         population=9, generations=8, weight=1, crossover=0, strategy="best/2", bounds="clip", update="in_place"
     )
     packed = pack_search(problem_of(qiao, settings))
@@ -122,7 +123,7 @@ def test_numbers_are_packed_as_they_are(qiao):
     assert packed.ranges[:2].tolist() == [qiao.lower.tolist(), qiao.upper.tolist()]
 
 
-def test_an_engine_without_knobs_is_packed_with_their_defaults(qiao):
+def test_an_engine_without_settings_of_the_de_is_packed_with_their_defaults(qiao):
     packed, asked = (pack_search(problem_of(qiao, ikde.SolveSettings(method=method))) for method in ("memetic", "de"))
     assert packed._replace(ranges=None) == asked._replace(ranges=None)
 

@@ -25,8 +25,8 @@ AUTO = SolveSettings.for_method("auto")
 def solve_quick(robot, target, seed, stream, detector=None):
     """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
     quick = Quick(CollisionModel.of(robot, detector), AUTO, target.kind)
-    quick.solve(target, seed, stream, None)
-    return quick.solve(target, seed, stream, None)
+    quick.solve(target, seed, stream)
+    return quick.solve(target, seed, stream)
 
 
 def solve_long(robot, target, settings, seed, stream):
@@ -100,7 +100,7 @@ def test_what_is_not_reached_goes_the_long_way(qiao):
     assert result.hint
 
 
-@pytest.mark.parametrize("settings", [SolveSettings(method="memetic"), SolveSettings(strategy="best/1")])
+@pytest.mark.parametrize("settings", [SolveSettings(method="memetic"), SolveSettings(method="de")])
 def test_other_engines_have_no_quick_way(qiao, settings, monkeypatch):
     monkeypatch.setattr("ikde.solver.quick.runs_on_tables", lambda: False)
     assert find_quick(qiao, SolveSettings(restarts=7), "auto", None, "pose") is not None
@@ -136,7 +136,7 @@ def test_written_kernels_and_their_pool_serve_the_next_process_with_the_same_bit
 
 def test_a_fixed_arm_falls_back_on_its_closed_form():
     robot = ikde.load_robot("ur5")
-    assert choose_engines(robot, AUTO, only_poses=True) == ["lm", "analytic", "memetic"]
-    assert choose_engines(robot, AUTO, only_poses=False) == ["lm", "memetic"]
+    assert choose_engines(robot, AUTO, {"pose"}) == ["lm", "analytic", "memetic"]
+    assert choose_engines(robot, AUTO, {"pose", "axis"}) == ["lm", "memetic"]
     target = make_target(robot, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
     assert ikde.solve(robot, target).method == "lm"

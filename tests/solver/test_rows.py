@@ -5,14 +5,15 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
+from ikde.solver.engine_table import NAMES
 from ikde.solver.result import STOP_REASONS
 from ikde.solver.rows import solve_rows
-from ikde.solver.search import ENGINES
 from ikde.solver.verify import verify_many
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 
-QUICK = ikde.SolveSettings(population=20, generations=200, restarts=3)
-SWIFT = ikde.SolveSettings(population=6, generations=1, restarts=1)
+QUICK = flat_settings(population=20, generations=200, restarts=3)
+SWIFT = flat_settings(population=6, generations=1, restarts=1)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(6)]
 
 
@@ -41,7 +42,7 @@ def test_columns_and_rows_tell_the_same(problem):
         checked = [getattr(result.verification, name) for result in results]
         assert getattr(rows, name) == pytest.approx(checked, abs=1e-11)
     assert [STOP_REASONS[k] for k in rows.stop_reasons] == [result.stop_reason for result in results]
-    assert [ENGINES[k] for k in rows.engines] == [result.method for result in results]
+    assert [NAMES[k] for k in rows.engines] == [result.method for result in results]
     assert [pairs[k] for k in rows.closest_pair] == [result.closest_pair for result in results]
     assert np.all(rows.found.seconds > 0.0)
 

@@ -12,14 +12,15 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
 from ikde.kernels.evolution import solve_lanes
 from ikde.model.reach import reach_excess_m
 from ikde.solver import search as module
+from ikde.solver.engine_table import ENGINES, NAMES
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
-from ikde.solver.engines.found import ENGINES
 from ikde.solver.search import choose_engines, make_engine, search, usable_cores
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
-CHEAP = ikde.SolveSettings(population=8, generations=5, restarts=3)
+CHEAP = flat_settings(population=8, generations=5, restarts=3)
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
 
 
@@ -66,12 +67,12 @@ def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao,
     assert asked == [1]
     assert np.flatnonzero(found.excess_m).tolist() == [5]
     assert found.counts[:, REACHED].tolist() == [1, 1, 1, 1, 1, 0]
-    assert found.counts[5, ATTEMPTS] == module.FEW["de"]
+    assert found.counts[5, ATTEMPTS] == ENGINES["de"].attempts_before_proof
 
 
 def test_the_first_few_attempts_are_part_of_the_budget(qiao):
     for restarts in (1, 3, 4, 5, 21):
-        settings = ikde.SolveSettings(population=6, generations=1, restarts=restarts)
+        settings = flat_settings(population=6, generations=1, restarts=restarts)
         problem = problem_of(qiao, settings)
         assert run(problem).counts[:, ATTEMPTS].tolist() == [restarts] * 5
         whole, cut = run(problem, attempts=restarts), run(problem)
@@ -80,7 +81,7 @@ def test_the_first_few_attempts_are_part_of_the_budget(qiao):
 
 @pytest.mark.parametrize("lanes", [1, 2, 3, 64])
 def test_lanes_that_share_a_call_do_not_change_the_bits(qiao, monkeypatch, lanes):
-    settings = ikde.SolveSettings(population=8, generations=40, restarts=6, position_tolerance_m=0.02)
+    settings = flat_settings(population=8, generations=40, restarts=6, position_tolerance_m=0.02)
     far = ikde.Target((50.0, 0.0, 1.0))  # proved out of reach: fewer attempts than its neighbours
     targets = [*TARGETS, far, *TARGETS]
     problem = problem_of(qiao, settings)
@@ -93,7 +94,7 @@ def test_lanes_that_share_a_call_do_not_change_the_bits(qiao, monkeypatch, lanes
 
 def test_short_searches_share_a_call_and_long_ones_do_not(qiao):
     def lanes(**changes):
-        settings = ikde.SolveSettings.for_method("de").with_changes(**changes)
+        settings = flat_settings(ikde.SolveSettings.for_method("de"), **changes)
         return de._lanes_per_call(problem_of(qiao, settings))
 
     assert lanes() == 1
@@ -117,8 +118,8 @@ FROZEN_BASE, BASE_AND_ELBOW = {"d_x", "d_y", "q_z"}, {"d_x", "d_y", "q_z", "q3"}
 def test_auto_takes_the_closed_form_where_the_arm_alone_may_move(qiao, frozen, engines):
     free = {k for k, name in enumerate(qiao.joint_names) if name not in frozen}
     auto = ikde.SolveSettings()
-    assert choose_engines(qiao, auto, only_poses=True, free=free) == engines
-    assert choose_engines(qiao, auto, only_poses=False, free=free) == ["lm", "memetic"]
+    assert choose_engines(qiao, auto, {"pose"}, free=free) == engines
+    assert choose_engines(qiao, auto, {"pose", "axis"}, free=free) == ["lm", "memetic"]
 
 
 @pytest.mark.parametrize(("frozen", "attempts"), [(FROZEN_BASE, 1), (BASE_AND_ELBOW, 1), ({"d_x"}, 20)])
@@ -202,7 +203,8 @@ def test_there_is_a_core_to_use():
 
 @pytest.mark.parametrize(("kind", "later"), [("axis", "memetic"), ("pose", "analytic")])
 def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collision(qiao, rng, monkeypatch, kind, later):
-    monkeypatch.setattr(module, "FIRST_ATTEMPTS", 1)
+    hasty = ENGINES["lm"]._replace(attempts_before_next=1)
+    monkeypatch.setattr(module, "ENGINES", {**ENGINES, "lm": hasty})
     taken_over = 0
     for stream in range(40):
         q = free_q(qiao, rng)
@@ -210,7 +212,7 @@ def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collisi
         problem = problem_of(qiao, freeze=frozen)
         found = search(problem, [make_target(qiao, q, kind)], seed=1, streams=[stream])
         assert found.counts[0, REACHED]
-        if ENGINES[found.engine[0]] == later and found.counts[0, COLLIDING]:
+        if NAMES[found.engine[0]] == later and found.counts[0, COLLIDING]:
             taken_over += 1
             assert not ikde.check(qiao, found.q[0]).collision
     assert taken_over > 0
@@ -224,16 +226,16 @@ def clock(monkeypatch):
 
 def make_endless(robot, method, **settings):
     """A question that is never answered: every configuration collides."""
-    settings = ikde.SolveSettings(method=method, **{"restarts": 10**6, "timeout_s": 5.0, **settings})
+    settings = flat_settings(ikde.SolveSettings(method=method), **{"restarts": 10**6, "timeout_s": 5.0, **settings})
     return problem_of(robot, settings, collision="single")
 
 
 BRIEF = {"population": 6, "generations": 1}
 
 
-@pytest.mark.parametrize(("method", "knobs", "attempts"), [("de", BRIEF, 1), ("lm", {}, 64), ("memetic", {}, 1)])
-def test_no_attempt_is_begun_when_the_time_is_up(qiao, clock, method, knobs, attempts):
-    problem = make_endless(qiao, method, **knobs)
+@pytest.mark.parametrize(("method", "settings", "attempts"), [("de", BRIEF, 1), ("lm", {}, 64), ("memetic", {}, 1)])
+def test_no_attempt_is_begun_when_the_time_is_up(qiao, clock, method, settings, attempts):
+    problem = make_endless(qiao, method, **settings)
     found = search(problem, TARGETS[:1], seed=1, streams=[0])
     assert found.counts[0, [REACHED, ATTEMPTS]].tolist() == [0, 5 * attempts]
     assert found.seconds.tolist() == [5.0]

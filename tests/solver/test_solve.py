@@ -157,7 +157,7 @@ def test_an_unreached_target_gives_the_best_found_and_a_reason(qiao):
 def test_the_cost_is_counted(qiao):
     result = ikde.solve(qiao, ikde.Target((0.0, 0.0, 9.0)), CHEAP)
     assert result.attempts == 1
-    assert result.evaluations >= CHEAP.population * CHEAP.generations
+    assert result.evaluations >= CHEAP.de.population * CHEAP.de.generations
     assert result.solve_seconds > 0.0
 
 

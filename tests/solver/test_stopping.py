@@ -9,9 +9,10 @@ import pytest
 import ikde
 from ikde.solver.search import search
 from ikde.solver.stopping import get_brake, stoppable
+from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 
-ENDLESS = ikde.SolveSettings(method="de", restarts=10**6, generations=20, position_tolerance_m=1e-12)
+ENDLESS = flat_settings(restarts=10**6, generations=20, position_tolerance_m=1e-12)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 
 
@@ -50,7 +51,7 @@ def test_a_search_on_another_thread_stops(qiao, threads):
 
 
 def test_a_search_that_is_not_told_to_stop_is_the_same(qiao):
-    settings = ikde.SolveSettings(method="de", population=8, generations=5, restarts=3)
+    settings = flat_settings(population=8, generations=5, restarts=3)
     problem = problem_of(qiao, settings)
     plain = search(problem, [TARGET] * 3, seed=1, streams=range(3))
     with stoppable(threading.Event()):

@@ -27,10 +27,6 @@ class Analytic:
         self._kernels, self._models = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
         self._seeds = make_seeds(problem, "pose")
 
-    def prepare(self) -> None:
-        """Compile or load the kernel."""
-        self.call(range(0), 0, np.zeros(0, dtype=np.int64))
-
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked, arm = self._question, self._arm

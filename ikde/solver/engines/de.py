@@ -22,10 +22,6 @@ class DifferentialEvolution:
         self._models, self._search = pack_searched(problem.collision), pack_search(problem)
         self.rows_per_call = _lanes_per_call(problem)
 
-    def prepare(self) -> None:
-        """Compile or load the kernel."""
-        self.call(range(0), 0, np.zeros(0, dtype=np.int64))
-
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._question
@@ -39,5 +35,5 @@ def _lanes_per_call(problem: Problem) -> int:
     """How many lanes share a call: one, unless the search is very short."""
     settings = problem.settings
     attempts = min(settings.budget("de"), DifferentialEvolution.attempts_per_call)
-    evaluations = settings.knob("population") * (settings.knob("generations") + 1) * attempts
+    evaluations = settings.evolution.population * (settings.evolution.generations + 1) * attempts
     return int(np.clip(EVALUATIONS_PER_CALL // evaluations, 1, LANES_PER_CALL))

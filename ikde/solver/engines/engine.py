@@ -23,10 +23,6 @@ class Engine(Protocol):
     attempts_per_call: int
     """Python hears Ctrl-C between calls."""
 
-    def prepare(self) -> None:
-        """Compile or load the kernel that `call` is going to need, so that no clock counts it."""
-        ...
-
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last[row] - 1, at most `attempts_per_call`, on every row that is open."""
         ...

@@ -8,8 +8,6 @@ from ikde.kernels.arrays import COUNTS, Floats, Ints
 from ikde.solver.figures import Figures, make_figures
 from ikde.solver.problem import Problem
 
-ENGINES = ("de", "lm", "analytic", "memetic")  # in the order of their numbers in `Found.engine`
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Found:
@@ -21,7 +19,7 @@ class Found:
     pair_counts: Ints  # [T, P]
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
     seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
-    engine: Ints  # [T] who answered: index into `ENGINES`
+    engine: Ints  # [T] which one answered: its place in `engine_table.NAMES`
     figures: Figures  # of `q`, by the grader; what it refuses is not reached
 
     def row(self, index: int) -> "Found":

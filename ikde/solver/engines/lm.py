@@ -5,11 +5,12 @@ import numpy as np
 from ikde.kernels.arrays import Ints
 from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.target import KINDS
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import Question, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.problem import pack_searched
 
-FEW = 4  # targets: so few are solved one after the other, more side by side
+ONE_BY_ONE = ENGINES["lm"].one_by_one
 
 
 class DampedLeastSquares:
@@ -29,11 +30,6 @@ class DampedLeastSquares:
             for kind, name in names.items()
         }
 
-    def prepare(self) -> None:
-        """Compile or load what solves one target, or many."""
-        rows = range(min(len(self._question.streams), FEW + 1))
-        self.call(rows, 0, np.zeros(len(self._question.streams), dtype=np.int64))
-
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._question
@@ -42,7 +38,7 @@ class DampedLeastSquares:
             attempts = asked.attempts(rows, first, stop, kind)
             settings = self._settings[kind]
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-                if len(asked.streams) > FEW:
+                if len(asked.streams) > ONE_BY_ONE:
                     where = (asked.targets, np.array([rows.start, rows.stop]))
                     which = (asked.seed, asked.streams, attempts)
                     module.solve_targets(*self._models, *where, *settings, *which, *asked.outputs)

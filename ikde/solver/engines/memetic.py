@@ -21,10 +21,6 @@ class Memetic:
         search = pack_search(problem)
         self._settings = (search, MemeticArrays(), make_descent(problem, "pose"))  # no step of it looks at a tolerance
 
-    def prepare(self) -> None:
-        """Compile or load the kernel."""
-        self.call(range(min(len(self._question.streams), 1)), 0, np.zeros(1, dtype=np.int64))
-
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._question

@@ -37,12 +37,12 @@ def test_a_file_with_brackets_is_shown_as_it_is(answers):
 def test_arms_are_compared_by_what_differs(answers):
     differing, common = tables(make_recipe(answers.manifest))
     assert column(differing, "arm") == ["free", "careful"]
-    assert column(differing, "method") == ["auto", "de"]
     assert column(differing, "detector") == ["none", "improved"]
     assert "position tolerance m" not in [column.title for column in differing.columns]
     settings = dict(common.rows)
     assert settings["settings: position tolerance m"] == "0.02"
-    assert "method" not in settings
+    assert settings["method"] == "de"
+    assert "detector" not in settings
 
 
 def test_arms_that_differ_in_nothing_say_so(answers):
@@ -55,7 +55,7 @@ def test_arms_that_differ_in_nothing_say_so(answers):
 def test_one_arm_is_described_and_not_compared(bare):
     (table,) = tables(make_recipe(bare.manifest))
     assert table.caption == "How it was solved"
-    assert dict(table.rows)["method"] == "auto"
+    assert dict(table.rows)["method"] == "de"
 
 
 def test_the_recipe_knows_more_than_the_settings(bare):

@@ -34,7 +34,6 @@ def assert_solved(question, targets):
 def run(engine, count, attempts):
     """All attempts on all rows, call by call."""
     last = np.full(count, attempts)
-    engine.prepare()
     for first in range(0, attempts, engine.attempts_per_call):
         for begin in range(0, count, engine.rows_per_call):
             engine.call(range(begin, min(begin + engine.rows_per_call, count)), first, last)

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ikde.solver.engines.found import ENGINES, make_found
-from ikde.solver.settings import RESTARTS
+from ikde.solver.engines.found import make_found
 from tests.problems import problem_of
 
 
@@ -20,7 +19,3 @@ def test_a_row_is_one_targets_share(qiao):
     found.counts[1, 2], found.q[1] = 7, 0.5
     assert found.row(1).counts.tolist() == [[0, 0, 7, 0, 0]]
     assert (found.row(1).q == 0.5).all()
-
-
-def test_every_engine_has_a_budget():
-    assert set(ENGINES) == set(RESTARTS)

@@ -3,15 +3,15 @@
 import pytest
 
 import ikde
-from ikde.solver.engines.lm import FEW, DampedLeastSquares
+from ikde.solver.engines.lm import ONE_BY_ONE, DampedLeastSquares
 from tests.solver.engines.questions import assert_solved, make_question, run
 
 KINDS = ("pose", "position", "axis")
 
 
-@pytest.mark.parametrize("count", [3, 3 * FEW])
+@pytest.mark.parametrize("count", [3, 3 * ONE_BY_ONE])
 def test_targets_of_all_kinds_are_solved(qiao, rng, count):
-    question, targets = make_question(qiao, rng, (KINDS * FEW)[:count])
+    question, targets = make_question(qiao, rng, (KINDS * ONE_BY_ONE)[:count])
     run(DampedLeastSquares(question), count, 512)
     assert_solved(question, targets)
 
