@@ -93,6 +93,10 @@ def _check_joints(robot: Robot) -> None:
         _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
         _require(inside, "home is outside the limits", *where, "home")
+        for key in ("max_speed", "max_acceleration"):
+            value = getattr(joint, key)
+            is_good = value is None or bool(0.0 < value < np.inf)
+            _require(is_good, f"expected a finite number above 0, got {value}", *where, key)
 
 
 def _too_far(joint: Joint, value: float) -> str:
