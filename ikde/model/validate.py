@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from ikde.errors import InputError, nearest
+from ikde.model.base_motion import find_planar_base
 from ikde.model.collision_model import check_detector
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
-from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import FARTHEST, NO_DETECTOR, TOOL, WORLD, Frame, Joint, Pairs, Robot, SphereRow
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
