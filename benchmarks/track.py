@@ -20,9 +20,10 @@ from rich.console import Console
 from rich.table import Table
 
 from ikde.io.track_file import load_track
+from ikde.model.base_motion import Drive
 from ikde.report.track_comparison import FIGURES, list_cells
 from ikde.track.comparison import FULL, METHODS, TrackBudget, compare_methods
-from ikde.track.spec import Drive, TrackMethod
+from ikde.track.spec import TrackMethod
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "track.json"

@@ -20,7 +20,7 @@ def format_methods(record: Record, drives: Sequence[str]) -> str:
         "The paper's tool paths, 500 samples of 20 ms, by its two methods and by `continuation`: counts and extremes "
         f"over {seeds} seeds, from where `continuation` begins, graded by plain numpy; times are of the first seed, "
         "which ran alone. *A sample* of `continuation` is a step of the motion that it found, as a controller would "
-        "take it; *whole path* is all that finding it took, starts and ways back, where the other two were given "
+        "take it; *whole path* is all that finding it took, starts and backtracking, where the other two were given "
         "their start. Dead ends are random starts from which the end is not reached. "
         "*Clearance* is certified between samples, too; *σ* is the smallest singular value of the arm's Jacobian in "
         "what the path asks for. `ikde bench track` makes the same as a page with figures:",

@@ -50,16 +50,16 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.solve import solve_many as solve_many
     from ikde.solver.verify import Verification as Verification
     from ikde.solver.verify import verify as verify
-    from ikde.track.courses import ContinuationSettings as ContinuationSettings
     from ikde.track.follow_path import follow_path as follow_path
     from ikde.track.limits import MotionLimits as MotionLimits
-    from ikde.track.optimized import OptimizedSettings as OptimizedSettings
     from ikde.track.path import ToolPath as ToolPath
     from ikde.track.run import run_track as run_track
+    from ikde.track.settings import ContinuationSettings as ContinuationSettings
+    from ikde.track.settings import OptimizedSettings as OptimizedSettings
+    from ikde.track.settings import TypicalSettings as TypicalSettings
     from ikde.track.trajectory import TrackStop as TrackStop
     from ikde.track.trajectory import TrackStopReason as TrackStopReason
     from ikde.track.trajectory import Trajectory as Trajectory
-    from ikde.track.typical import TypicalSettings as TypicalSettings
 
 __version__ = "0.1.0"
 
@@ -72,9 +72,9 @@ _HOME = {
     "follow_path": "ikde.track.follow_path",
     "ToolPath": "ikde.track.path",
     "MotionLimits": "ikde.track.limits",
-    "ContinuationSettings": "ikde.track.courses",
-    "OptimizedSettings": "ikde.track.optimized",
-    "TypicalSettings": "ikde.track.typical",
+    "ContinuationSettings": "ikde.track.settings",
+    "OptimizedSettings": "ikde.track.settings",
+    "TypicalSettings": "ikde.track.settings",
     "Trajectory": "ikde.track.trajectory",
     "TrackStop": "ikde.track.trajectory",
     "TrackStopReason": "ikde.track.trajectory",

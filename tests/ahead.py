@@ -34,7 +34,7 @@ def compile_kernels():
     """All that a robot of the paper's size needs."""
     import ikde
     from ikde.solver.warmup import list_stages, warm_up
-    from ikde.track.warmup import list_track_stages
+    from ikde.track.run import list_track_stages
 
     robot = ikde.load_robot("qiao2021")
     warm_up([*list_stages(robot), *list_track_stages(robot)])

@@ -31,14 +31,14 @@ from adapters.pink_ import PinkProgram
 
 import ikde
 from ikde.io.track_file import load_track
-from ikde.track import methods
+from ikde.model.base_motion import Drive
+from ikde.track import trajectory
 from ikde.track.comparison import draw_random_starts, measure
-from ikde.track.courses import USES
 from ikde.track.follow_path import grade_motion
 from ikde.track.follower import Follower, make_follower
 from ikde.track.plan import TrackPlan
 from ikde.track.run import run_track
-from ikde.track.spec import Drive
+from ikde.track.settings import NULLSPACE_WEIGHTS
 from ikde.track.summary import summarise_track
 from ikde.track.verify_track import verify_track
 
@@ -105,9 +105,9 @@ def run_ikde(plan: TrackPlan, drive: Drive, start: np.ndarray) -> Followed:
 
 
 def run_greedy(follower: Follower, start: np.ndarray) -> Followed:
-    """Its steps alone, as it tries them first: from sample to sample, no way back."""
-    course = follower.follow(follower.begin(start, np.array(USES[0])))
-    return Followed(q=course.q[: course.last + 1], seconds=np.empty(0))
+    """Its steps alone, as it tries them first: from sample to sample, no backtracking."""
+    rollout = follower.begin(start, np.array(NULLSPACE_WEIGHTS[0])).resume()
+    return Followed(q=rollout.q, seconds=np.empty(0))
 
 
 def run_task(plan: TrackPlan, ways: list[Way], rounds: int, rng: np.random.Generator) -> dict[str, Any]:
@@ -131,10 +131,10 @@ def grade(plan: TrackPlan, way: Way, runs: list[Followed]) -> dict[str, Any]:
     """The judge's figures of a motion, and times in the middle of its rounds."""
     assert all(np.array_equal(run.q, runs[0].q) for run in runs), f"{way.name}: another motion in another round"
     first, seconds = runs[0], np.median([run.seconds for run in runs], axis=0)
-    motion = methods.Followed(q=first.q, stop=None, seconds=seconds, search_seconds=float(seconds.sum()))
-    trajectory = grade_motion(plan.collision, plan.path, motion, method=way.name, drive=way.drive, limits=plan.limits)
-    error = trajectory.error_m[1:]
-    figures = measure(summarise_track(plan.collision, trajectory))
+    motion = trajectory.Followed(q=first.q, stop=None, seconds=seconds, search_seconds=float(seconds.sum()))
+    graded = grade_motion(replace(plan, drive=way.drive), motion)
+    error = graded.error_m[1:]
+    figures = measure(summarise_track(plan.collision, graded))
     return {
         **{key: figures[key] for key in figures if key not in ("median_s", "p99_s", "stop")},
         "points_within_1_mm": int((np.linalg.norm(error, axis=1) <= NEAR_M).sum()),
@@ -148,8 +148,8 @@ def grade(plan: TrackPlan, way: Way, runs: list[Followed]) -> dict[str, Any]:
 
 def count_followed(plan: TrackPlan, ways: list[Way], count: int) -> dict[str, Any]:
     """From how many random starts each way gets to the end, and what was wrong with the rest."""
-    follower = make_follower(plan.collision, plan.path, drive="omnidirectional", limits=plan.limits)
-    starts = draw_random_starts(follower, count, plan.seed)
+    follower = make_follower(plan.with_changes(drive="omnidirectional"))
+    starts = draw_random_starts(plan, count, plan.seed)
     greedy = Way(name="ikde, its steps alone", run=partial(run_greedy, follower))
     record: dict[str, Any] = {"starts": len(starts), "ways": {}}
     for way in (ways[0], ways[1], greedy, *ways[2:]):
@@ -163,7 +163,7 @@ def count_followed(plan: TrackPlan, ways: list[Way], count: int) -> dict[str, An
 def find_fault(plan: TrackPlan, way: Way, followed: Followed) -> str:
     """`followed`, or the first of what is wrong: too short, colliding, beyond a limit, too far from the path."""
     near = replace(plan.limits, position_error_m=NEAR_M, orientation_error_rad=NEAR_RAD)
-    broken = verify_track(plan.collision, plan.path, followed.q, drive=way.drive, limits=near).breaches
+    broken = verify_track(plan.collision, plan.path, followed.q, drive=way.drive, limits=near).violations
     if len(followed.q) <= plan.path.samples:
         return "ended early"
     if broken.collision:

@@ -12,6 +12,7 @@ import numpy as np
 from ikde.model.robot import Robot
 
 LEAVES_ANSWERS_ALONE = ("title", "provenance", "wheels", "adjacent", "neighbours")  # all pairs are in `pair_lists`
+OF_TRACKS = ("max_speed", "max_acceleration")  # of joints: a batch solves for poses, not for motions
 
 
 def as_plain(value: Any) -> Any:
@@ -39,8 +40,9 @@ def ikde_version() -> str:
 
 
 def robot_digest(robot: Robot) -> str:
-    """Digest of everything about a robot that an answer depends on: not its title, wheels, reasons nor sources."""
+    """Digest of everything that an answer depends on: not title, wheels, speeds, accelerations, reasons nor sources."""
     changes = {field.name: as_plain(getattr(robot, field.name)) for field in fields(robot)}
+    changes["joints"] = [{k: v for k, v in joint.items() if k not in OF_TRACKS} for joint in changes["joints"]]
     return digest({name: value for name, value in changes.items() if name not in LEAVES_ANSWERS_ALONE})
 
 

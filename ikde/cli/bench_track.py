@@ -13,7 +13,6 @@ from ikde.cli.output import note_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
-    from ikde.track.plan import TrackPlan
     from ikde.track.spec import TrackMethod
 
 
@@ -45,7 +44,7 @@ def bench_track(
 
     gc.enable()
     chosen, budget = _read_methods(methods), QUICK if quick else FULL
-    plans = [_with_drive(load_track(path), drive) for path in tracks]
+    plans = [load_track(path).with_changes(drive=drive) for path in tracks]  # type: ignore[arg-type]
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
@@ -70,16 +69,6 @@ def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":
     if not chosen or not set(chosen) <= set(METHODS):
         raise typer.BadParameter(f"expected some of {', '.join(METHODS)}, got {text!r}", param_hint="--methods")
     return tuple(method for method in METHODS if method in chosen)
-
-
-def _with_drive(plan: "TrackPlan", drive: str | None) -> "TrackPlan":
-    from ikde.track.spec import DRIVES
-
-    if drive is None:
-        return plan
-    if drive not in DRIVES:
-        raise typer.BadParameter(f"expected one of {', '.join(DRIVES)}, got {drive!r}", param_hint="--drive")
-    return plan.with_changes(drive=drive)
 
 
 def _repeat(tracks: Sequence[Path], methods: str | None, drive: str | None, quick: bool) -> str:

@@ -1,7 +1,8 @@
 """`ikde track`: follow a path of the tool with the whole robot, into a folder that a robot could run from."""
 
 import gc
-from collections.abc import Callable, Iterator
+import shlex
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -62,16 +63,20 @@ def track(
     from ikde.report.track import format_track, track_json
 
     gc.enable()
-    plan = load_track(spec)
+    with note_compile("a minute or two"):
+        plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
+    given = {"method": method, "drive": drive, "seed": seed, "start": start}
+    units = {"unit": unit if unit != LengthUnit.m else None, "angles": angles if angles != AngleUnit.rad else None}
+    command = _repeat(spec, {**given, **units, "convention": convention})
     with open_folder(out) if out else nullcontext():
         if not plan.collision.pairs:
             note_unchecked(plan.robot)
         with _show_steps() as tell:
             tell(f"following {plan.name}")
             motion = _follow(plan)
-            page = _draw(plan, motion, tell) if out and plot else None
+            page = _draw(motion, plan.name, command, tell) if out and plot else None
         data = track_json(plan, motion)
         files = write_track(out, motion.trajectory, data, page) if out else ()
     if as_json:
@@ -90,12 +95,18 @@ def _follow(plan: "TrackPlan") -> "TrackSummary":
     return summarise_track(plan.collision, trajectory)
 
 
-def _draw(plan: "TrackPlan", motion: "TrackSummary", tell: Callable[[str], None]) -> str:
+def _repeat(spec: Path, options: Mapping[str, object]) -> str:
+    """The command that makes the page again."""
+    given = [part for key, value in options.items() if value is not None for part in (f"--{key}", str(value))]
+    return shlex.join(["ikde", "track", str(spec), *given, "--out", "FOLDER"])
+
+
+def _draw(motion: "TrackSummary", title: str, command: str, tell: Callable[[str], None]) -> str:
     from ikde.report.html import render_html
     from ikde.report.track_page import make_track_page
 
     tell("drawing")
-    return render_html(make_track_page(plan, motion))
+    return render_html(make_track_page(motion, title, command))
 
 
 @contextmanager

@@ -17,7 +17,7 @@ def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_
     from ikde.io.robots import load_robot
     from ikde.report.render import make_table, plain, render
     from ikde.solver.warmup import list_stages, warm_up
-    from ikde.track.warmup import list_track_stages
+    from ikde.track.run import list_track_stages
 
     model = load_robot(robot)
     stages = [*list_stages(model, detector), *list_track_stages(model, detector)]

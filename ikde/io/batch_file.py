@@ -21,4 +21,4 @@ def load_batch(source: str | Path | Mapping[str, Any]) -> Batch:
         FileError: for a file that cannot be read or is wrong, with its line and key.
         InputError: for a mapping that is wrong, with its key, and for what is neither path nor mapping.
     """
-    return load_plan(source, "run", BatchSpec, make_batch)[0]
+    return load_plan(source, "run", BatchSpec, make_batch)

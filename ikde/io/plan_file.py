@@ -14,7 +14,7 @@ from ikde.files.reading import read_text
 from ikde.io.robot_file import parse_robot
 from ikde.io.robots import is_file_name, load_robot
 from ikde.io.schema import Given, as_file_error
-from ikde.io.yaml_file import Document, Where, read_yaml
+from ikde.io.yaml_file import Document, read_yaml
 from ikde.model.robot import Robot
 from ikde.track.spec import TrackSpec
 
@@ -22,12 +22,7 @@ Spec = TypeVar("Spec", BatchSpec, TrackSpec)
 Plan = TypeVar("Plan")
 
 
-Blame = Callable[[str, Where], InputError]
-
-
-def load_plan(
-    source: str | Path | Mapping[str, Any], kind: str, model: type[Spec], make: Callable[..., Plan]
-) -> tuple[Plan, Blame]:
+def load_plan(source: str | Path | Mapping[str, Any], kind: str, model: type[Spec], make: Callable[..., Plan]) -> Plan:
     """Load a plan and check all of it.
 
     Args:
@@ -37,21 +32,16 @@ def load_plan(
         model: its keys.
         make: what resolves it: called with the model, the robot, and `folder` and `file` by name.
 
-    Returns:
-        The plan, and what makes an error in its place of a message and a key.
-
     Raises:
         FileError: for a file that cannot be read or is wrong, with its line and key.
         InputError: for a mapping that is wrong, with its key, and for what is neither path nor mapping.
     """
     if isinstance(source, Mapping):
-        given = Given(dict(source))
-        return _resolve(given, model, make, Path(), None), given.error
+        return _resolve(Given(dict(source)), model, make, Path(), None)
     if not isinstance(source, str | PathLike):
         raise InputError(f"expected the path of a {kind} file or a mapping, got {type(source).__name__}")
     path = Path(source)
-    document = read_yaml(path)
-    return _resolve(document, model, make, path.parent, str(path)), document.error
+    return _resolve(read_yaml(path), model, make, path.parent, str(path))
 
 
 def _resolve(

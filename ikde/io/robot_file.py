@@ -54,6 +54,8 @@ class JointEntry(SourcedEntry):
     lower: Number
     upper: Number
     home: Number = 0.0
+    max_speed: Number | None = None
+    max_acceleration: Number | None = None
 
 
 class FrameEntry(SourcedEntry):
@@ -171,8 +173,9 @@ def _to_robot(file: RobotFile) -> Robot:
 
 
 def _to_joint(name: str, entry: JointEntry, unit: float) -> Joint:
-    lower, upper, home = entry.lower * unit, entry.upper * unit, entry.home * unit
-    return Joint(name=name, kind=entry.kind, lower=lower, upper=upper, home=home)
+    keys = ("lower", "upper", "home", "max_speed", "max_acceleration")
+    given = {key: value * unit for key in keys if (value := getattr(entry, key)) is not None}
+    return Joint(name=name, kind=entry.kind, **given)
 
 
 def _to_frame(name: str, entry: FrameEntry, length: float, angle: float) -> Frame:

@@ -1,12 +1,12 @@
 """The track file: how it becomes a `TrackPlan`."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ikde.io.plan_file import load_plan
-from ikde.track.plan import TrackPlan, make_plan
+from ikde.track.make_plan import make_plan
+from ikde.track.plan import TrackPlan
 from ikde.track.spec import TrackSpec
 
 
@@ -21,5 +21,4 @@ def load_track(source: str | Path | Mapping[str, Any]) -> TrackPlan:
         FileError: for a file that cannot be read or is wrong, with its line and key.
         InputError: for a mapping that is wrong, with its key, and for what is neither path nor mapping.
     """
-    plan, blame = load_plan(source, "track", TrackSpec, make_plan)
-    return replace(plan, blame=blame)
+    return load_plan(source, "track", TrackSpec, make_plan)

@@ -61,6 +61,12 @@ class CompileClock(event.Listener):
         self._announce = announce
         self._depth = 0
         self._started = 0.0
+        self._made = time.perf_counter()
+
+    @property
+    def run_seconds(self) -> float:
+        """Wall time since the clock was made, without compiling."""
+        return time.perf_counter() - self._made - self.seconds
 
     def on_start(self, event: Any) -> None:
         """Start the clock at the outermost compilation: callees compile inside their callers."""

@@ -20,13 +20,17 @@ Spacing = Literal["touching", "even"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """One coordinate of q: its range and home value, in m (prismatic) or rad (revolute)."""
+    """One coordinate of q: its range, home value and how fast it may move, in m (prismatic) or rad (revolute) and s."""
 
     name: str
     kind: JointKind
     lower: float
     upper: float
     home: float
+    max_speed: float | None = None
+    """m/s or rad/s; None: the robot's file gives none. No solve depends on it, a track does (`MotionLimits.of`)."""
+    max_acceleration: float | None = None
+    """m/s^2 or rad/s^2, likewise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from ikde.errors import InputError, nearest
+from ikde.model.base_motion import find_planar_base
 from ikde.model.collision_model import check_detector
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
-from ikde.model.planar_base import find_planar_base
 from ikde.model.robot import FARTHEST, NO_DETECTOR, TOOL, WORLD, Frame, Joint, Pairs, Robot, SphereRow
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
@@ -93,6 +93,10 @@ def _check_joints(robot: Robot) -> None:
         _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
         _require(inside, "home is outside the limits", *where, "home")
+        for key in ("max_speed", "max_acceleration"):
+            value = getattr(joint, key)
+            is_good = value is None or bool(0.0 < value < np.inf)
+            _require(is_good, f"expected a finite number above 0, got {value}", *where, key)
 
 
 def _too_far(joint: Joint, value: float) -> str:

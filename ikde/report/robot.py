@@ -39,9 +39,7 @@ def robot_json(collision: CollisionModel) -> dict[str, Any]:
         "convention": robot.convention,
         "conventions": [robot.convention, *robot.conventions],
         "tool": robot.tool,
-        "joints": [
-            {"name": j.name, "kind": j.kind, "lower": j.lower, "upper": j.upper, "home": j.home} for j in robot.joints
-        ],
+        "joints": [asdict(joint) for joint in robot.joints],
         "frames": [
             {"name": f.name, "parent": f.parent, "p_parent_frame": f.p_parent_frame.tolist(), "joint": f.joint}
             for f in robot.frames

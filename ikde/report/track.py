@@ -16,7 +16,7 @@ from ikde.track.summary import TrackSummary, Worst
 
 MM, DEG = 1e3, 180.0 / np.pi
 WIDTH = 120
-LEAST_SINGULAR = 1e-12  # what is smaller is the rounding of 0
+MIN_SINGULAR = 1e-12  # what is smaller is the rounding of 0
 FIXED = "fixed base"
 
 Row = tuple[str, str, str]
@@ -49,21 +49,21 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "largest_error_m": dict(zip("xyz", motion.largest_axis_errors_m.tolist(), strict=True)),
         "largest_total_error_m": graded.total_error_m,
         "largest_orientation_error_rad": graded.largest_orientation_error_rad if turned else None,
-        "breaches": {name: getattr(graded.breaches, name) for name in type(graded.breaches).__slots__},
+        "violations": asdict(graded.violations),
         "accepted": graded.accepted,
         "fastest": _worst_json(motion.fastest),
         "largest_acceleration": _worst_json(motion.largest_acceleration),
         "largest_wheel_speed_rad_s": largest_wheel_speed(motion),
         "wheel_limit_rad_s": _finite(motion.wheel_limit_rad_s),
-        "least_range_left": _worst_json(motion.range_left),
-        "largest_slide_m": motion.largest_step("prismatic"),
-        "largest_turn_rad": motion.largest_step("revolute"),
+        "smallest_range_left": _worst_json(motion.range_left),
+        "largest_prismatic_step_m": motion.largest_step("prismatic"),
+        "largest_revolute_step_rad": motion.largest_step("revolute"),
         "clearance_m": graded.clearance_m,
         "closest_pair": list(motion.closest_pair) if motion.closest_pair else None,
         "certified_clearance_m": None if certificate is None else certificate.clearance_m,
         "largest_deviation_m": float(trajectory.deviation_m.max(initial=0.0)),
         "largest_deviation_rad": float(trajectory.deviation_rad.max(initial=0.0)) if turned else None,
-        "largest_distance_m": motion.farthest_m,
+        "largest_distance_m": motion.largest_distance_m,
         "largest_sideways_m_s": float(np.abs(graded.sideways_m_s).max(initial=0.0)) if wheeled else None,
         "smallest_singular_value": _finite(float(motion.singular_values.min(initial=np.inf))),
         "search_seconds": trajectory.search_seconds,
@@ -90,11 +90,11 @@ def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
         return f"[bold red]stopped after {trajectory.reached_points} {of}[/]\n{plain(trajectory.stop.text)}"
     of = f"{motion.met_points} {of}"
     if not graded.accepted:
-        broken = {name.replace("_", " "): getattr(graded.breaches, name) for name in type(graded.breaches).__slots__}
-        told = ", ".join(f"{name} {count} times" for name, count in broken.items() if count)
-        return f"[bold red]followed {of}, against its limits[/]: {told}"
+        counts = asdict(graded.violations).items()
+        broken = ", ".join(f"{name.replace('_', ' ')} {count} times" for name, count in counts if count)
+        return f"[bold red]followed {of}, against its limits[/]: {broken}"
     base = trajectory.drive if trajectory.base_joints else FIXED
-    unchecked = "" if graded.breaches.collision is not None else ", [yellow]self-collision not checked[/]"
+    unchecked = "" if graded.violations.collision is not None else ", [yellow]self-collision not checked[/]"
     return f"[bold green]followed[/]: {of}, {trajectory.path.duration_s:g} s, {base}{unchecked}"
 
 
@@ -129,21 +129,21 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
 
 def _list_limits(motion: TrackSummary) -> Iterator[Row]:
     """Ranges, the tool's distance, speeds, accelerations, wheels."""
-    left, breaches = motion.range_left, motion.verification.breaches
+    left, violations = motion.range_left, motion.verification.violations
     if motion.limits.ranges and left is not None:
         name, value, end = left
-        scale, unit = (MM, "mm") if _slides(motion, name) else (DEG, "deg")
-        outside = f", {breaches.range} outside" if breaches.range else ""
+        scale, unit = (MM, "mm") if _is_prismatic(motion, name) else (DEG, "deg")
+        outside = f", {violations.range} outside" if violations.range else ""
         yield f"least range left, {name}{outside}", f"{fixed(scale * value, 1)} {unit}", f"to {scale * end:g} {unit}"
-    farthest, most = motion.farthest_m, motion.limits.farthest_m
-    if farthest is not None and most is not None:
-        beyond = f", {breaches.distance} beyond" if breaches.distance else ""
+    distance, most = motion.largest_distance_m, motion.limits.max_distance_m
+    if distance is not None and most is not None:
+        beyond = f", {violations.distance} beyond" if violations.distance else ""
         what = f"largest distance of the tool from {motion.limits.center}{beyond}"
-        yield what, f"{MM * farthest:.2f} mm", f"{MM * most:g} mm"
+        yield what, f"{MM * distance:.2f} mm", f"{MM * most:g} mm"
     for what, worst, per in (("speed", motion.fastest, "/s"), ("acceleration", motion.largest_acceleration, "/s²")):
         if worst is not None:
             name, value, limit = worst
-            unit = ("m" if _slides(motion, name) else "rad") + per
+            unit = ("m" if _is_prismatic(motion, name) else "rad") + per
             drives = name in motion.trajectory.base_joints[:2] and motion.trajectory.drive == "differential"
             share = f", {100.0 * value / limit:.0f} %" if 0.0 < limit < np.inf else ""
             yield f"largest {what}, {'base' if drives else name}{share}", f"{value:.4g} {unit}", f"{limit:.4g} {unit}"
@@ -161,7 +161,7 @@ def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     if pair is None or clearance_m is None:
         yield "self-collision", "not checked", ""
         return
-    count = motion.verification.breaches.collision
+    count = motion.verification.violations.collision
     hits = f", {count} collide" if count else ""
     safe = f"above {MM * collision.limit_m:g} mm"
     yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe
@@ -189,7 +189,7 @@ def name_joints(motion: TrackSummary, q: Floats) -> dict[str, float]:
 
 def singular(value: float, digits: int = 3) -> str:
     """A singular value; 0 if nothing but rounding tells it from 0."""
-    return significant(value, digits) if value >= LEAST_SINGULAR else "0"
+    return significant(value, digits) if value >= MIN_SINGULAR else "0"
 
 
 def gap_mm(gap_m: float, digits: int = 2) -> str:
@@ -207,14 +207,14 @@ def _limits_json(motion: TrackSummary) -> dict[str, Any]:
         "ranges": limits.ranges,
         **{key: {joint: _finite(value) for joint, value in row.items()} or None for key, row in named.items()},
         "wheel_speed_rad_s": limits.wheel_speed_rad_s,
-        "farthest_m": limits.farthest_m,
+        "max_distance_m": limits.max_distance_m,
         "center": limits.center,
         "position_error_m": limits.position_error_m,
         "orientation_error_rad": limits.orientation_error_rad,
     }
 
 
-def _slides(motion: TrackSummary, name: str) -> bool:
+def _is_prismatic(motion: TrackSummary, name: str) -> bool:
     return motion.robot.joints[motion.robot.joint_names.index(name)].kind == "prismatic"
 
 

@@ -87,7 +87,7 @@ def make_runs_table(compared: Sequence[Compared]) -> Table:
         "joint does in one sample. Clearance is the certified one, between the samples, too. σ is the least singular "
         "value of the arm's Jacobian, in m and rad, in what the path asks for. Limits counts every joint, wheel and "
         "sample by itself. Times are those of the first seed, which ran alone: a sample of continuation is a step of "
-        "the motion that was found, the whole path all the search for it, starts and ways back; the other two were "
+        "the motion that was found, the whole path all the search for it, starts and backtracking; the other two were "
         "given their start. The typical DE moves the base freely in the plane.",
     )
 
@@ -147,7 +147,7 @@ def make_ends_table(compared: Sequence[Compared]) -> Table:
         rows=tuple(rows),
         caption="Dead ends: random starts from which a path is not followed to its end",
         note="Starts are free configurations at the first pose, near which random ones came to rest. Greedy is "
-        "`continuation` with least motion alone and no way back. Left to itself, `continuation` chooses its start "
+        "`continuation` with least motion alone and no backtracking. Left to itself, `continuation` chooses its start "
         "along the whole path; here it must take the one it is given.",
     )
 

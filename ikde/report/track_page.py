@@ -1,7 +1,6 @@
 """A motion as a page: what was measured, figures, and the robot moving."""
 
 import json
-import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -29,9 +28,8 @@ from ikde.report.page import (
     Section,
     Table,
 )
-from ikde.report.track import FIXED, gap_mm, list_figures, name_joints
+from ikde.report.track import FIXED, gap_mm, list_figures
 from ikde.scene.drawn_motion import choose_moments, draw_motion, spread_samples
-from ikde.track.plan import TrackPlan
 from ikde.track.summary import TrackSummary
 
 MOMENTS, MOMENTS_DPI = 8, 110
@@ -91,14 +89,14 @@ def animate(motion: TrackSummary, frames: int = MAX_FRAMES, prefix: str = "", ca
     )
 
 
-def make_track_page(plan: TrackPlan, motion: TrackSummary) -> Page:
-    """What came of a track, followed to its end or not, as a page."""
+def make_track_page(motion: TrackSummary, title: str, command: str) -> Page:
+    """What came of a track, followed to its end or not, as a page; `command` makes it again."""
     shown = _list_sections(motion) if motion.started else []
     return Page(
-        title=plan.name,
+        title=title,
         subtitle=_describe(motion),
         lead=(*_warn(motion), *_headline(motion)),
-        sections=(*shown, _make_recipe(plan, motion)),
+        sections=(*shown, _make_recipe(motion, command)),
         footer=f"Made by ikde {__version__}.",
     )
 
@@ -120,9 +118,9 @@ def _warn(motion: TrackSummary) -> list[Block]:
     stop = motion.trajectory.stop
     if stop is None:
         return []
-    told = "Everything below is about what was followed." if motion.started else "Nothing was followed."
-    told = f"{motion.met_points} points reached. {told}"
-    return [Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {told}")]
+    below = "Everything below is about what was followed." if motion.started else "Nothing was followed."
+    below = f"{motion.met_points} points reached. {below}"
+    return [Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {below}")]
 
 
 def _headline(motion: TrackSummary) -> list[Block]:
@@ -134,8 +132,8 @@ def _headline(motion: TrackSummary) -> list[Block]:
         Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
     ]
     items.append(_make_clearance(motion))
-    kinds = "all kinds" if graded.breaches.collision is not None else "all other kinds"
-    items.append(Number(f"{graded.breaches.total}", "limits broken", f"of {kinds}, at all samples"))
+    kinds = "all kinds" if graded.violations.collision is not None else "all other kinds"
+    items.append(Number(f"{graded.violations.total}", "limits broken", f"of {kinds}, at all samples"))
     if len(trajectory.seconds):
         most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
         items.append(
@@ -177,7 +175,7 @@ def _make_measured(motion: TrackSummary) -> Section:
     return Section("Figures", (Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption),))
 
 
-def _make_recipe(plan: TrackPlan, motion: TrackSummary) -> Section:
+def _make_recipe(motion: TrackSummary, command: str) -> Section:
     facts = [
         ("robot", verbatim(motion.robot.name)),
         ("base", _name_base(motion)),
@@ -185,20 +183,4 @@ def _make_recipe(plan: TrackPlan, motion: TrackSummary) -> Section:
         ("detector", verbatim(motion.collision.name)),
         ("time between samples", f"{1e3 * motion.trajectory.path.dt_s:g} ms"),
     ]
-    blocks: list[Block] = [Facts(tuple(facts))]
-    if plan.file:
-        blocks.append(Code(_repeat(plan, motion), "The same again"))
-    return Section("How it was made", tuple(blocks))
-
-
-def _repeat(plan: TrackPlan, motion: TrackSummary) -> str:
-    """The command that makes the page again."""
-    start = [] if plan.start is None else name_joints(motion, plan.start).items()
-    values = {
-        "method": plan.method,
-        "drive": plan.drive,
-        "seed": str(plan.seed),
-        "start": ",".join(f"{joint}={value}" for joint, value in start),
-    }
-    options = [part for key in values if key in plan.replaced for part in (f"--{key}", values[key])]
-    return shlex.join(["ikde", "track", str(plan.file), *options, "--out", "FOLDER"])
+    return Section("How it was made", (Facts(tuple(facts)), Code(command, "The same again")))

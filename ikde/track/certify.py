@@ -11,17 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
+from ikde.model.base_motion import base_twist, find_wheels, step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import expand_rows
 from ikde.model.tree import Tree, build_tree
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import compute_orientation_errors
-from ikde.track.drive import base_twist, find_wheels, step_base
 from ikde.track.path import ToolPath
 
 SHARP_M, SHARP = 1e-4, 0.02  # how near the bound shall come to the true clearance: m, and as a share of it
-MOST_HALVINGS = 14
+MAX_HALVINGS = 14
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,10 +63,10 @@ def bound_pairs(collision: CollisionModel, q: Floats) -> Floats:
     goal = max(least - max(SHARP_M, SHARP * abs(least)), 0.5 * least if least > 0.0 else -np.inf)
     which, start, end = np.arange(len(lower)), q[:-1], q[1:]
     before, after = gaps[:-1], gaps[1:]
-    for halving in range(MOST_HALVINGS + 1):
+    for halving in range(MAX_HALVINGS + 1):
         travel = np.abs(end - start) @ radii.T
         bound = 0.5 * (before + after - travel)
-        weak = (bound.min(axis=1) < goal) & (halving < MOST_HALVINGS)
+        weak = (bound.min(axis=1) < goal) & (halving < MAX_HALVINGS)
         np.minimum.at(lower, which[~weak], bound[~weak])
         if not weak.any():
             break
@@ -79,14 +79,14 @@ def bound_pairs(collision: CollisionModel, q: Floats) -> Floats:
     return lower
 
 
-def travel_radii(collision: CollisionModel, farthest: Floats) -> Floats:
-    """By how much a joint can change each pair's gap [P, N]: m a rad of a turn, 1 for a slide, else 0.
+def travel_radii(collision: CollisionModel, max_abs_q: Floats) -> Floats:
+    """By how much a joint can change each pair's gap [P, N]: m a rad if revolute, 1 if prismatic, 0 elsewhere.
 
-    `farthest` [N] is how far joints are from 0 at most, m and rad: a turn moves what a slide has carried outwards more.
+    `max_abs_q` [N], m and rad: what a prismatic joint has carried outwards, a revolute one moves more.
     """
     robot, tree = collision.robot, build_tree(collision.robot)
     centres: dict[str, list[tuple[int, Floats]]] = {}
-    for sphere in expand_rows(collision.robot, tree, collision.detector.spheres) if collision.detector else ():
+    for sphere in expand_rows(robot, tree, collision.detector.spheres) if collision.detector else ():
         centres.setdefault(sphere.component, []).append((sphere.body, sphere.p_body_sphere))
     radii = np.zeros((len(collision.pairs), len(robot.joints)))
     for row, names in zip(radii, collision.pairs, strict=True):
@@ -95,7 +95,7 @@ def travel_radii(collision: CollisionModel, farthest: Floats) -> Floats:
             for body in chain:
                 if body not in other:
                     joint = tree.bodies[body].joint
-                    row[joint] = max(_farthest(robot, tree, farthest, chain, body, p) for _, p in centres[name])
+                    row[joint] = max(_max_radius(robot, tree, max_abs_q, chain, body, p) for _, p in centres[name])
     return radii
 
 
@@ -108,23 +108,23 @@ def _chain(tree: Tree, body: int) -> list[int]:
     return chain
 
 
-def _farthest(robot: Robot, tree: Tree, farthest: Floats, chain: list[int], body: int, point: Floats) -> float:
+def _max_radius(robot: Robot, tree: Tree, max_abs_q: Floats, chain: list[int], body: int, point: Floats) -> float:
     """Largest distance from the axis of `body` that a point of the chain's first body can have."""
     joint = tree.bodies[body].joint
     if joint is None or robot.joints[joint].kind == "prismatic":
         return 1.0
     inner, length = chain[: chain.index(body)], 0.0
     for carried in inner:  # from the point towards the joint: the point may stand anywhere around each
-        length += float(np.linalg.norm(point)) + _slide(robot, tree, farthest, carried)
+        length += float(np.linalg.norm(point)) + _prismatic_travel(robot, tree, max_abs_q, carried)
         point = tree.bodies[carried].T_parent_body[:3, 3]
     axis = tree.bodies[body].axis
     return length + float(np.linalg.norm(point - (point @ axis) * axis))
 
 
-def _slide(robot: Robot, tree: Tree, farthest: Floats, body: int) -> float:
-    """How far a sliding body is from where it is at q = 0, at most, m."""
+def _prismatic_travel(robot: Robot, tree: Tree, max_abs_q: Floats, body: int) -> float:
+    """How far a prismatic body is from where it is at q = 0, at most, m."""
     joint = tree.bodies[body].joint
-    return float(farthest[joint]) if joint is not None and robot.joints[joint].kind == "prismatic" else 0.0
+    return float(max_abs_q[joint]) if joint is not None and robot.joints[joint].kind == "prismatic" else 0.0
 
 
 def halfway(robot: Robot, q: Floats, drive: str, dt_s: float) -> Floats:

@@ -14,7 +14,7 @@ from ikde.kernels.arrays import Floats
 from ikde.solver.progress import Progress
 from ikde.solver.search import usable_cores
 from ikde.solver.solve import solve_many
-from ikde.track.follower import Follower, make_follower
+from ikde.track.follower import make_follower
 from ikde.track.plan import TrackPlan
 from ikde.track.run import run_track
 from ikde.track.spec import TrackMethod
@@ -29,7 +29,7 @@ METHODS: tuple[TrackMethod, ...] = ("typical", "optimized", "continuation")
 STARTED_ANYWHERE = ("optimized", "continuation")
 """Methods for which the start matters: `typical` begins anew at every sample."""
 ONCE = EXACT.with_changes(method="lm", restarts=1)
-LEAST_MOTION = np.zeros(3)
+MIN_MOTION = np.zeros(3)
 DRAWS_PER_START = 50
 
 
@@ -81,8 +81,8 @@ def compare_methods(
             progress.advance(1)
     progress.begin(f"{plan.name}: random starts")
     ends = count_dead_ends(plan, [method for method in methods if method in STARTED_ANYWHERE], budget.starts, progress)
-    told = {"name": plan.name, "file": plan.file, "points": plan.path.samples, "dt_s": plan.path.dt_s}
-    return Compared(plan=plan, motions=motions, data={**told, "runs": runs, "dead_ends": ends})
+    about = {"name": plan.name, "file": plan.file, "points": plan.path.samples, "dt_s": plan.path.dt_s}
+    return Compared(plan=plan, motions=motions, data={**about, "runs": runs, "dead_ends": ends})
 
 
 def find_start(plan: TrackPlan) -> Floats | None:
@@ -110,7 +110,7 @@ def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item]) -> Itera
 def measure(motion: TrackSummary) -> dict[str, Any]:
     """A motion's row of the table; None where there is nothing to measure or nothing was checked."""
     graded, trajectory = motion.verification, motion.trajectory
-    broken, seconds = asdict(graded.breaches), trajectory.seconds
+    broken, seconds = asdict(graded.violations), trajectory.seconds
     return {
         "points": trajectory.path.samples,
         "reached_points": motion.met_points,
@@ -135,31 +135,32 @@ def measure(motion: TrackSummary) -> dict[str, Any]:
 
 
 def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int, progress: Progress) -> dict[str, Any]:
-    """How often each method, and the greedy follower without a way back, end early from random starts."""
-    follower = make_follower(plan.collision, plan.path, drive=plan.drive, limits=plan.limits)
-    starts = draw_random_starts(follower, count, plan.seed)
-    reached = {"greedy": [follower.follow(follower.begin(start, LEAST_MOTION)).last for start in starts]}
+    """How often each method, and the greedy follower without backtracking, end early from random starts."""
+    starts = draw_random_starts(plan, count, plan.seed)
+    follower = make_follower(plan.with_changes(method="continuation"))
+    reached = {"greedy": [follower.begin(start, MIN_MOTION).resume().last for start in starts]}
     stops, seconds = {}, {}
     for method in methods:
         motions = list(_follow_from(plan, method, starts, progress))
         seconds[method] = [motion.search_seconds for motion in motions]
         reached[method] = [motion.reached_points for motion in motions]
-        stops[method] = Counter(tell_shortly(motion.stop) for motion in motions if motion.stop)
+        stops[method] = Counter(name_stop(motion.stop) for motion in motions if motion.stop)
     early = {name: sum(points < plan.path.samples for points in ends) for name, ends in reached.items()}
     why = {name: dict(counts.most_common()) for name, counts in stops.items()}
     return {"starts": len(starts), **early, "stops": why, "reached_points": reached, "search_s": seconds}
 
 
-def draw_random_starts(follower: Follower, count: int, seed: int) -> Floats:
+def draw_random_starts(plan: TrackPlan, count: int, seed: int) -> Floats:
     """Free configurations [S, N], S <= count, at the path's first pose, where random ones come to rest."""
-    robot, target = follower.robot, follower.path.targets()[0]
-    rng, found, slides = np.random.default_rng(seed), [], follower.robot.slides
-    told = {"collision": follower.collision, "threads": 1, "explain_failures": False}
-    place = np.resize(target.p_world_tool, slides.sum())
+    robot, target = plan.robot, plan.path.targets()[0]
+    rng, found, prismatic = np.random.default_rng(seed), [], robot.slides
+    options = {"collision": plan.collision, "threads": 1, "explain_failures": False}
+    place, lower, upper = np.resize(target.p_world_tool, prismatic.sum()), robot.lower, robot.upper
     for _ in range(DRAWS_PER_START * count):
-        near = rng.uniform(robot.lower, robot.upper)
-        near[slides] = np.clip(place + rng.uniform(-1.0, 1.0, len(place)), robot.lower[slides], robot.upper[slides])
-        row = solve_many(robot, [target], ONCE, near=near, **told)
+        near = rng.uniform(lower, upper)
+        shifted = place + rng.uniform(-1.0, 1.0, len(place))
+        near[prismatic] = np.clip(shifted, lower[prismatic], upper[prismatic])
+        row = solve_many(robot, [target], ONCE, near=near, **options)
         found += list(row.q[row.reached])
         if len(found) == count:
             break
@@ -172,7 +173,7 @@ def _follow_from(plan: TrackPlan, method: TrackMethod, starts: Floats, progress:
         progress.advance(1)
 
 
-def tell_shortly(stop: TrackStop) -> str:
+def name_stop(stop: TrackStop) -> str:
     """The reason, and the pair or the limit that it names."""
     return f"{stop.reason.value} {'-'.join(stop.pair or (stop.limit or '',))}".strip()
 

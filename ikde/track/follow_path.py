@@ -1,27 +1,36 @@
 """`follow_path`: follow a path of the tool with the whole robot, or say where and why it ends."""
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.planar_base import find_planar_base
+from ikde.model.base_motion import Drive, base_joints, find_planar_base
+from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues
-from ikde.solver.problem import Freeze, make_problem
-from ikde.solver.settings import SolveSettings, check_seed
+from ikde.solver.problem import Freeze
 from ikde.track.certify import certify, measure_deviation
-from ikde.track.continuation import Continuation
-from ikde.track.courses import ContinuationSettings
-from ikde.track.drive import choose_drive
-from ikde.track.follower import make_follower
+from ikde.track.continuation import follow_continuation
+from ikde.track.follower import Follower, make_follower
 from ikde.track.limits import MotionLimits
-from ikde.track.methods import Followed, TrackSettings, check_method, follow_by
+from ikde.track.optimized import follow_optimized
 from ikde.track.path import ToolPath
-from ikde.track.spec import Drive, TrackMethod
-from ikde.track.starts import read_start
-from ikde.track.trajectory import Trajectory
+from ikde.track.plan import TrackPlan
+from ikde.track.settings import TrackSettings
+from ikde.track.spec import TrackMethod
+from ikde.track.trajectory import Followed, Trajectory
+from ikde.track.typical import follow_typical
 from ikde.track.verify_track import verify_track
+
+Method = Callable[[Follower], Followed]
+METHODS: Mapping[TrackMethod, Method] = {
+    "continuation": follow_continuation,
+    "optimized": follow_optimized,
+    "typical": follow_typical,
+}
+"""What takes a packed plan to a motion."""
 
 
 def follow_path(
@@ -43,13 +52,13 @@ def follow_path(
         robot: the robot.
         path: poses of the tool, a sample every `path.dt_s`.
         drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself. None: on arcs if
-            the robot has a base. `typical` minds no wheels and always moves every joint by itself.
+            the robot has a base. `typical` ignores it: every joint moves independently.
         method: `continuation`; or one of the paper's: `optimized`, which keeps the limits at samples only, or
-            `typical`, which goes on to the end whatever it breaks: see `Trajectory.breaches`.
-        limits: None for those of the paper (`MotionLimits.of`).
+            `typical`, which goes on to the end whatever it violates: see `Trajectory.violations`.
+        limits: None for the robot's own speeds and accelerations, and the paper's limits (`MotionLimits.of`).
         start: the configuration at the first pose [N], or by name; None for the one that `continuation` finds best.
         seed: same seed, same bits.
-        collision: as for `ikde.solve`.
+        collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
         settings: of that method: `ContinuationSettings`, `OptimizedSettings` or `TypicalSettings`; None for its
             usual ones.
@@ -64,33 +73,30 @@ def follow_path(
     for value, kind, name in ((robot, Robot, "robot"), (path, ToolPath, "path"), (limits, MotionLimits, "limits")):
         if not isinstance(value, kind) and not (value is None and name == "limits"):
             raise InputError(f"expected a {kind.__name__}, got {type(value).__name__}", (name,))
-    check_method(method, settings)
-    drive = choose_drive(robot, drive, method)
-    limits = MotionLimits.of(robot) if limits is None else limits.check(robot)
-    model = CollisionModel.of(robot, collision)
-    if start is not None:
-        start = read_start(robot, start)
-    problem = make_problem(robot, SolveSettings(), collision=model, near=start, freeze=freeze)
-    frozen = {name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen}
-    follower = make_follower(model, path, drive=drive, limits=limits, frozen=problem.frozen)
-    wanted = settings if isinstance(settings, ContinuationSettings) else ContinuationSettings()
-    search = Continuation(follower=follower, frozen=frozen, seed=check_seed(seed), settings=wanted)
-    followed = follow_by(method, search, start, settings)
-    return grade_motion(model, path, followed, drive=drive, method=method, limits=limits)
+    plan = TrackPlan.of(
+        robot,
+        path,
+        drive=drive,
+        method=method,
+        limits=limits,
+        start=start,
+        seed=seed,
+        collision=collision,
+        freeze=freeze,
+        settings=settings,
+    )
+    return follow_plan(plan)
 
 
-def grade_motion(
-    collision: CollisionModel,
-    path: ToolPath,
-    followed: Followed,
-    *,
-    drive: Drive,
-    method: str,
-    limits: MotionLimits,
-) -> Trajectory:
+def follow_plan(plan: TrackPlan) -> Trajectory:
+    """Follow a plan by its method, and grade what comes of it."""
+    return grade_motion(plan, METHODS[plan.method](make_follower(plan)))
+
+
+def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
     """The motion with what the judge and the certificate say about it."""
-    robot, q = collision.robot, followed.q
-    graded = verify_track(collision, path, q, drive=drive, limits=limits)
+    robot, path, limits, drive, q = plan.robot, plan.path, plan.limits, plan.base_drive, followed.q
+    graded = verify_track(plan.collision, path, q, drive=drive, limits=limits)
     deviation_m, deviation_rad = measure_deviation(robot, path, q, drive)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
@@ -98,7 +104,7 @@ def grade_motion(
         joint_names=robot.joint_names,
         base_joints=base_joints(robot),
         drive=drive,
-        method=method,
+        method=plan.method,
         limits=limits,
         q=q,
         v=v,
@@ -108,15 +114,10 @@ def grade_motion(
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,
         verification=graded,
-        certificate=certify(collision, q),
+        certificate=certify(plan.collision, q),
         deviation_m=deviation_m,
         deviation_rad=deviation_rad,
     )
-
-
-def base_joints(robot: Robot) -> tuple[str, ...]:
-    """Names of x, y and heading of a base that drives in the plane; none for a robot without."""
-    return tuple(robot.joint_names[k] for k in find_planar_base(robot) if k >= 0)
 
 
 def base_speeds(robot: Robot, speeds: Floats) -> tuple[Floats, Floats]:

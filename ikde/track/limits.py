@@ -11,8 +11,8 @@ from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD, Robot
 from ikde.solver.settings import SolveSettings
 
-SLIDE_SPEED_M_S = 0.5  # the print's 10 as 10 mm in a sample of 20 ms [Qiao2022, section 4]
-TURN_SPEED_RAD_S = 0.5 * np.pi
+DEFAULT_SPEED = {"prismatic": 0.5, "revolute": 0.5 * np.pi}
+"""m/s and rad/s where a robot gives none: the print's 10 as 10 mm in a sample of 20 ms [Qiao2022, section 4]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -30,12 +30,12 @@ class MotionLimits:
     held to the lower of those of x and y. 0: frozen; infinite: any."""
     acceleration: Floats | None = None
     """[N] m/s^2, rad/s^2: the speeds of two neighbouring segments differ by no more than this times dt. The first
-    segment may have any speed, and what comes after the last is not looked at: a path may begin and end in motion. The
+    segment may have any speed, and what comes after the last does not count: a path may begin and end in motion. The
     paper has no such limit."""
     wheel_speed_rad_s: float | None = None
-    """Of both wheels of a differential base (6), if the robot tells of them. The speed limits of the base imply
+    """Of both wheels of a differential base (6), if the robot's file describes them. The speed limits of the base imply
     (v + B omega) / r."""
-    farthest_m: float | None = None
+    max_distance_m: float | None = None
     """Of the tool from the platform's centre, at every sample (18): D_max, which is not printed."""
     center: str | None = None
     """The frame that (18) measures from."""
@@ -49,25 +49,30 @@ class MotionLimits:
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, _read_row(value, name, may_be_zero=name == "speed"))
-        for name in ("wheel_speed_rad_s", "farthest_m", "position_error_m", "orientation_error_rad"):
+        for name in ("wheel_speed_rad_s", "max_distance_m", "position_error_m", "orientation_error_rad"):
             value = getattr(self, name)
             if value is not None and not 0.0 < value < np.inf:
                 raise InputError(f"expected a finite number above 0, got {value!r}", ("limits", name))
         if self.orientation_error_rad > np.pi:
             message = f"expected at most pi, half a turn, got {self.orientation_error_rad!r}"
             raise InputError(message, ("limits", "orientation_error_rad"))
-        if self.farthest_m is not None and self.center is None:
+        if self.max_distance_m is not None and self.center is None:
             raise InputError("a largest distance needs the frame that it is measured from", ("limits", "center"))
 
     @classmethod
     def of(cls, robot: Robot, **changes: object) -> Self:
-        """Those of the paper for any robot: 0.5 m/s for what slides, pi/2 rad/s for what turns [Qiao2022]."""
-        speed = np.where(robot.slides, SLIDE_SPEED_M_S, TURN_SPEED_RAD_S)
-        return cls(**{"speed": speed, **changes})  # type: ignore[arg-type]
+        """The joints' own speeds and accelerations, as the robot's file gives them.
+
+        Where it gives none: 0.5 m/s for a prismatic joint, pi/2 rad/s for a revolute one [Qiao2022], any acceleration.
+        """
+        speed = [joint.max_speed or DEFAULT_SPEED[joint.kind] for joint in robot.joints]
+        acceleration = np.array([joint.max_acceleration or np.inf for joint in robot.joints])
+        own = {"speed": speed, "acceleration": acceleration if np.isfinite(acceleration).any() else None}
+        return cls(**{**own, **changes})  # type: ignore[arg-type]
 
     @property
     def tolerances(self) -> SolveSettings:
-        """What the solver is told about the errors."""
+        """The accepted errors as the solver's tolerances."""
         return SolveSettings(
             position_tolerance_m=self.position_error_m, orientation_tolerance_rad=self.orientation_error_rad
         )

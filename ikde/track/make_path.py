@@ -13,7 +13,7 @@ from ikde.files.placed import placed
 from ikde.kernels.arrays import Floats
 from ikde.track.expression import evaluate_formula
 from ikde.track.orientations import Turn, make_turn
-from ikde.track.path import MOST_SAMPLES, ToolPath
+from ikde.track.path import MAX_SAMPLES, ToolPath
 from ikde.track.segments import make_segments
 from ikde.track.shapes import follow_points, follow_segments
 from ikde.track.spec import CurveEntry, ExpressionsEntry, TrackSpec
@@ -85,8 +85,8 @@ def _follow_formulas(entry: ExpressionsEntry, spec: TrackSpec, k: Floats) -> Flo
 def _along_curve(entry: CurveEntry, spec: TrackSpec) -> Way:
     segments = make_segments(entry, spec.units, spec.dt_s)
     samples = sum(segment.samples for segment in segments)
-    if samples > MOST_SAMPLES:
-        raise InputError(f"expected up to {MOST_SAMPLES:,} samples in all", ("segments",))
+    if samples > MAX_SAMPLES:
+        raise InputError(f"expected up to {MAX_SAMPLES:,} samples in all", ("segments",))
     if spec.samples not in (None, samples):
         raise InputError(f"these take {samples} samples, not {spec.samples}: leave `samples` out", ("segments",))
     return Way(samples=samples, positions=partial(follow_segments, segments))

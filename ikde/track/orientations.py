@@ -12,8 +12,8 @@ from ikde.kernels.arrays import Floats
 from ikde.model.rotation import length, rotation_with_z
 from ikde.model.target import SHORTEST, Target, Targets
 from ikde.track.expression import evaluate_formula
+from ikde.track.slerp import PathOrientation, slerp
 from ikde.track.spec import Formula, KeyframeEntry, TurnEntry
-from ikde.track.turning import PathOrientation, turn_between
 
 Turn = tuple[PathOrientation, Floats]
 """What is asked of the orientation, and rotations [S, 3, 3]."""
@@ -57,4 +57,4 @@ def _turn_keyframes(entries: Sequence[KeyframeEntry], units: UnitsEntry, share: 
                 raise InputError("expected a later moment than that of the keyframe before", ("at",))
     orientation: PathOrientation = "axis" if targets[0].kind == "axis" else "pose"
     places = np.interp(share, [entry.at for entry in entries], np.arange(len(entries)))
-    return orientation, turn_between(orientation, Targets.of(targets).R_world_tool, places)
+    return orientation, slerp(orientation, Targets.of(targets).R_world_tool, places)

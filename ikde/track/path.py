@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.target import Targets
-from ikde.track.turning import PathOrientation, turn_between
+from ikde.track.slerp import PathOrientation, slerp
 
-MOST_SAMPLES = 10**6
-SHORTEST_STEP_S, LONGEST_STEP_S = 1e-9, 1e6
+MAX_SAMPLES = 10**6
+MIN_STEP_S, MAX_STEP_S = 1e-9, 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,15 +37,15 @@ class ToolPath:
     p_half: Floats = None  # type: ignore[assignment]
     """[K, 3] m: where the tool should be at (k + 1/2) dt; by default on the chord."""
     R_half: Floats = None  # type: ignore[assignment]
-    """[K, 3, 3]: how it should be turned there; by default on the shortest way."""
+    """[K, 3, 3]: its orientation there; by default on the shortest rotation."""
 
     def __post_init__(self) -> None:
-        if not SHORTEST_STEP_S <= self.dt_s <= LONGEST_STEP_S:
-            message = f"expected {SHORTEST_STEP_S:g} to {LONGEST_STEP_S:g} s, got {self.dt_s}"
+        if not MIN_STEP_S <= self.dt_s <= MAX_STEP_S:
+            message = f"expected {MIN_STEP_S:g} to {MAX_STEP_S:g} s, got {self.dt_s}"
             raise InputError(message, ("dt_s",))
         targets = self._read("", self.p_world_tool, self.R_world_tool)
-        if not 2 <= len(targets) <= MOST_SAMPLES + 1:
-            message = f"expected 1 to {MOST_SAMPLES:,} samples after the start, got {len(targets) - 1}"
+        if not 2 <= len(targets) <= MAX_SAMPLES + 1:
+            message = f"expected 1 to {MAX_SAMPLES:,} samples after the start, got {len(targets) - 1}"
             raise InputError(message, ("p_world_tool",))
         p, R = targets.p_world_tool, targets.R_world_tool
         middles = np.arange(0.5, len(p) - 1)
@@ -106,7 +106,7 @@ class ToolPath:
 
     def _between(self, R: Floats, at: Floats) -> Floats:
         try:
-            return turn_between(self.orientation, R, at)
+            return slerp(self.orientation, R, at)
         except InputError as error:
             raise InputError(error.message, ("R_world_tool", *error.where)) from None
 

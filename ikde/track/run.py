@@ -1,10 +1,20 @@
-"""A loaded track file run as it says, or with what the caller wants otherwise."""
+"""A loaded track file followed as it says, or with what the caller wants otherwise; and compiled ahead."""
+
+from functools import partial
+
+import numpy as np
 
 from ikde.errors import InputError
+from ikde.model.base_motion import Drive
+from ikde.model.collision_model import CollisionChoice
+from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues
-from ikde.track.follow_path import follow_path
+from ikde.solver.plain import compute_frames
+from ikde.solver.warmup import Stage
+from ikde.track.follow_path import METHODS, follow_plan
+from ikde.track.path import ToolPath
 from ikde.track.plan import TrackPlan
-from ikde.track.spec import Drive, TrackMethod
+from ikde.track.spec import TrackMethod
 from ikde.track.trajectory import Trajectory
 
 
@@ -30,23 +40,15 @@ def run_track(
 
     Raises:
         InputError: for what is no plan, an unknown method or drive, and a start that is elsewhere or collides.
-        FileError: the same, with file, line and key, if that is what the file says.
     """
     if not isinstance(plan, TrackPlan):
         raise InputError(f"expected what `load_track` gives, got {type(plan).__name__}; `follow_path` takes a path")
-    plan = plan.with_changes(method=method, drive=drive, seed=seed, start=start)
-    try:
-        return follow_path(
-            plan.robot,
-            plan.path,
-            drive=plan.drive,
-            method=plan.method,
-            limits=plan.limits,
-            start=plan.start,
-            seed=plan.seed,
-            collision=plan.collision,
-        )
-    except InputError as error:
-        if not error.where or error.where[0] in plan.replaced:
-            raise
-        raise plan.blame(error.message, error.where) from None
+    return follow_plan(plan.with_changes(method=method, drive=drive, seed=seed, start=start))
+
+
+def list_track_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
+    """What tracks compile, a stage a method: kernels are the same for either drive and every kind of path."""
+    tool = compute_frames(robot, robot.home)[robot.tool]
+    path = ToolPath.through(np.tile(tool[:3, 3], (3, 1)), dt_s=0.02)  # the robot stands still at home
+    plan = TrackPlan.of(robot, path, drive="omnidirectional", collision=collision)
+    return [Stage(name=f"track, {method}", run=partial(run_track, plan, method=method)) for method in METHODS]

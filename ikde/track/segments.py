@@ -7,7 +7,7 @@ from ikde.files.entries import UnitsEntry, only_key
 from ikde.files.placed import placed
 from ikde.files.poses import read_position
 from ikde.kernels.arrays import Floats
-from ikde.track.path import MOST_SAMPLES
+from ikde.track.path import MAX_SAMPLES
 from ikde.track.shapes import Curve, Segment, make_arc, make_arc_through, make_line, make_spline
 from ikde.track.spec import ArcEntry, ArcThroughEntry, CurveEntry, LineEntry, SegmentEntry, SplineEntry
 
@@ -28,7 +28,7 @@ def make_segments(entry: CurveEntry, units: UnitsEntry, dt_s: float) -> list[Seg
 
 
 def _count(duration_s: float, dt_s: float) -> int:
-    samples = min(duration_s / dt_s, MOST_SAMPLES + 1.0)
+    samples = min(duration_s / dt_s, MAX_SAMPLES + 1.0)
     if round(samples) < 1 or abs(samples - round(samples)) > ROUNDING:
         message = f"expected a whole number of samples of {dt_s:g} s, got {duration_s:g} s, {samples:g} samples"
         raise InputError(message, ("duration_s",))

@@ -16,10 +16,9 @@ from ikde.files.entries import (
     Vector,
 )
 from ikde.files.names import Name, Text
+from ikde.model.base_motion import Drive
 
-Drive = Literal["differential", "omnidirectional"]
 TrackMethod = Literal["continuation", "optimized", "typical"]
-DRIVES: tuple[Drive, ...] = get_args(Drive)
 TRACK_METHODS: tuple[TrackMethod, ...] = get_args(TrackMethod)
 
 Positive = Annotated[Number, Field(gt=0.0)]
@@ -163,10 +162,10 @@ class LimitsEntry(Entry):
     """Likewise, units a second squared (default: no limits)."""
     wheel_speed: Positive | None = None
     """Of a differential drive's wheels, if the robot has any: angle a second (default: as the base's speeds imply)."""
-    farthest: Positive | None = None
+    max_distance: Positive | None = None
     """Of the tool from the frame `center`, at every sample (default: any distance)."""
     center: Name | None = None
-    """The frame that `farthest` is measured from: the platform's centre."""
+    """The frame that `max_distance` is measured from: the platform's centre."""
     position_error: Positive | None = None
     """Accepted error of the tool's position along each axis, at every sample."""
     orientation_error: Positive | None = None

@@ -6,11 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.base_motion import find_wheels
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
+from ikde.solver.jacobian import smallest_singular_values
 from ikde.track.certify import Certificate
-from ikde.track.dexterity import smallest_singular_values
-from ikde.track.drive import find_wheels, implied_wheel_speed
+from ikde.track.drive import implied_wheel_speed
 from ikde.track.limits import MotionLimits
 from ikde.track.trajectory import Trajectory
 from ikde.track.verify_track import ROUNDING, TrackVerification
@@ -143,9 +144,9 @@ class TrackSummary:
         return self.robot.joint_names[joint], float(left[end, joint]), float(ends[end, joint])
 
     @property
-    def farthest_m(self) -> float | None:
+    def largest_distance_m(self) -> float | None:
         """Largest distance of the tool from the centre that it is held near, m; None if it is not, or did not start."""
-        asked = self.limits.farthest_m is not None and self.started
+        asked = self.limits.max_distance_m is not None and self.started
         return float(self.verification.distance_m.max()) if asked else None
 
 

@@ -6,11 +6,11 @@ from enum import StrEnum
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.base_motion import Drive
 from ikde.track.certify import Certificate
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
-from ikde.track.spec import Drive
-from ikde.track.verify_track import Breaches, TrackVerification
+from ikde.track.verify_track import TrackVerification, Violations
 
 
 class TrackStopReason(StrEnum):
@@ -31,7 +31,7 @@ class TrackStopReason(StrEnum):
     SELF_COLLISION = "self_collision"
     """Components collide, or it can't be excluded that they do between samples."""
     BUDGET = "budget"
-    """The attempts were spent and nothing tells why."""
+    """The attempts were spent without a reason that was found."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,12 +49,26 @@ class TrackStop:
     """Whose limit is in the way: a joint by name, `the base`, `wheels`, or the frame of a largest distance."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Followed:
+    """A motion as far as a method followed its path, and what that took; not graded yet."""
+
+    q: Floats
+    """[M + 1, N]"""
+    stop: TrackStop | None
+    """Why it ends before its path does."""
+    seconds: Floats
+    """[M] of each sample after the start."""
+    search_seconds: float
+    """Of the whole motion."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Trajectory:
     """A motion through the samples 0 .. M of a path of K: all of them, M = K, or those before the stop.
 
-    Between samples joints run evenly; the base of a differential drive runs on an arc of constant `v` and `omega`, that
-    of an omnidirectional one evenly in x, y and heading.
+    Between samples joints run linearly; the base of a differential drive runs on an arc of constant `v` and `omega`,
+    that of an omnidirectional one linearly in x, y and heading.
     """
 
     path: ToolPath
@@ -72,14 +86,14 @@ class Trajectory:
     omega: Floats
     """[M] rad/s, to the left."""
     wheel_speeds: Floats | None
-    """[M, 2] rad/s, left and right; None for an omnidirectional drive, and for a robot that tells of no wheels."""
+    """[M, 2] rad/s, left and right; None for an omnidirectional drive, and for a robot without `wheels`."""
     stop: TrackStop | None
     """Why the motion ends before its path does; None if it does not."""
     seconds: Floats
     """[M] wall time of each sample after the start, without compiling. Of `continuation`, the steps of the motion that
     was found, taken once more one by one as a controller would take them: `search_seconds` is what finding it took."""
     search_seconds: float
-    """Wall time of the whole motion: starts, all courses, ways back; without compiling and grading. Of the paper's
+    """Wall time of the whole motion: starts, all rollouts, backtracking; without compiling and grading. Of the paper's
     methods it holds `continuation`'s search for a start, if none was given."""
     verification: TrackVerification
     """What plain numpy says about the samples."""
@@ -91,8 +105,8 @@ class Trajectory:
     """[M] the same of its orientation, of what the path asks for."""
 
     def __repr__(self) -> str:
-        told = f"{self.method}, {self.drive}, {self.reached_points} of {self.path.samples} points"
-        return f"<Trajectory of {self.path.name}: {told}{', stopped' if self.stop else ''}>"
+        text = f"{self.method}, {self.drive}, {self.reached_points} of {self.path.samples} points"
+        return f"<Trajectory of {self.path.name}: {text}{', stopped' if self.stop else ''}>"
 
     @property
     def error_m(self) -> Floats:
@@ -117,9 +131,9 @@ class Trajectory:
         return sampled if sampled is None or proof is None else min(proof.clearance_m, sampled)
 
     @property
-    def breaches(self) -> Breaches:
+    def violations(self) -> Violations:
         """How often each limit is broken."""
-        return self.verification.breaches
+        return self.verification.violations
 
     @property
     def reached_points(self) -> int:
@@ -138,5 +152,5 @@ class Trajectory:
 
     @property
     def joint_speeds(self) -> Floats:
-        """[M, N] m/s and rad/s from sample k to k + 1: what even motion between them needs."""
+        """[M, N] m/s and rad/s from sample k to k + 1: what linear motion between them needs."""
         return np.diff(self.q, axis=0) / self.path.dt_s

@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
+from ikde.model.base_motion import base_twist, find_wheels, step_base, wheel_speeds
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import Bools, compute_orientation_errors
-from ikde.track.drive import base_twist, find_wheels, step_base, wheel_speeds
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 
@@ -23,7 +23,7 @@ ROUNDING = 1e-9  # share of a limit, and m or rad of a range, that rounding may 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Breaches:
+class Violations:
     """How often each limit is broken; 0 where it is kept, or off."""
 
     error: int
@@ -64,14 +64,14 @@ class TrackVerification:
     omega: Floats
     """[M] rad/s"""
     wheel_speeds: Floats
-    """[M, 2] rad/s, left and right; NaN without a base on arcs, or for a robot that tells of no wheels."""
+    """[M, 2] rad/s, left and right; NaN without a base on arcs, or for a robot without `wheels`."""
     sideways_m_s: Floats
     """[M] chord velocity across the mid heading (5); 0 without wheels."""
     gaps_m: Floats
     """[M + 1, P] clearance of each pair."""
     distance_m: Floats
     """[M + 1] of the tool from the platform's centre (18); NaN if none is named."""
-    breaches: Breaches
+    violations: Violations
 
     @cached_property
     def largest_axis_error_m(self) -> float:
@@ -96,7 +96,7 @@ class TrackVerification:
     @property
     def accepted(self) -> bool:
         """True if no limit is broken, self-collision among them if it was checked."""
-        return self.breaches.total == 0
+        return self.violations.total == 0
 
 
 def verify_track(
@@ -137,13 +137,13 @@ def verify_track(
         sideways_m_s=across,
         gaps_m=gaps,
         distance_m=distance,
-        breaches=Breaches(
+        violations=Violations(
             error=int(wrong.sum()),
             range=_count_outside(robot, q, base, v, omega, dt_s) if limits.ranges else 0,
             speed=_count_above(driven, limits.speed),
             acceleration=_count_above(np.diff(driven, axis=0) / dt_s, limits.acceleration),
             wheel=_count_above(wheels, limits.wheel_speed_rad_s),
-            distance=_count_above(distance, limits.farthest_m),
+            distance=_count_above(distance, limits.max_distance_m),
             collision=_count_collisions(gaps, collision),
             sideways=int((np.abs(across) > ROUNDING).sum()),
         ),

@@ -13,7 +13,7 @@ from ikde.files.tables import row_error
 from ikde.kernels.arrays import Floats
 from ikde.model.target import AXIS, POSITION, Target, Targets
 from ikde.track.orientations import Turn
-from ikde.track.turning import PathOrientation, turn_between
+from ikde.track.slerp import PathOrientation, slerp
 
 ASKED = {"position": "a position", "axis": "an axis", "pose": "a pose"}
 
@@ -35,7 +35,7 @@ class Waypoints:
         """Orientations at places `at` [S], 0 at the first waypoint, 1 at the next; raises `InputError` where it is."""
         orientation: PathOrientation = "axis" if self.targets.kind[0] == AXIS else "pose"
         try:
-            return orientation, turn_between(orientation, self.targets.R_world_tool, at)
+            return orientation, slerp(orientation, self.targets.R_world_tool, at)
         except InputError as error:
             raise self.blame(int(error.where[0]), error.message) from None
 

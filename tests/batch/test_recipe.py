@@ -25,6 +25,10 @@ def test_the_order_of_keys_does_not_matter_and_the_last_bit_does():
 def test_a_robot_is_its_numbers_and_not_its_title(qiao):
     assert robot_digest(qiao) == robot_digest(replace(qiao, title="another", provenance={}, wheels=None))
     assert robot_digest(qiao) == robot_digest(replace(qiao, adjacent=(), neighbours=()))
+    fast = tuple(replace(joint, max_speed=1.0, max_acceleration=2.0) for joint in qiao.joints)
+    assert robot_digest(qiao) == robot_digest(replace(qiao, joints=fast))
+    wider = (replace(qiao.joints[0], upper=np.nextafter(qiao.joints[0].upper, np.inf)), *qiao.joints[1:])
+    assert robot_digest(qiao) != robot_digest(replace(qiao, joints=wider))
     moved = replace(qiao.frames[5], p_parent_frame=np.nextafter(qiao.frames[5].p_parent_frame, np.inf))
     assert robot_digest(qiao) != robot_digest(replace(qiao, frames=(*qiao.frames[:5], moved, *qiao.frames[6:])))
 

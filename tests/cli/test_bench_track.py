@@ -66,5 +66,5 @@ def test_nothing_is_left_of_a_path_that_fails(cli, spec, tmp_path):
 
 def test_a_drive_without_wheels_has_no_limit_of_theirs(refuse, spec):
     spec.write_text(SPEC + "limits: {wheel_speed: 5}\n")
-    told = refuse("bench", "track", spec, "--drive", "omnidirectional")
-    assert "short.yaml:7 → limits.wheel_speed: an omnidirectional drive has no such wheels" in told
+    words = refuse("bench", "track", spec, "--drive", "omnidirectional")
+    assert "drive: an omnidirectional drive has no wheels, but short limits their speed" in words

@@ -125,9 +125,11 @@ def test_a_wrong_file_is_one_line_and_nothing_is_written(refuse, spec, text, lin
 def test_what_the_file_says_is_placed_there_and_what_options_say_is_not(refuse, spec):
     spec.write_text(SPEC + "start: {q1: 0.1}\n")
     assert "short.yaml:7 → start: expected" in refuse("track", spec)
+    spec.write_text(SPEC)
     assert "short.yaml" not in refuse("track", spec, "--start", "q1=0.1")
     spec.write_text(SPEC + "limits: {wheel_speed: 5}\n")
-    assert "short.yaml:7 → limits.wheel_speed: an" in refuse("track", spec, "--drive", "omnidirectional")
+    words = refuse("track", spec, "--drive", "omnidirectional")
+    assert "drive: an omnidirectional drive has no wheels, but short limits their speed" in words
 
 
 @pytest.mark.parametrize(
@@ -148,16 +150,19 @@ def test_a_file_that_is_not_there(refuse):
     assert "nowhere.yaml" in refuse("track", "nowhere.yaml", "--out", "run")
 
 
-def test_units_are_those_of_the_start(cli, spec):
-    told = " ".join(cli("track", "--help").out.replace("│", " ").split())
+def test_units_are_those_of_the_start(cli, spec, tmp_path, monkeypatch):
+    leave_out_figures(monkeypatch)
+    text = " ".join(cli("track", "--help").out.replace("│", " ").split())
     for words in ("Unit of lengths in --start.", "Unit of angles in --start.", "counted in --start (default"):
-        assert words in told
-    assert "in and out" not in told
+        assert words in text
+    assert "in and out" not in text
     assert "in and out" in cli("fk", "--help").out
     chosen = cli("track", spec, "--json").data["start"]
     start = ",".join(f"{name}={value}" for name, value in zip(chosen, _in_mm_and_deg(chosen), strict=True))
-    again = cli("track", spec, "--start", start, "--unit", "mm", "--angles", "deg", "--json").data
+    given = ["--start", start, "--unit", "mm", "--angles", "deg"]
+    again = cli("track", spec, *given, "--out", tmp_path / "run", "--json").data
     assert again["start"] == pytest.approx(chosen)
+    assert f"{' '.join(given)} --out FOLDER" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
 
 
 def _in_mm_and_deg(joints):

@@ -7,7 +7,7 @@ def test_stages_are_told_and_tabulated(cli, monkeypatch):
     monkeypatch.setattr(
         "ikde.solver.warmup.list_stages", lambda robot, detector: [Stage(name="first", run=lambda: None)]
     )
-    monkeypatch.setattr("ikde.track.warmup.list_track_stages", lambda robot, detector: [])
+    monkeypatch.setattr("ikde.track.run.list_track_stages", lambda robot, detector: [])
     outcome = cli("warmup")
     assert outcome.code == 0
     assert outcome.err == "1 of 1: first\n"

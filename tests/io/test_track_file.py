@@ -142,7 +142,7 @@ FULL = {
         }
     },
     "orientation": {"keyframes": [{"at": 0, "rpy": [0, 0, 0]}, {"at": 1, "quat_wxyz": [1, 0, 0, 1]}]},
-    "limits": {"speed": {"q1": 90}, "farthest": 1400, "center": "Oc"},
+    "limits": {"speed": {"q1": 90}, "max_distance": 1400, "center": "Oc"},
     "detector": "improved",
     "ranges": {"d_x": [-1000, 1000]},
     "start": {"q1": 0},

@@ -7,9 +7,9 @@ from ikde.kernels import step_constraints as kernels
 from ikde.kernels.drive import take_drive_step
 from ikde.kernels.step_constraints import MAX_PAIRS, make_step_constraints
 from ikde.kernels.tracking import compute_poses
+from ikde.model.base_motion import step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames, compute_gaps
-from ikde.track.drive import step_base
 from tests.conftest import random_q
 from tests.kernels.driving import Stand
 from tests.uncompiled import plain
@@ -115,7 +115,7 @@ def test_wheels_that_the_base_implies_need_no_rows(qiao):
 
 @pytest.mark.parametrize("name", ["differential", "omnidirectional"])
 def test_the_tool_keeps_near_the_platform(qiao, rng, name):
-    stand = Stand(qiao, 0.5 * random_q(qiao, rng), name, farthest_m=1.2, center="Oc")
+    stand = Stand(qiao, 0.5 * random_q(qiao, rng), name, max_distance_m=1.2, center="Oc")
     stand.q[:2] = 0.0
     stand.track = stand.track._replace(reach=-np.inf)
     step = rng.uniform(-1, 1, stand.size)

@@ -154,7 +154,7 @@ def test_verdicts(qiao):
     assert pair >= 0
 
 
-@pytest.mark.parametrize("limits", [{"wheel_speed_rad_s": 1e-3}, {"farthest_m": 0.01, "center": "Oc"}])
+@pytest.mark.parametrize("limits", [{"wheel_speed_rad_s": 1e-3}, {"max_distance_m": 0.01, "center": "Oc"}])
 def test_what_the_box_does_not_keep_is_judged(qiao, limits):
     step = Case(qiao).solve()[5]
     assert Case(qiao, **limits).judge(step)[0] == LIMITED

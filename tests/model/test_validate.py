@@ -117,6 +117,13 @@ def test_home_outside_the_limits():
     reject("home is outside the limits", "joints", "turn", "home", joints=joints)
 
 
+@pytest.mark.parametrize("key", ["max_speed", "max_acceleration"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.inf, np.nan])
+def test_a_joint_that_may_not_move_at_all_or_at_any_pace(key, value):
+    joints = (make_joint("slide", kind="prismatic"), make_joint("turn", **{key: value}))
+    reject("expected a finite number above 0", "joints", "turn", key, joints=joints)
+
+
 def test_home_on_a_limit_is_inside():
     check_robot(make_draft(joints=(make_joint("slide", kind="prismatic"), make_joint("turn", home=1.0))))
 

@@ -32,6 +32,7 @@ def test_json_is_plain_and_in_metres_and_radians(any_robot):
     data = json.loads(json.dumps(robot_json(CollisionModel.of(any_robot)), allow_nan=False))
     assert [joint["lower"] for joint in data["joints"]] == any_robot.lower.tolist()
     assert [joint["home"] for joint in data["joints"]] == any_robot.home.tolist()
+    assert [joint["max_speed"] for joint in data["joints"]] == [joint.max_speed for joint in any_robot.joints]
     assert [frame["name"] for frame in data["frames"]] == [frame.name for frame in any_robot.frames]
     assert data["frames"][-1]["p_parent_frame"] == any_robot.frames[-1].p_parent_frame.tolist()
     assert data["conventions"][0] == data["convention"] == any_robot.convention

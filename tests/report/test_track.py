@@ -51,7 +51,7 @@ def test_broken_limits_are_counted(qiao, plan):
     motion = make_measured(qiao, amplitude=2.6)
     text = format_track(plan, motion)
     assert text.startswith("followed 20 of 20 points of wave [1], against its limits: ")
-    assert f"collision {motion.verification.breaches.collision} times" in text
+    assert f"collision {motion.verification.violations.collision} times" in text
     assert track_json(plan, motion)["accepted"] is False
 
 
@@ -68,7 +68,7 @@ def test_without_a_detector_self_collision_is_not_checked(qiao, plan):
     data = track_json(plan, motion)
     for name in ("detector", "clearance_m", "closest_pair", "certified_clearance_m"):
         assert data[name] is None
-    assert (data["breaches"]["collision"], data["reached"]) == (None, True)
+    assert (data["violations"]["collision"], data["reached"]) == (None, True)
     assert "self-collision" not in rows_of(make_measured(qiao))
 
 
@@ -134,7 +134,7 @@ def test_what_is_left_of_a_range_has_the_units_of_its_joint(qiao, plan):
     q = [[0.0, 0.5], [0.0, 1.0 + 1e-15]]
     sliding = make_measured(gantry, q=q, drive="omnidirectional", detector="none")
     assert rows_of(sliding)["least range left, s2"] == ("0.0 mm", "to 1000 mm")
-    least = track_json(plan, sliding)["least_range_left"]
+    least = track_json(plan, sliding)["smallest_range_left"]
     assert (least["joint"], least["limit"]) == ("s2", 1.0)
     assert least["value"] == pytest.approx(0.0, abs=1e-12)
 
@@ -144,16 +144,16 @@ def test_joints_without_ends_have_no_range_left(qiao, plan):
     endless = CollisionModel.of(replace(qiao, joints=joints))
     motion = replace(make_measured(qiao), collision=endless)
     assert not any("range" in name for name in rows_of(motion))
-    assert track_json(plan, motion)["least_range_left"] is None
+    assert track_json(plan, motion)["smallest_range_left"] is None
 
 
 def test_a_limited_distance_is_told(qiao, plan):
-    motion = make_measured(qiao, farthest_m=0.5, center="Oc")
+    motion = make_measured(qiao, max_distance_m=0.5, center="Oc")
     farthest = motion.verification.distance_m.max()
     row = "largest distance of the tool from Oc, 21 beyond"
     assert rows_of(motion)[row] == (f"{1e3 * farthest:.2f} mm", "500 mm")
     assert track_json(plan, motion)["largest_distance_m"] == farthest
-    kept = make_measured(qiao, farthest_m=5.0, center="Oc")
+    kept = make_measured(qiao, max_distance_m=5.0, center="Oc")
     assert "largest distance of the tool from Oc" in rows_of(kept)
     assert track_json(plan, make_measured(qiao))["largest_distance_m"] is None
 

@@ -1,37 +1,30 @@
 """The page of a track: self-contained, with its figures and the robot moving."""
 
 import re
-import shlex
-from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import ikde
-from ikde.cli.options import AngleUnit, LengthUnit, read_q
 from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
 from ikde.report.track_page import make_track_page
 from ikde.track.follow_path import grade_motion
-from ikde.track.methods import Followed
+from ikde.track.plan import TrackPlan
 from ikde.track.summary import summarise_track
-from ikde.track.trajectory import TrackStop, TrackStopReason
-from tests.report.pages import leave_out_figures
+from ikde.track.trajectory import Followed, TrackStop, TrackStopReason
 from tests.track.measured import make_measured, make_still
 
 MAX_BYTES = 5_000_000
 STOP = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
 
 
-@pytest.fixture(scope="module")
-def plan():
-    path = {"expressions": {"x": 1, "y": 0, "z": 1}}
-    return ikde.load_track({"name": "wave <1>", "robot": "qiao2021", "dt_s": 0.02, "samples": 20, "path": path})
+def make_page(motion):
+    return make_track_page(motion, "wave <1>", "ikde track 'my path.yaml' --out FOLDER")
 
 
 @pytest.fixture(scope="module")
-def page(qiao, plan):
-    return make_track_page(plan, make_measured(qiao, further=5, stop=STOP))
+def page(qiao):
+    return make_page(make_measured(qiao, further=5, stop=STOP))
 
 
 def test_the_page_needs_nothing_else(page):
@@ -60,8 +53,8 @@ def test_a_stop_is_not_overlooked(page):
     assert STOP.text in text
 
 
-def test_a_robot_that_stands_still_has_a_fixed_base(plan):
-    page = make_track_page(plan, make_still(ikde.load_robot("ur5")))
+def test_a_robot_that_stands_still_has_a_fixed_base():
+    page = make_page(make_still(ikde.load_robot("ur5")))
     assert "Base" not in [section.title for section in page.sections]
     assert "the tool's axis given, fixed base, method continuation" in page.subtitle
     assert ("base", "fixed base") in page.sections[-1].blocks[0].items
@@ -70,8 +63,8 @@ def test_a_robot_that_stands_still_has_a_fixed_base(plan):
     assert not any(word in text for word in ("omnidirectional", "differential", "drove", "platform"))
 
 
-def test_without_a_detector_the_page_says_not_checked(qiao, plan):
-    page = make_track_page(plan, make_measured(qiao, detector="none"))
+def test_without_a_detector_the_page_says_not_checked(qiao):
+    page = make_page(make_measured(qiao, detector="none"))
     numbers = {item.label: item.value for item in page.lead[-1].items}
     assert numbers["self-collision"] == "not checked"
     assert page.lead[-1].items[3].note == "of all other kinds, at all samples"
@@ -90,39 +83,27 @@ def test_it_says_who_measured(page):
 def make_empty(motion):
     """The same, but not even its start was met."""
     was = motion.trajectory
-    told = {"drive": was.drive, "method": was.method, "limits": was.limits}
     nothing = Followed(q=was.q[:0], stop=was.stop, seconds=was.seconds[:0], search_seconds=0.25)
-    empty = grade_motion(motion.collision, was.path, nothing, **told)
-    return summarise_track(motion.collision, empty)
+    plan = TrackPlan.of(motion.robot, was.path, limits=was.limits, collision=motion.collision)
+    return summarise_track(motion.collision, grade_motion(plan, nothing))
 
 
-def test_nothing_followed_is_a_short_page(qiao, plan):
+def test_nothing_followed_is_a_short_page(qiao):
     stop = TrackStop(sample=0, reason=TrackStopReason.OUT_OF_REACH, text="sample 0: out of reach")
     motion = make_measured(qiao, stop=stop)
     nothing = make_empty(motion)
-    page = make_track_page(plan, nothing)
+    page = make_page(nothing)
     assert [section.title for section in page.sections] == ["How it was made"]
     assert "Nothing was followed" in render_html(page)
 
 
-def test_a_start_alone_is_shown(qiao, plan):
-    page = make_track_page(plan, make_measured(qiao, steps=0, further=5))
+def test_a_start_alone_is_shown(qiao):
+    page = make_page(make_measured(qiao, steps=0, further=5))
     assert "Motion" in [section.title for section in page.sections]
     assert "least clearance at samples" in [item.label for item in page.lead[-1].items]
     assert "certified" not in render_html(page)  # there is nothing between
 
 
-def test_the_same_again_is_the_same_run(qiao, plan, tmp_path, monkeypatch):
-    leave_out_figures(monkeypatch)
-    file = str(tmp_path / "my path.yaml")
-    motion, plan = make_measured(qiao), replace(plan, file=file)
-
-    def again(**changes):
-        return make_track_page(plan.with_changes(**changes), motion).sections[-1].blocks[-1].text
-
-    assert again() == f"ikde track '{file}' --out FOLDER"
-    told = "--method typical --drive omnidirectional --seed 3"
-    assert again(method="typical", drive="omnidirectional", seed=3) == f"ikde track '{file}' {told} --out FOLDER"
-    option, start = shlex.split(again(start=qiao.home))[3:5]
-    assert option == "--start"
-    np.testing.assert_array_equal(read_q(qiao, start, LengthUnit.m, AngleUnit.rad, None), qiao.home)
+def test_it_says_how_it_was_made(page):
+    code = page.sections[-1].blocks[-1]
+    assert (code.text, code.caption) == ("ikde track 'my path.yaml' --out FOLDER", "The same again")

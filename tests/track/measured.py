@@ -2,14 +2,15 @@
 
 import numpy as np
 
+from ikde.model.base_motion import step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_frames
-from ikde.track.drive import step_base
 from ikde.track.follow_path import grade_motion
 from ikde.track.limits import MotionLimits
-from ikde.track.methods import Followed
 from ikde.track.path import ToolPath
+from ikde.track.plan import TrackPlan
 from ikde.track.summary import summarise_track
+from ikde.track.trajectory import Followed
 
 DT_S = 0.02
 
@@ -34,14 +35,13 @@ def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="ax
     )
     collision = CollisionModel.of(robot, changes.pop("detector", None))
     limits = MotionLimits.of(robot, **changes)
-    told = {"drive": drive, "method": "continuation", "limits": limits}
+    plan = TrackPlan.of(robot, path, drive=drive, limits=limits, collision=collision)
     followed = Followed(q=q, stop=stop, seconds=np.full(steps, 2e-5), search_seconds=0.25)
-    motion = grade_motion(collision, path, followed, **told)
-    return summarise_track(collision, motion)
+    return summarise_track(collision, grade_motion(plan, followed))
 
 
 def make_still(robot, **changes):
-    """A motion of a robot that stands still: all joints turn, or slide, by 0.2 from home."""
+    """A motion of a robot that stands still: all joints move by 0.2 from home."""
     q = robot.home + np.linspace(0.0, 0.2, 21)[:, None]
     return make_measured(robot, q=q, drive="omnidirectional", **changes)
 

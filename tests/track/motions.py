@@ -5,12 +5,12 @@ import numpy as np
 from ikde.track.certify import Certificate
 from ikde.track.path import ToolPath
 from ikde.track.trajectory import Trajectory
-from ikde.track.verify_track import Breaches, TrackVerification
+from ikde.track.verify_track import TrackVerification, Violations
 
 NAMES = ("d_x", "d_y", "q_z", "q1", "q2")
 
 
-KEPT = Breaches(error=0, range=0, speed=0, acceleration=0, wheel=0, distance=0, collision=0, sideways=0)
+KEPT = Violations(error=0, range=0, speed=0, acceleration=0, wheel=0, distance=0, collision=0, sideways=0)
 
 
 def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0.02, orientation="free", **changes):
@@ -39,7 +39,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         sideways_m_s=np.zeros(steps),
         gaps_m=np.full((len(q), pairs), 0.05),
         distance_m=np.full(len(q), np.nan),
-        breaches=changes.pop("breaches", KEPT),
+        violations=changes.pop("violations", KEPT),
     )
     proof = Certificate(clearance_m=0.04, segment_m=np.full(steps, 0.04)) if pairs and steps else None
     given = {

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import ikde
 from ikde.io.track_file import load_track
-from ikde.model.collision_model import CollisionModel
 from ikde.solver.settings import SolveSettings
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
+from ikde.track.plan import TrackPlan
 
 TRACKS = Path(__file__).parents[2] / "configs" / "tracks"
 EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
@@ -33,12 +33,13 @@ def start_of(robot_name, number):
     return ikde.solve(ikde.load_robot(robot_name), short_task(number).targets()[0], EXACT, method="lm").q
 
 
-def follower_of(robot, path, *, drive="differential", detector=True, frozen=(), **limits):
-    """A path made ready, with the paper's limits but for changes."""
-    return make_follower(
-        CollisionModel(robot=robot, detector=CollisionModel.of(robot).detector if detector else None),
-        path,
-        drive=drive,
-        limits=MotionLimits.of(robot, **limits),
-        frozen=frozen,
-    )
+def plan_of(robot, path, *, drive="differential", collision=None, **changes):
+    """A path and what is asked of its motion: changes of the plan, else of the limits that are the paper's."""
+    own = {key: changes.pop(key) for key in ("method", "start", "seed", "freeze", "settings") if key in changes}
+    limits = MotionLimits.of(robot, **changes)
+    return TrackPlan.of(robot, path, drive=drive, limits=limits, collision=collision, **own)
+
+
+def follower_of(robot, path, **changes):
+    """The same, packed for the kernels."""
+    return make_follower(plan_of(robot, path, **changes))

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.base_motion import step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import bound_pairs, bound_segments, certify, halfway, measure_deviation, travel_radii
-from ikde.track.drive import step_base
 from ikde.track.path import ToolPath
 from tests.conftest import random_q
 from tests.random_robots import random_robot

@@ -14,7 +14,6 @@ from ikde.track.comparison import (
     draw_random_starts,
     measure,
 )
-from ikde.track.follower import make_follower
 from tests.track.measured import make_measured
 
 BUDGET = TrackBudget(seeds=2, starts=2)
@@ -67,8 +66,7 @@ def test_a_method_is_run_with_every_seed_and_from_every_start(plan):
 
 
 def test_random_starts_meet_the_first_pose_and_differ(plan):
-    follower = make_follower(plan.collision, plan.path, drive="differential", limits=plan.limits)
-    starts = draw_random_starts(follower, 3, seed=1)
+    starts = draw_random_starts(plan, 3, seed=1)
     assert len(np.unique(starts.round(6), axis=0)) == 3
     for q in starts:
         graded = ikde.verify(plan.robot, plan.path.targets()[0], q)

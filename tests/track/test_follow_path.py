@@ -13,15 +13,14 @@ from ikde.model.collision_model import CollisionModel
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
 from ikde.track.certify import certify
-from ikde.track.courses import ContinuationSettings
 from ikde.track.follow_path import follow_path
-from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits
-from ikde.track.optimized import OptimizedSettings
 from ikde.track.path import ToolPath
+from ikde.track.settings import ContinuationSettings, OptimizedSettings, TypicalSettings
 from ikde.track.starts import draw_starts
 from ikde.track.trajectory import TrackStopReason
 from ikde.track.verify_track import verify_track
+from tests.track.paper_tasks import plan_of, short_task, start_of
 from tests.track.tracks import DRIVES, TASKS, follow_task, load_task, make_line, robot
 
 BASE = ("d_x", "d_y", "q_z")
@@ -53,7 +52,7 @@ def judge(motion, detector="improved"):
 def must_hold(motion):
     """What holds of every motion, wherever it ends."""
     verdict, proof = judge(motion)
-    assert verdict.breaches.total == 0
+    assert verdict.violations.total == 0
     assert proof.is_free
     assert (motion.stop is None) == (motion.reached_points == motion.path.samples)
     if motion.stop is not None:
@@ -145,14 +144,14 @@ def test_a_path_is_followed_to_its_end_or_a_reason_is_given():
     reached = 0
     for seed in (1, 4, 12, 25, 28, 31, 38, 60):
         small, path, speed = random_task(seed)
-        told = {"limits": MotionLimits.of(small, speed=speed), "drive": "differential"}
-        motion = follow_path(small, path, settings=ContinuationSettings(returns=0), **told)
+        options = {"limits": MotionLimits.of(small, speed=speed), "drive": "differential"}
+        motion = follow_path(small, path, settings=ContinuationSettings(max_backtracks=0), **options)
         motions = [motion]
         if len(motion.q):
-            few = OptimizedSettings(returns=1, generations=100)
-            motions.append(follow_path(small, path, method="optimized", start=motion.q[0], settings=few, **told))
+            few = OptimizedSettings(max_redraws=1, generations=100)
+            motions.append(follow_path(small, path, method="optimized", start=motion.q[0], settings=few, **options))
         for motion in motions:
-            assert motion.breaches.total == 0
+            assert motion.violations.total == 0
             assert motion.reached is (motion.stop is None)
             reached += motion.reached
     assert reached >= 8
@@ -198,7 +197,7 @@ def test_a_path_into_the_robot_itself_ends_before_contact(drive):
     [
         {"acceleration": np.full(9, 0.5)},
         {"wheel_speed_rad_s": 2.0},
-        {"farthest_m": 0.95, "center": "Oc"},
+        {"max_distance_m": 0.95, "center": "Oc"},
         {"speed": None},
         {"speed": np.array([0.1] * 2 + [0.2] * 7)},
         {"ranges": False},
@@ -215,7 +214,7 @@ def test_without_a_detector_nothing_is_said_about_clearance():
     motion = follow_path(robot(), make_line([0.9, 0, 1.0], [0.9, 0.1, 1.0], 20), collision="none")
     assert motion.reached
     assert (motion.clearance_m, motion.certified_clearance_m, motion.certificate) == (None, None, None)
-    assert motion.breaches.collision is None
+    assert motion.violations.collision is None
 
 
 def test_an_arm_on_the_floor_has_no_wheels():
@@ -279,7 +278,7 @@ def test_a_drive_that_does_not_exist_is_refused(method):
         follow_path(robot(), load_task("task1").path, drive="tank", method=method)
 
 
-def test_a_base_on_arcs_carries_all_that_is_looked_at(tmp_path):
+def test_a_base_on_arcs_carries_all_that_is_compared(tmp_path):
     (tmp_path / "cart.yaml").write_text(CART)
     cart = ikde.load_robot(tmp_path / "cart.yaml")
     path = make_line([0.2, 0.0, 0.5], [0.21, 0.0, 0.5], 5)
@@ -309,11 +308,10 @@ def test_without_ranges_the_solver_that_keeps_them_has_no_say():
 )
 def test_from_any_start_the_motion_keeps_all_limits(task, drive, seed, pick, off_m):
     """Starts anywhere within the tolerance of 1e-6 m along each axis."""
-    whole, limits = load_task(task).path, MotionLimits.of(robot())
+    whole = load_task(task).path
     turns = None if whole.R_world_tool is None else whole.R_world_tool[:121]
     path = ToolPath(dt_s=0.02, p_world_tool=whole.p_world_tool[:121], orientation=whole.orientation, R_world_tool=turns)
-    follower = make_follower(CollisionModel.of(robot()), path, drive=drive, limits=limits)
-    starts, _ = draw_starts(follower, {}, seed)
+    starts, _ = draw_starts(plan_of(robot(), path, drive=drive, seed=seed))
     start = move_tool(starts[pick % len(starts)], off_m, np.random.default_rng(seed))
     motion = follow_path(robot(), path, drive=drive, start=start, seed=seed)
     must_hold(motion)
@@ -325,3 +323,37 @@ def move_tool(q, off_m, rng):
     away = 1e-6 * rng.standard_normal(len(q))
     tool, moved = (forward(robot(), each)["tool"][:3, 3] for each in (q, q + away))
     return q + away * off_m / np.linalg.norm(moved - tool)
+
+
+@pytest.mark.parametrize("method", ["optimized", "typical"])
+def test_without_a_start_it_is_that_of_continuation(qiao, method):
+    path = short_task(1, samples=2)
+    motion = follow_path(qiao, path, method=method)
+    np.testing.assert_array_equal(motion.q[0], follow_path(qiao, path, drive=motion.drive).q[0])
+    assert motion.method == method
+    assert motion.reached_points == 2
+    assert len(motion.seconds) == 2
+    assert motion.search_seconds > motion.seconds.sum()
+
+
+@pytest.mark.parametrize("method", ["optimized", "typical"])
+def test_a_start_that_is_elsewhere_is_refused(qiao, method):
+    with pytest.raises(InputError, match="first pose"):
+        follow_path(qiao, short_task(1), method=method, start=start_of("qiao2021", 3))
+
+
+@pytest.mark.parametrize("method", ["optimized", "typical"])
+def test_a_first_pose_out_of_reach_ends_all_at_once(qiao, method):
+    motion = follow_path(qiao, short_task(1), method=method, freeze={"d_x": -4.0, "d_y": 0.0})
+    assert motion.stop.reason == "out_of_reach"
+    assert motion.stop.sample == 0
+    assert len(motion.q) == 0
+
+
+def test_settings_belong_to_their_method(qiao):
+    with pytest.raises(InputError, match="method optimized: expected OptimizedSettings, got TypicalSettings"):
+        follow_path(qiao, short_task(1), method="optimized", settings=TypicalSettings())
+    with pytest.raises(InputError, match="method continuation: expected ContinuationSettings, got OptimizedSettings"):
+        follow_path(qiao, short_task(1), settings=OptimizedSettings())
+    with pytest.raises(InputError, match="expected one of continuation, optimized, typical"):
+        follow_path(qiao, short_task(1), method="best")

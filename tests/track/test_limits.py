@@ -1,5 +1,7 @@
 """Limits: the paper's for any robot, each of them switchable, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,9 +13,25 @@ from ikde.track.limits import MotionLimits
 def test_those_of_the_paper(qiao):
     limits = MotionLimits.of(qiao)
     np.testing.assert_allclose(limits.speed, [0.5, 0.5] + 7 * [0.5 * np.pi])
-    assert (limits.ranges, limits.acceleration, limits.wheel_speed_rad_s, limits.farthest_m) == (True, None, None, None)
+    assert (limits.ranges, limits.acceleration, limits.wheel_speed_rad_s, limits.max_distance_m) == (
+        True,
+        None,
+        None,
+        None,
+    )
     assert (limits.position_error_m, limits.orientation_error_rad) == (1e-6, 1e-4)
     assert MotionLimits.of(qiao, speed=None).speed is None
+
+
+def test_a_robots_own_speeds_and_accelerations_come_first(qiao):
+    own = (replace(qiao.joints[0], max_speed=0.2), *qiao.joints[1:4], replace(qiao.joints[4], max_acceleration=3.0))
+    limits = MotionLimits.of(replace(qiao, joints=(*own, *qiao.joints[5:])))
+    np.testing.assert_array_equal(limits.speed, [0.2, 0.5] + 7 * [0.5 * np.pi])
+    np.testing.assert_array_equal(limits.acceleration, 4 * [np.inf] + [3.0] + 4 * [np.inf])
+    panda = MotionLimits.of(ikde.load_robot("panda"))
+    assert (panda.speed[4], panda.acceleration[1]) == (2.61, 7.5)
+    assert MotionLimits.of(ikde.load_robot("ur5")).speed.tolist() == [np.pi] * 6
+    assert MotionLimits.of(ikde.load_robot("panda"), acceleration=None).acceleration is None
 
 
 def test_they_fit_other_robots(any_robot):
@@ -34,8 +52,8 @@ def test_a_speed_may_be_zero_or_any_an_acceleration_must_not_be_zero():
         ({"speed": "fast"}, "speed"),
         ({"speed": 1.0}, "speed"),
         ({"wheel_speed_rad_s": 0.0}, "wheel_speed_rad_s"),
-        ({"farthest_m": np.inf, "center": "Oc"}, "farthest_m"),
-        ({"farthest_m": 1.0}, "center"),
+        ({"max_distance_m": np.inf, "center": "Oc"}, "max_distance_m"),
+        ({"max_distance_m": 1.0}, "center"),
         ({"position_error_m": 0.0}, "position_error_m"),
     ],
 )
@@ -49,7 +67,7 @@ def test_what_does_not_fit_a_robot_is_refused():
     panda = ikde.load_robot("panda")
     for given, key in (
         ({"speed": [1.0]}, "speed"),
-        ({"farthest_m": 1.0, "center": "Oc"}, "center"),
+        ({"max_distance_m": 1.0, "center": "Oc"}, "center"),
         ({"wheel_speed_rad_s": 1.0}, "wheel_speed_rad_s"),
     ):
         with pytest.raises(InputError) as caught:

@@ -9,11 +9,17 @@ from ikde.model.collision_model import CollisionModel
 from ikde.track.drive import pack_drive
 from ikde.track.follow_path import follow_path
 from ikde.track.limits import MotionLimits
-from ikde.track.optimized import OptimizedSettings, find_broken, follow_optimized
+from ikde.track.optimized import _evolve_samples, find_broken, follow_optimized
 from ikde.track.path import ToolPath
+from ikde.track.settings import OptimizedSettings
 from tests.track.paper_tasks import follower_of, short_task, start_of
 
-FEW = OptimizedSettings(generations=100, returns=1)
+FEW = OptimizedSettings(generations=100, max_redraws=1)
+
+
+def optimized(robot, path, **changes):
+    """A follower of this method from task 1's start."""
+    return follower_of(robot, path, method="optimized", start=start_of("qiao2021", 1), **changes)
 
 
 @pytest.mark.parametrize("drive", ["differential", "omnidirectional"])
@@ -23,7 +29,7 @@ def test_the_tasks_begin_well(qiao, number, drive):
     motion = follow_path(qiao, path, drive=drive, method="optimized", start=start)
     assert motion.stop is None
     assert motion.reached
-    assert motion.breaches.total == 0
+    assert motion.violations.total == 0
     assert np.abs(motion.error_m).max() <= 1e-6
     assert motion.orientation_error_rad.max() <= 1e-4
     assert motion.clearance_m.min() > 0.0
@@ -32,8 +38,8 @@ def test_the_tasks_begin_well(qiao, number, drive):
 
 
 def test_same_seed_same_bits(qiao):
-    told = {"method": "optimized", "start": start_of("qiao2021", 1)}
-    first, again, other = (follow_path(qiao, short_task(1), seed=seed, **told) for seed in (1, 1, 2))
+    options = {"method": "optimized", "start": start_of("qiao2021", 1)}
+    first, again, other = (follow_path(qiao, short_task(1), seed=seed, **options) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first.q, again.q)
     assert (first.q[1:] != other.q[1:]).any()
 
@@ -46,10 +52,10 @@ def test_a_frozen_joint_stays(qiao):
 
 
 def test_an_acceleration_limit_is_kept_too(qiao):
-    follower = follower_of(qiao, short_task(1), acceleration=np.full(9, 5.0))
-    evolved = follow_optimized(follower, start_of("qiao2021", 1), 0)
-    rates = np.diff(evolved.q[:, 3:], axis=0) / 0.02
-    assert evolved.stop is None
+    follower = optimized(qiao, short_task(1), acceleration=np.full(9, 5.0))
+    followed = follow_optimized(follower)
+    rates = np.diff(followed.q[:, 3:], axis=0) / 0.02
+    assert followed.stop is None
     assert np.abs(np.diff(rates, axis=0) / 0.02).max() <= 5.0 * (1 + 1e-9)
 
 
@@ -60,28 +66,27 @@ def moved(shift, samples=2):
 
 
 def test_what_is_too_fast_names_the_limit(qiao):
-    evolved = follow_optimized(follower_of(qiao, moved([0.0, 0.2, 0.0])), start_of("qiao2021", 1), 0, FEW)
-    assert evolved.stop.sample == 1
-    assert evolved.stop.reason == "speed_limit"
-    assert evolved.stop.limit in ("the base", *qiao.joint_names)
-    assert "mm away, with" in evolved.stop.text
-    assert len(evolved.q) == 1
+    followed = follow_optimized(optimized(qiao, moved([0.0, 0.2, 0.0]), settings=FEW))
+    assert followed.stop.sample == 1
+    assert followed.stop.reason == "speed_limit"
+    assert followed.stop.limit in ("the base", *qiao.joint_names)
+    assert "mm away, with" in followed.stop.text
+    assert len(followed.q) == 1
 
 
 def test_what_is_out_of_reach_is_said_to_be(qiao):
-    evolved = follow_optimized(follower_of(qiao, moved([0.0, 0.0, 2.0])), start_of("qiao2021", 1), 0, FEW)
-    assert evolved.stop.reason == "out_of_reach"
+    followed = follow_optimized(optimized(qiao, moved([0.0, 0.0, 2.0]), settings=FEW))
+    assert followed.stop.reason == "out_of_reach"
 
 
 def test_a_collision_names_its_pair(qiao):
-    start = start_of("qiao2021", 1)
-    tight = replace(CollisionModel.of(qiao).detector, safe_distance_m=1.0)
-    collision = CollisionModel(robot=qiao, detector=tight)
-    follower = replace(follower_of(qiao, short_task(1)), collision=collision)
-    evolved = follow_optimized(follower, start, 0, OptimizedSettings(returns=1, generations=300))
-    assert evolved.stop.reason == "self_collision"
-    assert evolved.stop.pair in collision.pairs
-    assert evolved.stop.text.startswith("sample 1 (0.02 s): ")
+    follower = optimized(qiao, short_task(1), settings=OptimizedSettings(max_redraws=1, generations=300))
+    detector = replace(follower.collision.detector, safe_distance_m=1.0)
+    tight = replace(follower.plan, collision=CollisionModel.of(qiao, detector))
+    _, _, stop = _evolve_samples(replace(follower, plan=tight), follower.plan.start)
+    assert stop.reason == "self_collision"
+    assert stop.pair in tight.collision.pairs
+    assert stop.text.startswith("sample 1 (0.02 s): ")
 
 
 def test_a_wheel_limit_is_named(qiao):

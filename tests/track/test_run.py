@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 import yaml
 
+import ikde
 from ikde.errors import FileError, InputError
 from ikde.io.track_file import load_track
-from ikde.track.run import run_track
+from ikde.kernels.jit import compile_clock
+from ikde.solver.warmup import warm_up
+from ikde.track.follow_path import follow_path
+from ikde.track.run import list_track_stages, run_track
 from tests.track.tracks import load_task
 
 PLAN = {
@@ -63,11 +67,10 @@ def test_a_wrong_method_is_refused():
 def test_a_start_of_the_file_that_does_not_fit_is_placed_there(tmp_path):
     file = tmp_path / "far.yaml"
     file.write_text(yaml.safe_dump({**PLAN, "start": {"q1": 0.1}}, sort_keys=False))
-    plan = load_track(file)
     with pytest.raises(FileError, match=r"far.yaml:\d+ → start: expected a configuration at the path's first pose"):
-        run_track(plan)
+        load_track(file)
     with pytest.raises(InputError, match=r"^start: expected a configuration at") as caught:
-        run_track(plan, start=plan.start)
+        run_track(load_track(PLAN), start=ikde.load_robot("qiao2021").home)
     assert not isinstance(caught.value, FileError)
 
 
@@ -84,3 +87,20 @@ def test_a_robot_without_a_base_follows_too():
     path = {"expressions": {"x": "0.4 + 0.01*k/N", "y": "0.2", "z": "0.4"}}
     motion = run_track(load_track({"robot": "ur5", "dt_s": 0.02, "samples": 5, "path": path}))
     assert (motion.drive, motion.reached) == ("omnidirectional", True)
+
+
+@pytest.mark.parametrize("drive", ["differential", "omnidirectional"])
+def test_a_track_then_compiles_nothing(qiao, drive):
+    stage = next(stage for stage in list_track_stages(qiao) if stage.name == "track, continuation")
+    warm_up([stage])
+    p, R = np.array([[0.8, 0.2, 0.9], [0.8, 0.202, 0.9]]), np.tile(np.eye(3), (2, 1, 1))
+    for turn in (None, R):
+        with compile_clock() as clock:
+            motion = follow_path(qiao, ikde.ToolPath.through(p, dt_s=0.02, R_world_tool=turn), drive=drive)
+        assert motion.reached
+        assert clock.seconds == 0.0
+
+
+def test_every_method_has_a_stage():
+    names = [stage.name for stage in list_track_stages(ikde.load_robot("ur5"))]
+    assert names == ["track, continuation", "track, optimized", "track, typical"]

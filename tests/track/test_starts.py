@@ -4,21 +4,23 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
-from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.forward import forward
 from ikde.solver.verify import verify
-from ikde.track.follower import make_follower
-from ikde.track.limits import MotionLimits
 from ikde.track.starts import draw_starts, settle_start
-from tests.track.tracks import TASKS, load_task, make_follower_along, make_line, robot
+from tests.track.paper_tasks import plan_of
+from tests.track.tracks import TASKS, load_task, make_line, robot
+
+
+def make(path, **changes):
+    return plan_of(robot(), path, **changes)
 
 
 @pytest.mark.parametrize("task", TASKS)
 def test_drawn_starts_are_good_and_different(task):
-    follower = make_follower_along(load_task(task).path)
-    starts, first = draw_starts(follower, {}, 7)
-    target = follower.path.targets()[0]
+    plan = make(load_task(task).path, seed=7)
+    starts, first = draw_starts(plan)
+    target = plan.path.targets()[0]
     assert first.reached
     assert len(starts) > 4
     for q in starts:
@@ -26,58 +28,57 @@ def test_drawn_starts_are_good_and_different(task):
         assert grade.accepted
         assert max(grade.position_error_m, grade.orientation_error_rad) < 2e-9
     assert len(np.unique(starts.round(3), axis=0)) == len(starts)
-    np.testing.assert_array_equal(draw_starts(follower, {}, 7)[0], starts)
-    assert not np.array_equal(draw_starts(follower, {}, 8)[0][-1], starts[-1])
+    np.testing.assert_array_equal(draw_starts(plan)[0], starts)
+    assert not np.array_equal(draw_starts(plan.with_changes(seed=8))[0][-1], starts[-1])
 
 
 def test_frozen_joints_stand_where_they_must():
-    follower = make_follower_along(make_line([0.9, 0.2, 1.0], [0.9, 0.3, 1.0], 5))
-    starts, _ = draw_starts(follower, {"d_x": 0.1, "q_z": -0.2}, 0)
+    plan = make(make_line([0.9, 0.2, 1.0], [0.9, 0.3, 1.0], 5), freeze={"d_x": 0.1, "q_z": -0.2})
+    starts, _ = draw_starts(plan)
     assert len(starts)
     np.testing.assert_array_equal(starts[:, [0, 2]], np.tile([0.1, -0.2], (len(starts), 1)))
 
 
 def test_no_start_comes_with_the_reason():
-    starts, first = draw_starts(make_follower_along(make_line([0.9, 0, 4.0], [0.9, 0, 1.0], 5)), {}, 0)
+    starts, first = draw_starts(make(make_line([0.9, 0, 4.0], [0.9, 0, 1.0], 5)))
     assert (starts.shape, str(first.stop_reason)) == ((0, 9), "out_of_reach")
 
 
 def test_starts_keep_the_tool_near_the_platform():
     path = load_task("task1").path
-    limits = MotionLimits.of(robot(), farthest_m=0.9, center="Oc")
-    near = make_follower(CollisionModel.of(robot()), path, limits=limits, drive="differential")
-    starts, _ = draw_starts(near, {}, 0)
-    every, _ = draw_starts(make_follower_along(path), {}, 0)
+    near = make(path, max_distance_m=0.9, center="Oc")
+    starts, _ = draw_starts(near)
+    every, _ = draw_starts(make(path))
     frames = forward(robot(), every)
     is_near = np.linalg.norm(frames["tool"][:, :3, 3] - frames["Oc"][:, :3, 3], axis=1) <= 0.9
     np.testing.assert_array_equal(starts, every[is_near])
     with pytest.raises(InputError, match=r"farther than 0\.9 m from Oc"):
-        settle_start(near, every[~is_near][0], {})
+        settle_start(near, every[~is_near][0])
 
 
 def test_a_start_within_the_tolerance_stays_one_near_it_moves_a_little():
-    follower = make_follower_along(load_task("task1").path)
-    q = draw_starts(follower, {}, 0)[0][0]
-    np.testing.assert_array_equal(settle_start(follower, q, {}), q)
+    plan = make(load_task("task1").path)
+    q = draw_starts(plan)[0][0]
+    np.testing.assert_array_equal(settle_start(plan, q), q)
     near = q + 2e-4
-    settled = settle_start(follower, near, {})
-    assert verify(robot(), Target(follower.path.p_world_tool[0]), settled).position_error_m < 1e-8
+    settled = settle_start(plan, near)
+    assert verify(robot(), Target(plan.path.p_world_tool[0]), settled).position_error_m < 1e-8
     assert np.abs(settled - near).max() < 5e-3
 
 
 def test_starts_that_are_refused():
-    follower = make_follower_along(load_task("task1").path)
-    q = draw_starts(follower, {}, 0)[0][0]
+    path = load_task("task1").path
+    q = draw_starts(make(path))[0][0]
     outside, far = q.copy(), q.copy()
     outside[4], far[1] = 3.0, far[1] + 0.5
     folded = robot().home.copy()
     folded[4] = 2.5
-    for start, frozen, words in (
-        (outside, {}, "q2 outside the limits"),
-        (far, {}, "500 mm"),
-        (folded, {}, "collide"),
+    for start, freeze, words in (
+        (outside, None, "q2 outside the limits"),
+        (far, None, "500 mm"),
+        (folded, None, "collide"),
         (q, {"q6": q[8] + 0.1}, "q6 is not where it is frozen"),
     ):
         with pytest.raises(InputError, match=words) as caught:
-            settle_start(follower, start, frozen)
+            settle_start(make(path, freeze=freeze), start)
         assert caught.value.where == ("start",)

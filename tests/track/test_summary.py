@@ -108,9 +108,9 @@ def test_a_joint_beyond_its_range_is_named_before_all(qiao, motion):
 
 
 def test_the_tools_distance_counts_where_it_is_limited(qiao, motion):
-    assert motion.farthest_m is None
-    near = make_measured(qiao, farthest_m=5.0, center="Oc")
-    assert near.farthest_m == near.verification.distance_m.max() > 0.0
+    assert motion.largest_distance_m is None
+    near = make_measured(qiao, max_distance_m=5.0, center="Oc")
+    assert near.largest_distance_m == near.verification.distance_m.max() > 0.0
 
 
 def test_limits_that_are_off_have_no_worst(qiao):
@@ -131,12 +131,12 @@ def test_what_collides_is_named(qiao):
     free, folded = make_measured(qiao), make_measured(qiao, amplitude=2.6)
     assert not any(free.colliding)
     assert any(folded.colliding)
-    assert folded.verification.breaches.collision == sum(map(bool, folded.colliding))
+    assert folded.verification.violations.collision == sum(map(bool, folded.colliding))
     worst = np.argmin(folded.verification.gaps_m.min(axis=1))
     assert set(folded.closest_pair) <= folded.colliding[worst]
 
 
 def test_without_a_detector_nothing_is_said_of_collisions(qiao):
     motion = make_measured(qiao, detector="none")
-    assert (motion.closest_pair, motion.certificate, motion.verification.breaches.collision) == (None, None, None)
+    assert (motion.closest_pair, motion.certificate, motion.verification.violations.collision) == (None, None, None)
     assert not any(motion.colliding)

@@ -46,15 +46,15 @@ def test_a_start_alone_has_the_clearance_of_its_sample():
     assert make_motion(reached=0).certified_clearance_m == 0.05
 
 
-def test_what_was_not_checked_is_no_breach():
-    motion = make_motion(pairs=0, breaches=replace(KEPT, collision=None))
-    assert (motion.reached, motion.breaches.total) == (True, 0)
-    assert make_motion(breaches=replace(KEPT, collision=None, speed=2)).breaches.total == 2
+def test_what_was_not_checked_is_no_violation():
+    motion = make_motion(pairs=0, violations=replace(KEPT, collision=None))
+    assert (motion.reached, motion.violations.total) == (True, 0)
+    assert make_motion(violations=replace(KEPT, collision=None, speed=2)).violations.total == 2
 
 
 def test_a_broken_limit_is_no_success():
-    motion = make_motion(breaches=replace(KEPT, speed=2))
-    assert (motion.stop, motion.reached, motion.breaches.total) == (None, False, 2)
+    motion = make_motion(violations=replace(KEPT, speed=2))
+    assert (motion.stop, motion.reached, motion.violations.total) == (None, False, 2)
 
 
 def test_nothing_reached_is_no_motion():

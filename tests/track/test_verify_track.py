@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
+from ikde.model.base_motion import step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.forward import forward
 from ikde.solver.plain import compute_gaps
-from ikde.track.drive import step_base
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from ikde.track.verify_track import verify_track
@@ -54,7 +54,7 @@ def test_errors_are_along_the_axes(qiao):
     found = judge(qiao, shifted, along=q, drive="omnidirectional")
     np.testing.assert_allclose(found.error_m[5], [0, 2e-6, 0], atol=1e-12)
     assert (found.largest_axis_error_m, found.total_error_m) == pytest.approx((2e-6, 2e-6))
-    assert (found.breaches.error, found.breaches.total) == (1, 1)
+    assert (found.violations.error, found.violations.total) == (1, 1)
 
 
 def test_orientation_counts_where_it_is_asked_for(qiao):
@@ -62,7 +62,7 @@ def test_orientation_counts_where_it_is_asked_for(qiao):
     turned = q.copy()
     turned[3, 8] += 2e-4
     found = judge(qiao, turned, along=q)
-    assert found.breaches.error == 1
+    assert found.violations.error == 1
     assert found.largest_orientation_error_rad == pytest.approx(2e-4)
 
 
@@ -73,12 +73,12 @@ def test_orientation_counts_where_it_is_asked_for(qiao):
         ({"speed": np.array([0.5, 0.29] + [2.0] * 7)}, "speed", 10),
         ({"speed": np.array([0.5, 0.5, 0.49] + [2.0] * 6)}, "speed", 10),
         ({"wheel_speed_rad_s": 4.2}, "wheel", 10),
-        ({"farthest_m": 0.9, "center": "Oc"}, "distance", 11),
+        ({"max_distance_m": 0.9, "center": "Oc"}, "distance", 11),
     ],
 )
 def test_each_limit_is_looked_at(qiao, told, name, count):
     found = judge(qiao, make_q(qiao), **told)
-    assert getattr(found.breaches, name) == count
+    assert getattr(found.violations, name) == count
     assert not found.accepted
 
 
@@ -86,7 +86,7 @@ def test_acceleration_is_of_neighbouring_segments(qiao):
     q = make_q(qiao)
     q[6:, 7] += 0.002
     found = judge(qiao, q, acceleration=np.full(9, 4.0))
-    assert found.breaches.acceleration == 2
+    assert found.violations.acceleration == 2
     assert judge(qiao, q, acceleration=np.full(9, 5.1)).accepted
 
 
@@ -94,8 +94,8 @@ def test_ranges_can_be_switched_off(qiao):
     q = make_q(qiao)
     q[7, 6] = qiao.upper[6] + 0.01
     loose = np.full(9, 1e3)
-    assert judge(qiao, q, speed=loose).breaches.range == 1
-    assert judge(qiao, q, speed=loose, ranges=False).breaches.range == 0
+    assert judge(qiao, q, speed=loose).violations.range == 1
+    assert judge(qiao, q, speed=loose, ranges=False).violations.range == 0
 
 
 def test_an_arc_bulges_beyond_its_ends(qiao):
@@ -103,24 +103,24 @@ def test_an_arc_bulges_beyond_its_ends(qiao):
     q = np.tile(qiao.home, (2, 1))
     q[0, :3], q[1, :3] = start, step_base(start, np.array(0.5), np.array(1.5), DT_S)
     q[:, 0] += qiao.upper[0] - q[:, 0].max()
-    assert judge(qiao, q).breaches.range == 1
-    assert judge(qiao, q, drive="omnidirectional").breaches.range == 0
+    assert judge(qiao, q).violations.range == 1
+    assert judge(qiao, q, drive="omnidirectional").violations.range == 0
 
 
 def test_an_arc_that_only_might_bulge_does_not(qiao):
     """Along the end of its range a base may drive as long as it turns inwards."""
     start = np.array([qiao.upper[0], 0.0, 0.5 * np.pi])
     q = np.tile(qiao.home, (2, 1))
-    for omega, breaches in ((1.5, 0), (-1.5, 1)):
+    for omega, violations in ((1.5, 0), (-1.5, 1)):
         q[0, :3], q[1, :3] = start, step_base(start, np.array(0.5), np.array(omega), DT_S)
-        assert judge(qiao, q).breaches.range == breaches
+        assert judge(qiao, q).violations.range == violations
 
 
 def test_a_place_outside_is_counted_once(qiao):
     q = make_q(qiao)
     robot = replace(qiao, joints=(replace(qiao.joints[0], upper=float(q[-2, 0])), *qiao.joints[1:]))
-    assert judge(robot, q).breaches.range == 1
-    assert judge(robot, q[::-1], speed=None).breaches.range == 1
+    assert judge(robot, q).violations.range == 1
+    assert judge(robot, q[::-1], speed=None).violations.range == 1
 
 
 def test_arcs_leave_a_range_where_a_fine_walk_along_them_does(qiao, rng):
@@ -141,15 +141,15 @@ def test_arcs_leave_a_range_where_a_fine_walk_along_them_does(qiao, rng):
         if abs(beyond) > 2e-4:  # the walk's own coarseness
             found.append(beyond > 0.0)
             robot = replace(qiao, joints=(*slides, *turns))
-            assert (judge(robot, q, speed=None, detector="none").breaches.range > 0) is bool(found[-1])
+            assert (judge(robot, q, speed=None, detector="none").violations.range > 0) is bool(found[-1])
     assert 20 < sum(found) < len(found) - 20
 
 
-def test_sliding_sideways_is_a_breach_of_wheels_only(qiao):
+def test_sliding_sideways_is_a_violation_of_wheels_only(qiao):
     q = make_q(qiao)
     q[4:, 1] += 1e-5
-    assert judge(qiao, q).breaches.sideways == 1
-    assert judge(qiao, q, drive="omnidirectional").breaches.sideways == 0
+    assert judge(qiao, q).violations.sideways == 1
+    assert judge(qiao, q, drive="omnidirectional").violations.sideways == 0
 
 
 def test_a_base_without_wheels_is_held_to_its_arc_but_to_no_wheel(qiao, unwheeled):
@@ -160,7 +160,7 @@ def test_a_base_without_wheels_is_held_to_its_arc_but_to_no_wheel(qiao, unwheele
     assert found.wheel_speeds.shape == (10, 2)
     assert np.isnan(found.wheel_speeds).all()
     q[4:, 1] += 1e-5
-    assert judge(unwheeled, q).breaches.sideways == 1
+    assert judge(unwheeled, q).violations.sideways == 1
     with pytest.raises(InputError, match=r"limits.wheel_speed_rad_s: qiao2021 has no wheels"):
         judge(unwheeled, q, wheel_speed_rad_s=4.2)
 
@@ -169,7 +169,7 @@ def test_collisions_are_counted_by_sample(qiao):
     q = make_q(qiao)
     q[2:5, 4] = 2.5
     found = judge(qiao, q, speed=None)
-    assert found.breaches.collision == 3
+    assert found.violations.collision == 3
 
 
 def test_at_the_safe_distance_it_is_a_collision(qiao):
@@ -177,7 +177,7 @@ def test_at_the_safe_distance_it_is_a_collision(qiao):
     gaps = judge(qiao, q).gaps_m.min(axis=1)
     for safe_m, collisions in ((gaps.min(), 1), (np.nextafter(gaps.min(), 0.0), 0), (gaps.max(), len(q))):
         found = judge(qiao, q, detector=replace(CollisionModel.of(qiao).detector, safe_distance_m=float(safe_m)))
-        assert found.breaches.collision == collisions
+        assert found.violations.collision == collisions
         assert found.accepted is (collisions == 0)
 
 
@@ -186,15 +186,15 @@ def test_a_range_is_kept_to_1e_9(qiao):
         q = make_q(qiao)
         q[:, 4:] = qiao.home[4:]
         q[-1, 4] = qiao.upper[4] + outside
-        assert judge(qiao, q, speed=None).breaches.range == count
+        assert judge(qiao, q, speed=None).violations.range == count
 
 
 def test_without_a_detector_self_collision_is_not_checked(qiao):
     q = make_q(qiao)
     q[2:5, 4] = 2.5
     found = judge(qiao, q, speed=None, detector="none")
-    assert (found.breaches.collision, found.clearance_m) == (None, None)
-    assert (found.breaches.total, found.accepted) == (0, True)
+    assert (found.violations.collision, found.clearance_m) == (None, None)
+    assert (found.violations.total, found.accepted) == (0, True)
 
 
 @pytest.mark.parametrize("samples", [0, 1])

@@ -7,10 +7,7 @@ import numpy as np
 
 import ikde
 from ikde.io.track_file import load_track
-from ikde.model.collision_model import CollisionModel
 from ikde.track.follow_path import follow_path
-from ikde.track.follower import make_follower
-from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 
 TASKS = ("task1", "task2", "task3", "task4", "task4_minus_x")
@@ -34,11 +31,6 @@ def robot():
 def follow_task(name, drive):
     """The motion along one of the paper's tasks."""
     return follow_path(robot(), load_task(name).path, drive=drive)
-
-
-def make_follower_along(path, drive="differential"):
-    """A follower of the 9-DoF robot with its own limits and detector."""
-    return make_follower(CollisionModel.of(robot()), path, drive=drive, limits=MotionLimits.of(robot()))
 
 
 def make_line(start, end, samples, **asked):

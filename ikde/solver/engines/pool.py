@@ -11,10 +11,10 @@ import numpy as np
 from ikde.kernels import cache_folder
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
+from ikde.model.base_motion import NO_BASE, find_planar_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import digest_inputs, kernel_kind, load_module, robots_folder
 from ikde.model.pack import pack_robot
-from ikde.model.planar_base import NO_BASE, find_planar_base
 from ikde.model.reach import arm_length_m
 from ikde.model.robot import Robot
 from ikde.solver.engines import pool_file

@@ -3,8 +3,7 @@
 import pytest
 
 from ikde.errors import InputError
-from ikde.track.optimized import OptimizedSettings
-from ikde.track.typical import TypicalSettings
+from ikde.track.settings import ContinuationSettings, OptimizedSettings, TypicalSettings
 
 
 @pytest.mark.parametrize("kind", [OptimizedSettings, TypicalSettings])
@@ -42,3 +41,27 @@ def test_strategies_are_two_that_exist(strategies):
 def test_what_typical_does_not_know_is_refused(key, value):
     with pytest.raises(InputError, match=f"settings.{key}: expected"):
         TypicalSettings(**{key: value})
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"nullspace_weights": ()}, "settings.nullspace_weights: expected rows of three numbers"),
+        ({"nullspace_weights": ((1.0, 0.3),)}, "settings.nullspace_weights: expected rows of three numbers"),
+        ({"nullspace_weights": ((1.0, 0.3, -0.1),)}, "settings.nullspace_weights: expected rows of three numbers"),
+        ({"nullspace_weights": "abc"}, "settings.nullspace_weights: expected rows of three numbers"),
+        ({"nullspace_weights": ((1.0,), (1.0, 2.0))}, "settings.nullspace_weights: expected rows of three numbers"),
+        (
+            {"max_backtracks": -1},
+            "settings.max_backtracks: expected a whole number of at least 0, up to 1,000,000,000, got -1",
+        ),
+        (
+            {"max_backtracks": 2.5},
+            "settings.max_backtracks: expected a whole number of at least 0, up to 1,000,000,000, got 2.5",
+        ),
+    ],
+)
+def test_continuation_checks_its_numbers(given, words):
+    with pytest.raises(InputError) as caught:
+        ContinuationSettings(**given)
+    assert str(caught.value).startswith(words)

@@ -1,6 +1,6 @@
-"""Why a course ends before its path does.
+"""Why a rollout ends before its path does.
 
-Every limit is taken away in turn. The one without which a step is found is what stands in the way, and that step tells
+Every limit is taken away in turn. The one without which a step is found is what stands in the way, and that step shows
 by how much. Only what is out of reach is proved; all else is what trying found, and is said as such.
 """
 
@@ -8,14 +8,15 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.kernels.tracking import REACHED, track_sample
+from ikde.model.base_motion import wheel_speeds
 from ikde.model.pack import pack_robot
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import FARTHEST
 from ikde.solver.digits import at_least
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
-from ikde.track.drive import largest_steps, wheel_speeds
-from ikde.track.follower import Course, Follower
+from ikde.track.drive import max_steps
+from ikde.track.follower import Follower, Rollout
 from ikde.track.starts import keeps_distance
 from ikde.track.trajectory import TrackStop, TrackStopReason
 
@@ -35,7 +36,7 @@ Finding = tuple[Floats, Floats]
 def first_out_of_reach(follower: Follower, lower: Floats, upper: Floats) -> tuple[int, float] | None:
     """The first sample that is proved to be out of reach of the ranges [N], and by how many m; None if none is."""
     excess = reach_excess_m(follower.robot, follower.path.p_world_tool, lower, upper)
-    beyond = np.flatnonzero(excess > np.sqrt(3.0) * follower.limits.position_error_m)  # which is allowed per axis
+    beyond = np.flatnonzero(excess > np.sqrt(3.0) * follower.plan.limits.position_error_m)  # which is allowed per axis
     return (int(beyond[0]), float(excess[beyond[0]])) if len(beyond) else None
 
 
@@ -58,25 +59,25 @@ def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackSt
 
 def tell_too_far(follower: Follower, sample: int = 0, where: str = "every start") -> TrackStop:
     """A stop at a pose that was met only with the platform's centre too far away."""
-    far = f"the tool is farther than {follower.limits.farthest_m:.4g} m from {follower.limits.center}"
+    far = f"the tool is farther than {follower.plan.limits.max_distance_m:.4g} m from {follower.plan.limits.center}"
     return TrackStop(
         sample=sample,
         reason=TrackStopReason.DISTANCE_LIMIT,
         text=f"{tell_when(follower, sample)}: in {where} that was found {far}",
-        limit=follower.limits.center,
+        limit=follower.plan.limits.center,
     )
 
 
-def explain_stop(follower: Follower, course: Course, static: SolveResult | None) -> TrackStop:
-    """Why the sample after the course's last is not reached; `static` is what the solver says about it alone."""
-    sample = course.last + 1
-    for look in LOOKS:
-        stop = look(follower, course, sample)
+def explain_stop(rollout: Rollout, static: SolveResult | None) -> TrackStop:
+    """Why the sample after the rollout's last is not reached; `static` is what the solver says about it alone."""
+    for check in CHECKS:
+        stop = check(rollout)
         if stop is not None:
             return stop
+    follower, sample = rollout.follower, rollout.last + 1
     if static is not None and not static.reached:
         return tell_static(follower, sample, static)
-    stop = _without_speed(follower, course, sample)
+    stop = _without_speed(rollout)
     if stop is not None:
         return stop
     text = f"{tell_when(follower, sample)}: no way on within the limits was found"
@@ -89,9 +90,10 @@ def tell_uncertified(follower: Follower, sample: int, pair: tuple[str, str]) -> 
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
 
-def _try(follower: Follower, course: Course, sample: int, scale: Floats | float = 1.0) -> Finding | None:
-    """The step to a sample, if there is one; `scale` turns shares of the usual largest step into this follower's."""
-    q, step = np.zeros_like(course.q[0]), np.zeros(follower.size)
+def _try(follower: Follower, rollout: Rollout, scale: Floats | float = 1.0) -> Finding | None:
+    """The step from a rollout's end, if there is one; `scale` turns shares of its largest step into this follower's."""
+    sample = rollout.last + 1
+    q, step = np.zeros_like(rollout.rows[0]), np.zeros(follower.size)
     status, _, _ = track_sample(
         pack_robot(follower.robot),
         follower.collision.arrays,
@@ -99,9 +101,9 @@ def _try(follower: Follower, course: Course, sample: int, scale: Floats | float 
         follower.track,
         follower.target,
         sample,
-        course.weights[sample],
-        course.q[course.last],
-        course.steps[course.last] * scale,
+        rollout.weights[sample],
+        rollout.rows[rollout.last],
+        rollout.steps[rollout.last] * scale,
         sample == 1,
         follower.room,
         q,
@@ -110,9 +112,10 @@ def _try(follower: Follower, course: Course, sample: int, scale: Floats | float 
     return (q, step) if status == REACHED else None
 
 
-def _without_collision(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+def _without_collision(rollout: Rollout) -> TrackStop | None:
+    follower, sample = rollout.follower, rollout.last + 1
     pairs = follower.collision.pairs
-    found = _try(follower.with_track(reach=-np.inf), course, sample) if pairs else None
+    found = _try(follower.with_track(reach=-np.inf), rollout) if pairs else None
     if found is None:
         return None
     gaps = compute_gaps(follower.collision, found[0])
@@ -126,9 +129,10 @@ def _without_collision(follower: Follower, course: Course, sample: int) -> Track
     return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
 
 
-def _without_ranges(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+def _without_ranges(rollout: Rollout) -> TrackStop | None:
+    follower, sample = rollout.follower, rollout.last + 1
     ranges = follower.track.ranges
-    found = _try(follower.with_track(ranges=np.sign(ranges - ranges.mean(axis=0)) * FARTHEST), course, sample)
+    found = _try(follower.with_track(ranges=np.sign(ranges - ranges.mean(axis=0)) * FARTHEST), rollout)
     if found is None:
         return None
     beyond = np.maximum(ranges[0] - found[0], found[0] - ranges[1])
@@ -142,12 +146,13 @@ def _without_ranges(follower: Follower, course: Course, sample: int) -> TrackSto
     return TrackStop(sample=sample, reason=TrackStopReason.JOINT_LIMIT, text=text, limit=name)
 
 
-def _without_acceleration(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+def _without_acceleration(rollout: Rollout) -> TrackStop | None:
+    follower, sample = rollout.follower, rollout.last + 1
     drive = follower.drive
-    found = _try(follower.with_drive(change=np.full(follower.size, np.inf)), course, sample)
+    found = _try(follower.with_drive(change=np.full(follower.size, np.inf)), rollout)
     if found is None or not np.isfinite(drive.change).any():
         return None
-    change = np.abs(found[1] - course.steps[course.last])
+    change = np.abs(found[1] - rollout.steps[rollout.last])
     worst = int(np.argmax(change / drive.change))
     name, when = entry_name(follower, worst), tell_when(follower, sample)
     if change[worst] <= drive.change[worst] or sample == 1:
@@ -160,39 +165,38 @@ def _without_acceleration(follower: Follower, course: Course, sample: int) -> Tr
     return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text, limit=name)
 
 
-def _without_wheels(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+def _without_wheels(rollout: Rollout) -> TrackStop | None:
+    follower, sample = rollout.follower, rollout.last + 1
     wheels = follower.robot.wheels
     if wheels is None or np.isinf(follower.drive.wheel_travel) or follower.drive.base[0] < 0:
         return None
-    found = _try(follower.with_drive(wheel_travel=np.inf), course, sample)
+    found = _try(follower.with_drive(wheel_travel=np.inf), rollout)
     if found is None:
         return None
     v, omega = found[1][:2] * follower.drive.largest[:2] / follower.path.dt_s
     needed = float(np.abs(wheel_speeds(wheels, v, omega)).max())
-    limit = follower.limits.wheel_speed_rad_s
+    limit = follower.plan.limits.wheel_speed_rad_s
     if limit is None or needed <= limit:
         return None
     text = f"{tell_when(follower, sample)}: a wheel turns at {needed:.4g} rad/s {IN_STEP}, its limit is {limit:.4g}"
     return TrackStop(sample=sample, reason=TrackStopReason.WHEEL_LIMIT, text=text, limit="wheels")
 
 
-def _without_distance(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    found = (
-        None
-        if np.isinf(follower.drive.max_distance)
-        else _try(follower.with_drive(max_distance=np.inf), course, sample)
-    )
-    if found is None or keeps_distance(follower, found[0][None])[0]:
+def _without_distance(rollout: Rollout) -> TrackStop | None:
+    follower, sample = rollout.follower, rollout.last + 1
+    found = None if np.isinf(follower.drive.max_distance) else _try(follower.with_drive(max_distance=np.inf), rollout)
+    if found is None or keeps_distance(follower.plan, found[0][None])[0]:
         return None
     return tell_too_far(follower, sample, "the step")
 
 
-def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop | None:
+def _without_speed(rollout: Rollout) -> TrackStop | None:
     """The least of some factors by which all speed limits would have to grow, and the joint that would use it up."""
+    follower, sample = rollout.follower, rollout.last + 1
     usual = follower.drive.largest
     for factor in FACTORS:
         faster = follower.with_drive(largest=factor * usual, change=np.full(follower.size, np.inf))
-        found = _try(faster, course, sample, 1.0 / factor)
+        found = _try(faster, rollout, 1.0 / factor)
         if found is None:
             continue
         worst = int(np.argmax(np.abs(found[1])))
@@ -206,29 +210,30 @@ def _without_speed(follower: Follower, course: Course, sample: int) -> TrackStop
 def _tell_speed(follower: Follower, entry: int, needed: float) -> str:
     """How fast a step of `needed` m or rad would be, and what it may be; or that it is too far for one step."""
     most, unit = follower.drive.largest[entry], _unit(follower, entry)
-    if most < largest_steps(follower.robot)[_entry_joint(follower, entry)]:
+    if most < max_steps(follower.robot)[_entry_joint(follower, entry)]:
         dt_s = follower.path.dt_s
         limit = f"its limit is {most / dt_s:.4g} {unit}/s"
         return f"at {needed / dt_s:.4g} {unit}/s in the slowest step that was found, {limit}"
     return f"by {needed:.4g} {unit} in the shortest step that was found, at most {most:.4g} {unit} a sample are tried"
 
 
-def _without_frozen(follower: Follower, course: Course, sample: int) -> TrackStop | None:
-    """A step is possible if what may not move at all may."""
+def _without_frozen(rollout: Rollout) -> TrackStop | None:
+    """A step is possible if a frozen joint moves."""
+    follower, sample = rollout.follower, rollout.last + 1
     usual = follower.drive.largest
     entries = range(follower.size)
     frozen = usual <= 0.0
-    freed = [largest_steps(follower.robot)[_entry_joint(follower, entry)] for entry in entries]
-    found = _try(follower.with_drive(largest=np.where(frozen, freed, usual)), course, sample) if frozen.any() else None
+    freed = [max_steps(follower.robot)[_entry_joint(follower, entry)] for entry in entries]
+    found = _try(follower.with_drive(largest=np.where(frozen, freed, usual)), rollout) if frozen.any() else None
     moved = np.zeros(follower.size) if found is None else np.abs(found[1]) * frozen
     if not moved.any():
         return None
     name = entry_name(follower, int(np.argmax(moved)))
-    text = f"{tell_when(follower, sample)}: {name} moves {IN_STEP}, and may not"
+    text = f"{tell_when(follower, sample)}: {name} is frozen but moves {IN_STEP}"
     return TrackStop(sample=sample, reason=TrackStopReason.SPEED_LIMIT, text=text, limit=name)
 
 
-LOOKS = (
+CHECKS = (
     _without_wheels,
     _without_distance,
     _without_acceleration,

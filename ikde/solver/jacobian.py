@@ -7,7 +7,7 @@ from ikde.model.robot import WORLD, Robot
 from ikde.solver.plain import compute_frames
 
 ASKED_ROWS = {"free": 3, "axis": 5, "pose": 6}
-"""How many directions of the tool a path asks for: its velocity, turns of its axis, the turn about its axis."""
+"""How many directions of the tool a path asks for: its velocity, rotations of its axis, the rotation about its axis."""
 
 
 def smallest_singular_values(

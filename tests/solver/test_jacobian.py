@@ -3,8 +3,8 @@
 import numpy as np
 
 import ikde
+from ikde.solver.jacobian import arm_jacobian, smallest_singular_values
 from ikde.solver.plain import compute_frames
-from ikde.track.dexterity import arm_jacobian, smallest_singular_values
 from tests.track.measured import wave
 
 

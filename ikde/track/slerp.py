@@ -12,7 +12,7 @@ PathOrientation = Literal["free", "axis", "pose"]
 HALF_TURN_MARGIN = 1e-6  # rad: closer to half a turn, rounding would choose the way
 
 
-def turn_between(orientation: PathOrientation, R: Floats, at: Floats) -> Floats:
+def slerp(orientation: PathOrientation, R: Floats, at: Floats) -> Floats:
     """Rotations [S, 3, 3] at places `at` [S] along a list of rotations.
 
     Args:

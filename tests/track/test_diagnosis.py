@@ -1,6 +1,7 @@
-"""Why a course ends: each limit, standing in the way by itself, is named with what it would take."""
+"""Why a rollout ends: each limit, standing in the way by itself, is named with what it would take."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,39 +9,32 @@ import pytest
 import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.model.reach import reach_excess_m
-from ikde.track import refusal
+from ikde.track import diagnosis
+from ikde.track.diagnosis import CHECKS, explain_stop, first_out_of_reach, tell_static
 from ikde.track.follow_path import follow_path
-from ikde.track.follower import make_follower
-from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
-from ikde.track.refusal import LOOKS, explain_stop, first_out_of_reach, tell_static
 from ikde.track.trajectory import TrackStopReason
+from tests.track.paper_tasks import follower_of
 from tests.track.tracks import make_line, robot
 
 Q = np.array([0.0, 0.0, 0.0, 0.3, 0.5, 0.8, 0.3, 0.4, 0.0])
 P = ikde.forward(robot(), Q)["tool"][:3, 3]
 
 
-def follow(steps, *, drive="differential", q=Q, detector=None, frozen=(), use=(0.0, 0.0, 0.0), **told):
-    """A follower, and its course from `q` by `steps` [K, 3] of the tool."""
+def follow(steps, *, q=Q, frozen=(), weights=(0.0, 0.0, 0.0), **changes):
+    """A rollout from `q` by `steps` [K, 3] of the tool."""
     p = ikde.forward(robot(), q)["tool"][:3, 3] + np.cumsum([np.zeros(3), *steps], axis=0)
     path = ToolPath.through(p, dt_s=0.02)
-    chosen = CollisionModel.of(robot(), detector).detector
-    limits = MotionLimits.of(robot(), **told)
-    follower = make_follower(
-        CollisionModel(robot=robot(), detector=chosen), path, drive=drive, limits=limits, frozen=frozen
-    )
-    return follower, follower.follow(follower.begin(q, np.array(use)))
+    return follower_of(robot(), path, freeze=frozen, **changes).begin(q, np.array(weights)).resume()
 
 
-def explain(steps, **told):
-    """The stop of such a course."""
-    follower, course = follow(steps, **told)
-    assert course.last < follower.path.samples
-    static = ikde.solve(
-        robot(), follower.path.targets()[course.last + 1], collision=follower.collision.detector or "none"
-    )
-    return explain_stop(follower, course, static)
+def explain(steps, **changes):
+    """The stop of such a rollout."""
+    rollout = follow(steps, **changes)
+    follower = rollout.follower
+    assert rollout.last < follower.path.samples
+    static = ikde.solve(robot(), follower.path.targets()[rollout.last + 1], collision=follower.collision)
+    return explain_stop(rollout, static)
 
 
 def test_speed_with_what_is_needed():
@@ -51,7 +45,7 @@ def test_speed_with_what_is_needed():
     assert "its limit is" in stop.text
 
 
-def test_acceleration_of_who_was_at_rest():
+def test_acceleration_from_rest():
     stop = explain([[0, 0, 0]] * 3 + [[0, 0.01, 0]], acceleration=np.full(9, 0.1))
     assert (stop.sample, stop.reason) == (4, TrackStopReason.ACCELERATION_LIMIT)
 
@@ -69,7 +63,7 @@ def test_distance_from_the_platform():
     centre = ikde.forward(robot(), Q)["Oc"][:3, 3]
     distance = float(np.linalg.norm(P - centre))
     away = 0.004 * (P - centre) / distance
-    stop = explain([away] * 10, farthest_m=distance + 0.01, center="Oc", frozen=frozen)
+    stop = explain([away] * 10, max_distance_m=distance + 0.01, center="Oc", frozen=frozen)
     assert (stop.sample, stop.reason, stop.limit) == (3, TrackStopReason.DISTANCE_LIMIT, "Oc")
 
 
@@ -78,7 +72,7 @@ def test_range_of_a_joint():
     q[3] = robot().upper[3] - 1e-6
     frozen = tuple(name for name in robot().joint_names if name != "q1")
     T = [ikde.forward(robot(), q + np.eye(9)[3] * k * 0.01)["tool"][:3, 3] for k in range(3)]
-    stop = explain(np.diff(T, axis=0), q=q, frozen=frozen, detector="none")
+    stop = explain(np.diff(T, axis=0), q=q, frozen=frozen, collision="none")
     assert (stop.sample, stop.reason, stop.limit) == (1, TrackStopReason.JOINT_LIMIT, "q1")
 
 
@@ -96,8 +90,7 @@ def test_the_pair_that_would_touch():
 
 def test_out_of_reach_is_proved_or_told_by_the_solver():
     path = make_line([0.9, 0, 1.0], [0.9, 0, 3.0], 20)
-    collision = CollisionModel.of(robot(), "none")
-    follower = make_follower(collision, path, drive="differential", limits=MotionLimits.of(robot()))
+    follower = follower_of(robot(), path, collision="none")
     sample, excess = first_out_of_reach(follower, robot().lower, robot().upper)
     assert path.p_world_tool[sample - 1, 2] < 1.75 < path.p_world_tool[sample, 2]
     assert 0.0 < excess < 0.1
@@ -115,8 +108,7 @@ def test_what_an_error_along_each_axis_may_make_up_for_is_no_proof():
     excess = reach_excess_m(robot(), path.p_world_tool, robot().lower, robot().upper)
     first = int(np.flatnonzero(excess)[0])
     for share, sample in ((0.6, first + 1), (0.55, first)):
-        limits = MotionLimits.of(robot(), position_error_m=share * excess[first])
-        follower = make_follower(CollisionModel.of(robot(), "none"), path, drive="differential", limits=limits)
+        follower = follower_of(robot(), path, position_error_m=share * excess[first], collision="none")
         assert first_out_of_reach(follower, robot().lower, robot().upper)[0] == sample
 
 
@@ -135,10 +127,10 @@ def test_an_acceleration_has_units():
 def test_what_may_not_move_is_named():
     stop = explain([[0, 0.001, 0]] * 3, speed=np.zeros(9))
     assert (stop.sample, stop.reason) == (1, TrackStopReason.SPEED_LIMIT)
-    assert stop.text == f"sample 1 (0.02 s): {stop.limit} moves in the step that was found, and may not"
+    assert stop.text == f"sample 1 (0.02 s): {stop.limit} is frozen but moves in the step that was found"
 
 
-def test_a_step_that_is_too_long_is_not_blamed_on_a_limit_that_nobody_asked_for():
+def test_a_step_that_is_too_long_is_not_blamed_on_a_limit_that_was_not_asked_for():
     stop = explain([[3.0, 0, 0]] * 2, speed=None)
     assert stop.reason is TrackStopReason.SPEED_LIMIT
     assert stop.text.endswith("in the shortest step that was found, at most 0.5 m a sample are tried")
@@ -172,30 +164,29 @@ LIFTED = {
     TrackStopReason.ACCELERATION_LIMIT: {"acceleration": None},
     TrackStopReason.WHEEL_LIMIT: {"wheel_speed_rad_s": None},
     TrackStopReason.JOINT_LIMIT: {"ranges": False},
-    TrackStopReason.DISTANCE_LIMIT: {"farthest_m": None, "center": None},
-    TrackStopReason.SELF_COLLISION: {"detector": "none"},
+    TrackStopReason.DISTANCE_LIMIT: {"max_distance_m": None, "center": None},
+    TrackStopReason.SELF_COLLISION: {"collision": "none"},
 }
 CASES = [
     {"steps": [[0, 0.002, 0]] * 3 + [[0, 0.25, 0]]},
     {"steps": [[0, 0, 0]] * 3 + [[0, 0.01, 0]], "acceleration": np.full(9, 0.1)},
     {"steps": [[0.002, 0, 0]] * 2 + [[0.009, 0, 0]] * 3, "wheel_speed_rad_s": 1.5, "frozen": robot().joint_names[3:]},
-    {"steps": [[0.004, 0, 0]] * 10, "farthest_m": 1.12, "center": "Oc", "frozen": robot().joint_names[:3]},
-    {**turn_of("q1", 0.01, 4, at_its_end("q1")), "detector": "none"},
+    {"steps": [[0.004, 0, 0]] * 10, "max_distance_m": 1.12, "center": "Oc", "frozen": robot().joint_names[:3]},
+    {**turn_of("q1", 0.01, 4, at_its_end("q1")), "collision": "none"},
     {**turn_of("q2", 0.02, 100, robot().home)},
-    {**turn_of("q1", 0.02, 6, at_its_end("q1", 0.105)), "detector": "none", "acceleration": np.full(9, 30.0)},
+    {**turn_of("q1", 0.02, 6, at_its_end("q1", 0.105)), "collision": "none", "acceleration": np.full(9, 30.0)},
 ]
 
 
 @pytest.mark.parametrize(("case", "figures"), [*zip(CASES, [1, 1, 1, 0, 0, 0, 0], strict=True)], ids=range(len(CASES)))
-def test_without_the_limit_that_is_named_the_course_goes_on(case, figures):
+def test_without_the_limit_that_is_named_the_rollout_goes_on(case, figures):
     """Which is what the stop was found by; its figure is beyond the limit."""
     stop = explain(**case)
     assert "was found" in stop.text
-    _, course = follow(**{**case, **LIFTED[stop.reason]})
-    assert course.last >= stop.sample
-    told = re.findall(r" ([\d.e-]+) (?:m|rad)/s(?:²)?\b.*its limit is ([\d.e-]+)", stop.text)
-    assert len(told) == figures
-    assert all(float(needed) >= float(limit) for needed, limit in told)
+    assert follow(**{**case, **LIFTED[stop.reason]}).last >= stop.sample
+    found = re.findall(r" ([\d.e-]+) (?:m|rad)/s(?:²)?\b.*its limit is ([\d.e-]+)", stop.text)
+    assert len(found) == figures
+    assert all(float(needed) >= float(limit) for needed, limit in found)
 
 
 def test_a_joint_that_could_not_brake_in_time_is_told_so():
@@ -204,10 +195,10 @@ def test_a_joint_that_could_not_brake_in_time_is_told_so():
     assert "only without acceleration limits; with them every joint must be able to brake" in stop.text
 
 
-@pytest.mark.parametrize("look", [look for look in LOOKS if look.__name__ != "_without_acceleration"])
-def test_a_step_that_keeps_a_limit_does_not_blame_it(monkeypatch, look):
+@pytest.mark.parametrize("check", [check for check in CHECKS if check.__name__ != "_without_acceleration"])
+def test_a_step_that_keeps_a_limit_does_not_blame_it(monkeypatch, check):
     """It may be found by luck where a limit was taken away, and does not need that."""
-    told = {"wheel_speed_rad_s": 4.0, "farthest_m": 2.0, "center": "Oc", "frozen": ("q6",)}
-    follower, course = follow([[0, 0.002, 0]] * 3, **told)
-    monkeypatch.setattr(refusal, "_try", lambda *told: (course.q[2], course.steps[2]))
-    assert look(follower, course, 2) is None
+    limits = {"wheel_speed_rad_s": 4.0, "max_distance_m": 2.0, "center": "Oc"}
+    rollout = follow([[0, 0.002, 0]] * 3, frozen=("q6",), **limits)
+    monkeypatch.setattr(diagnosis, "_try", lambda *_: (rollout.q[2], rollout.steps[2]))
+    assert check(replace(rollout, last=1)) is None

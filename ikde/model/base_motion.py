@@ -1,0 +1,107 @@
+"""Bases that drive in the plane: which joints drive one, how it moves between samples, its twist and its wheels.
+
+`differential`: two driven wheels, whether the robot's file describes them or not. Between samples the speeds v and
+omega stay, so the base runs along an exact arc and never slides sideways [Qiao2022, eq. 5]. `omnidirectional`: x, y and
+heading run linearly. So does every joint of an arm.
+"""
+
+from functools import lru_cache
+from typing import Literal, get_args
+
+import numpy as np
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Floats, Ints
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_robot
+from ikde.model.pairs import component_bodies
+from ikde.model.robot import Robot, Wheels
+from ikde.model.tree import build_tree
+
+Drive = Literal["differential", "omnidirectional"]
+DRIVES: tuple[Drive, ...] = get_args(Drive)
+NO_BASE = np.array([-1, -1, -1])
+NO_BASE.setflags(write=False)
+HEADING = 3  # the body that a base's third joint turns
+
+
+@lru_cache(maxsize=64)
+def find_planar_base(robot: Robot) -> Ints:
+    """Coordinates [3] of x, y and heading of a base that drives in the plane and carries all that can collide.
+
+    -1 thrice for any other robot; read-only.
+    """
+    arrays = pack_robot(robot)
+    bodies, T = arrays.bodies, arrays.T_parent_body
+    if len(bodies) < 4 or bodies[1:4, PARENT].tolist() != [0, 1, 2] or bodies[1:4, PRISMATIC].tolist() != [1, 1, 0]:
+        return NO_BASE
+    x, y, heading = bodies[1:4, COORDINATE].tolist()
+    steps = np.eye(4)
+    axes = []
+    for k in (1, 2, 3):
+        steps = steps @ np.vstack([T[k], [0.0, 0.0, 0.0, 1.0]])
+        axes.append(steps[:3, 2])
+    is_plane = np.allclose(axes, np.eye(3), atol=1e-12) and np.allclose(steps[:2, 3], 0.0, atol=1e-12)
+    models = (CollisionModel(robot=robot, detector=detector) for detector in robot.detectors.values())
+    carries_all = all(map(base_carries, models))
+    carries_all &= bool((bodies[4:, PARENT] >= HEADING).all())
+    if not (is_plane and carries_all):
+        return NO_BASE
+    base = np.array([x, y, heading])
+    base.setflags(write=False)
+    return base
+
+
+def base_joints(robot: Robot) -> tuple[str, ...]:
+    """Names of x, y and heading of a base that drives in the plane; none for a robot without."""
+    return tuple(robot.joint_names[k] for k in find_planar_base(robot) if k >= 0)
+
+
+def base_carries(collision: CollisionModel) -> bool:
+    """Whether all that is compared rides on a planar base: where the base is does not matter then."""
+    bodies = component_bodies(collision.rows, build_tree(collision.robot))
+    return all(bodies[component] >= HEADING for pair in collision.pairs for component in pair)
+
+
+def usual_drive(robot: Robot) -> Drive:
+    """`differential` for a robot that has a base to drive, `omnidirectional` for one that has none."""
+    return "differential" if find_planar_base(robot)[0] >= 0 else "omnidirectional"
+
+
+def find_wheels(robot: Robot, drive: str) -> Ints:
+    """Coordinates [3] of x, y and heading of a base that runs on arcs; -1 thrice for a drive without.
+
+    Raises `InputError` for an unknown drive, or a robot that has no base to drive.
+    """
+    if drive not in DRIVES:
+        raise InputError(f"expected one of {', '.join(DRIVES)}, got {drive!r}", ("drive",))
+    if drive == "omnidirectional":
+        return np.full(3, -1)
+    base = find_planar_base(robot).copy()
+    if base[0] < 0:
+        raise InputError(f"{robot.name} has no base that drives in the plane and turns", ("drive",))
+    return base
+
+
+def step_base(start: Floats, v: Floats, omega: Floats, dt_s: Floats | float) -> Floats:
+    """Where a base [..., 3] is after `dt_s` of constant `v` m/s and `omega` rad/s [...]: the end of the exact arc."""
+    angle = omega * dt_s
+    chord, middle = v * dt_s * np.sinc(0.5 * angle / np.pi), start[..., 2] + 0.5 * angle
+    return start + np.stack([chord * np.cos(middle), chord * np.sin(middle), angle], axis=-1)
+
+
+def base_twist(start: Floats, end: Floats, dt_s: float) -> tuple[Floats, Floats, Floats]:
+    """The arc between two places of a base [..., 3]: v in m/s, omega in rad/s, and what no arc explains in m/s.
+
+    That residual is the chord's velocity across the mid heading: (5) along the motion, 0 on an arc.
+    """
+    shift = end - start
+    middle, angle = 0.5 * (start[..., 2] + end[..., 2]), shift[..., 2]
+    along = shift[..., 0] * np.cos(middle) + shift[..., 1] * np.sin(middle)
+    across = shift[..., 1] * np.cos(middle) - shift[..., 0] * np.sin(middle)
+    return along / np.sinc(0.5 * angle / np.pi) / dt_s, angle / dt_s, across / dt_s
+
+
+def wheel_speeds(wheels: Wheels, v: Floats, omega: Floats) -> Floats:
+    """Speeds of the left and the right wheel [..., 2] in rad/s (6), of `v` m/s and `omega` rad/s [...]."""
+    return np.stack([v - wheels.half_track_m * omega, v + wheels.half_track_m * omega], axis=-1) / wheels.radius_m

@@ -1,0 +1,131 @@
+"""From a track file to a `TrackPlan`: every name resolved, and what is wrong placed at its key."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ikde.errors import InputError, nearest
+from ikde.files.entries import UnitsEntry
+from ikde.files.placed import placed
+from ikde.files.robot_entries import read_collision, to_si, with_ranges
+from ikde.kernels.arrays import Floats
+from ikde.model.base_motion import Drive, find_wheels, usual_drive
+from ikde.model.robot import WORLD, Robot
+from ikde.solver.joints import joints_outside
+from ikde.track.limits import MotionLimits
+from ikde.track.make_path import make_path
+from ikde.track.plan import TrackPlan
+from ikde.track.spec import LimitsEntry, TrackSpec
+from ikde.track.starts import settle_start
+
+KINDS = ("prismatic", "revolute")
+
+
+def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None = None) -> TrackPlan:
+    """Resolve a track file.
+
+    Args:
+        spec: the track file.
+        robot: the robot that it names.
+        folder: paths in the track file start here.
+        file: the track file's name, for the record.
+
+    Raises:
+        InputError: with the path of the key inside the track file.
+        FileError: for what is wrong inside a table.
+    """
+    robot = with_ranges(robot, spec.ranges, spec.units)
+    drive = _read_drive(spec, robot)
+    name = spec.name or (Path(file).stem if file else "track")
+    with placed("detector"):
+        collision = read_collision(robot, spec.detector, spec.units)
+    plan = TrackPlan(
+        name=name,
+        collision=collision,
+        path=make_path(spec, name, folder),
+        drive=drive,
+        method=spec.method,
+        limits=_read_limits(spec, robot, drive),
+        start=_read_start(spec, robot),
+        seed=spec.seed,
+        file=file,
+    )
+    if plan.start is not None:
+        settle_start(plan, plan.start)
+    return plan
+
+
+def _read_drive(spec: TrackSpec, robot: Robot) -> Drive:
+    """What the file says; else arcs for a robot that has a base."""
+    drive = spec.drive or usual_drive(robot)
+    try:
+        find_wheels(robot, drive)
+    except InputError as error:
+        raise InputError(f"{error.message}; leave it out, or say omnidirectional", ("drive",)) from None
+    return drive
+
+
+def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> MotionLimits:
+    """Those of the file; what it leaves out is the robot's own, or as in the paper (`MotionLimits.of`)."""
+    limits, units, usual = spec.limits, spec.units, MotionLimits.of(robot)
+    with placed("limits"):
+        if limits.wheel_speed is not None and robot.wheels is None:
+            raise InputError(f"{robot.name} has no wheels: its file has no `wheels`", ("wheel_speed",))
+        if limits.wheel_speed is not None and drive == "omnidirectional":
+            raise InputError("an omnidirectional drive has no such wheels", ("wheel_speed",))
+        _check_center(limits, robot)
+        return MotionLimits(
+            ranges=limits.ranges,
+            speed=_by_joint(robot, "speed", limits.speed, units, usual.speed),
+            acceleration=_by_joint(robot, "acceleration", limits.acceleration, units, usual.acceleration),
+            wheel_speed_rad_s=_scaled(limits.wheel_speed, units.angle_rad),
+            max_distance_m=_scaled(limits.max_distance, units.length_m),
+            center=limits.center,
+            position_error_m=_scaled(limits.position_error, units.length_m) or usual.position_error_m,
+            orientation_error_rad=_scaled(limits.orientation_error, units.angle_rad) or usual.orientation_error_rad,
+        )
+
+
+def _check_center(limits: LimitsEntry, robot: Robot) -> None:
+    """A distance and the frame that it is measured from go together."""
+    frames = [WORLD, *(frame.name for frame in robot.frames)]
+    if limits.center is not None and limits.center not in frames:
+        raise InputError(f"{robot.name} has no frame {limits.center!r}{nearest(limits.center, frames)}", ("center",))
+    if (limits.max_distance is None) != (limits.center is None):
+        missing = "center" if limits.center is None else "max_distance"
+        raise InputError("`max_distance` and `center` go together: one of them is missing", (missing,))
+
+
+def _scaled(value: float | None, unit: float) -> float | None:
+    return None if value is None else value * unit
+
+
+def _by_joint(
+    robot: Robot, key: str, given: Mapping[str, float | None], units: UnitsEntry, usual: Floats | None
+) -> Floats | None:
+    """Limits by joint [N], the `usual` ones where none is given; a joint's own comes before that of its kind."""
+    if not given:
+        return usual
+    for name in given:
+        if name not in (*robot.joint_names, *KINDS):
+            known = nearest(name, (*robot.joint_names, *KINDS))
+            raise InputError(f"{robot.name} has no joint {name!r}{known}; or say prismatic or revolute", (key, name))
+    row = np.full(len(robot.joints), np.inf) if usual is None else usual.copy()
+    for index, joint in enumerate(robot.joints):
+        name = joint.name if joint.name in given else joint.kind
+        if name in given:
+            value = given[name]
+            unit = units.length_m if joint.kind == "prismatic" else units.angle_rad
+            row[index] = np.inf if value is None else value * unit
+    return row
+
+
+def _read_start(spec: TrackSpec, robot: Robot) -> Floats | None:
+    if spec.start is None:
+        return None
+    given = to_si(robot, "start", spec.start, spec.units)
+    start = np.array([given.get(joint.name, joint.home) for joint in robot.joints])
+    for name in joints_outside(robot, start)[: int(spec.limits.ranges)]:
+        raise InputError(f"{start[robot.joint_names.index(name)]:g} is outside the range", ("start", name))
+    return start

@@ -1,0 +1,112 @@
+"""Bases: which robots have one that carries all that can collide; arcs and twists are each other's inverse; wheels."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.model.base_motion import (
+    NO_BASE,
+    base_joints,
+    base_twist,
+    find_planar_base,
+    find_wheels,
+    step_base,
+    wheel_speeds,
+)
+from ikde.model.robot import SphereRow, Wheels
+from tests.random_robots import make_frame, make_robot
+
+
+def make_base(*, axes=((1, 0, 0), (0, 1, 0), (0, 0, 1)), shift=(0, 0, 0.1), kinds=("prismatic",) * 2 + ("revolute",)):
+    """Three joints in a row with a mast on top."""
+    frames = [
+        make_frame("along", "world", joint="x", axis=axes[0]),
+        make_frame("across", "along", joint="y", axis=axes[1]),
+        make_frame("platform", "across", shift, joint="turn", axis=axes[2]),
+        make_frame("tool", "platform", (0.2, 0, 1.0)),
+    ]
+    return make_robot(dict(zip(("x", "y", "turn"), kinds, strict=True)), frames)
+
+
+def test_robots_with_a_base_and_without(qiao):
+    for robot in (qiao, ikde.load_robot("qiao2021_dh"), make_base()):
+        assert find_planar_base(robot).tolist() == [0, 1, 2]
+    for name in ("ur5", "panda"):
+        assert find_planar_base(ikde.load_robot(name)).tolist() == NO_BASE.tolist() == [-1, -1, -1]
+
+
+def test_how_far_it_may_go_does_not_matter(qiao):
+    joints = tuple(replace(joint, lower=joint.home, upper=joint.home) for joint in qiao.joints[:3])
+    assert find_planar_base(replace(qiao, joints=(*joints, *qiao.joints[3:]))).tolist() == [0, 1, 2]
+
+
+def test_axes_kinds_and_places_must_be_those_of_a_plane():
+    for wrong in (
+        {"axes": ((1, 0, 0), (0, 0, 1), (0, 1, 0))},
+        {"axes": ((0, 1, 0), (1, 0, 0), (0, 0, 1))},
+        {"axes": ((1, 0, 0), (0, 1, 0), (0, 0, -1))},
+        {"kinds": ("prismatic", "revolute", "revolute")},
+        {"shift": (0.3, 0, 0.1)},
+    ):
+        assert find_planar_base(make_base(**wrong)).tolist() == [-1, -1, -1]
+
+
+def test_it_carries_all_that_can_collide(qiao):
+    post = SphereRow(component="post", start="world", end="world", radius_m=0.1)
+    spheres = {"improved": (*qiao.approximations["improved"], post)}
+    told = {"approximations": spheres, "detectors": {"improved": qiao.detectors["improved"]}}
+    unseen = replace(qiao, **told)
+    assert find_planar_base(unseen).tolist() == [0, 1, 2]
+    seen = {"formula_22": (*qiao.pair_lists["formula_22"], ("post", "LT"))}
+    assert find_planar_base(replace(unseen, pair_lists=seen)).tolist() == [-1, -1, -1]
+
+
+def test_a_twist_is_what_an_arc_was_driven_with(rng):
+    start = rng.uniform(-1, 1, (200, 3))
+    v, omega = rng.uniform(-1, 1, 200), rng.uniform(-3, 3, 200)
+    omega[:3] = 0.0, 1e-9, -1e-5
+    end = step_base(start, v, omega, 0.3)
+    found = base_twist(start, end, 0.3)
+    np.testing.assert_allclose(found[0], v, atol=1e-12)
+    np.testing.assert_allclose(found[1], omega, atol=1e-12)
+    np.testing.assert_allclose(found[2], 0.0, atol=1e-14)
+
+
+def test_half_an_arc_twice_is_the_arc(rng):
+    start, v, omega = rng.uniform(-1, 1, 3), np.array(0.7), np.array(-2.0)
+    once = step_base(start, v, omega, 0.4)
+    np.testing.assert_allclose(step_base(step_base(start, v, omega, 0.2), v, omega, 0.2), once, atol=1e-15)
+
+
+def test_a_quarter_turn():
+    end = step_base(np.zeros(3), np.array(0.5 * np.pi), np.array(0.5 * np.pi), 1.0)
+    np.testing.assert_allclose(end, [1.0, 1.0, 0.5 * np.pi], atol=1e-15)
+
+
+def test_sliding_sideways_is_told():
+    residual = base_twist(np.array([0, 0, 0.3]), np.array([-np.sin(0.3), np.cos(0.3), 0.3]), 0.5)[2]
+    assert residual == pytest.approx(2.0)
+
+
+def test_what_is_refused(qiao):
+    with pytest.raises(InputError, match="no base that drives"):
+        find_wheels(ikde.load_robot("panda"), "differential")
+    with pytest.raises(InputError, match="expected one of differential, omnidirectional"):
+        find_wheels(qiao, "tracked")
+
+
+def test_a_base_stays_one_with_narrow_ranges(qiao):
+    joints = tuple(replace(joint, lower=-0.5, upper=0.5) if joint.name == "q_z" else joint for joint in qiao.joints)
+    narrow = replace(qiao, joints=joints)
+    assert find_wheels(narrow, "differential").tolist() == [0, 1, 2]
+    assert base_joints(narrow) == ("d_x", "d_y", "q_z")
+
+
+def test_wheels():
+    wheels = Wheels(radius_m=0.08, half_track_m=0.3)
+    left, right = wheel_speeds(wheels, np.array(0.3), np.array(0.5))
+    assert left == pytest.approx((0.3 - 0.3 * 0.5) / 0.08)
+    assert right == pytest.approx((0.3 + 0.3 * 0.5) / 0.08)
