@@ -33,6 +33,7 @@ from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.figures import compute_figures
 from ikde.solver.problem import make_problem, pack_searched
+from ikde.solver.settings import BulkOptions
 
 sys.path.insert(0, str(Path(__file__).parent / "peers"))
 from cases import make_case
@@ -78,14 +79,14 @@ def measure(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) ->
     """All figures of one set."""
     settings = ikde.SolveSettings.for_method("auto")
     record: dict[str, Any] = {"targets": len(targets)}
-    rows = ikde.solve_many(robot, targets, threads=1, seed=SEED, explain_failures=False)
+    rows = ikde.solve_many(robot, targets, seed=SEED, bulk=BulkOptions(threads=1, explain=False))
     record["reached"] = int(rows.reached.sum())
     record["attempts_max"] = int(rows.attempts.max())
     record["engines"] = {ikde_name: int((rows.engines == k).sum()) for k, ikde_name in enumerate(engine_names())}
     record["bulk_us"] = time_bulk(robot, targets, settings, rounds)
     for name, (position, orientation) in TIGHT.items():
         tight = settings.with_changes(position_tolerance_m=position, orientation_tolerance_rad=orientation)
-        rows = ikde.solve_many(robot, targets, tight, threads=1, seed=SEED, explain_failures=False)
+        rows = ikde.solve_many(robot, targets, tight, seed=SEED, bulk=BulkOptions(threads=1, explain=False))
         record[name] = {"reached": int(rows.reached.sum()), "bulk_us": time_bulk(robot, targets, tight, rounds)}
     record["python_us"] = spread(time_python(robot, list(targets)[: min(len(targets), 3000)], rounds))
     record["kernel_us"] = spread(time_kernel(robot, targets, kind, rounds))
@@ -105,7 +106,7 @@ def time_bulk(robot: ikde.Robot, targets: ikde.Targets, settings: ikde.SolveSett
     times = []
     for _ in range(rounds):
         began = time.perf_counter()
-        ikde.solve_many(robot, targets, settings, threads=1, seed=SEED, explain_failures=False, verify="none")
+        ikde.solve_many(robot, targets, settings, seed=SEED, bulk=BulkOptions(threads=1, explain=False, verify="none"))
         times.append((time.perf_counter() - began) / len(targets) * 1e6)
     return float(np.median(times))
 

@@ -35,6 +35,7 @@ from ikde.model.robot import NO_DETECTOR, Frame, Robot, SphereRow
 from ikde.solver.engines.pool import load_kernels
 from ikde.solver.plain import compute_frames
 from ikde.solver.problem import pack_searched
+from ikde.solver.settings import BulkOptions
 
 KIND = "pose"
 CHECKS, TARGETS, SINGLE, ROUNDS = 20_000, 2_000, 500, 5
@@ -109,7 +110,7 @@ def compile_both(collision: CollisionModel) -> dict[str, float]:
     robot = collision.robot
     T = compute_frames(robot, robot.home)[robot.tool]
     target, seconds = ikde.Target(T[:3, 3], R_world_tool=T[:3, :3]), {}
-    many = partial(ikde.solve_many, robot, [target] * 5, collision=collision, explain_failures=False)
+    many = partial(ikde.solve_many, robot, [target] * 5, collision=collision, bulk=BulkOptions(explain=False))
     for way, call in (("one", partial(ikde.solve, robot, target, collision=collision)), ("many", many)):
         started = time.process_time()
         call()
@@ -132,10 +133,10 @@ def time_solves(collision: CollisionModel) -> dict[str, float]:
             keep_least(record, f"{label}_ns", (time.process_time() - started) / max(len(rows), 1) * 1e9)
     T = compute_frames(robot, Q[free][:TARGETS])[robot.tool]
     targets = [ikde.Target(t[:3, 3], R_world_tool=t[:3, :3]) for t in T]
-    results = ikde.solve_many(robot, targets, collision=collision, threads=1)
+    results = ikde.solve_many(robot, targets, collision=collision, bulk=BulkOptions(threads=1))
     for _ in range(ROUNDS):
         started = time.process_time()
-        ikde.solve_many(robot, targets, collision=collision, threads=1)
+        ikde.solve_many(robot, targets, collision=collision, bulk=BulkOptions(threads=1))
         keep_least(record, "bulk_us", (time.process_time() - started) / len(targets) * 1e6)
         started = time.process_time()
         for target in targets[:SINGLE]:

@@ -44,6 +44,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.forward import forward as forward
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
+    from ikde.solver.settings import BulkOptions as BulkOptions
     from ikde.solver.settings import DeSettings as DeSettings
     from ikde.solver.settings import SolveSettings as SolveSettings
     from ikde.solver.solve import solve as solve
@@ -88,6 +89,7 @@ _HOME = {
     "Detector": "ikde.model.robot",
     "Target": "ikde.model.target",
     "Targets": "ikde.model.target",
+    "BulkOptions": "ikde.solver.settings",
     "SolveSettings": "ikde.solver.settings",
     "DeSettings": "ikde.solver.settings",
     "SolveResult": "ikde.solver.result",

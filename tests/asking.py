@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 import ikde
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
+from ikde.solver.settings import BulkOptions
 from tests.regrade import find_faults
 
 KINDS = ("position", "axis", "pose")
@@ -153,7 +154,7 @@ def ask(robot, question, threads=None):
     options = {"seed": question.seed, "collision": question.detector, "near": question.near, "freeze": freeze}
     targets = [_make_target(kind, T) for kind, T in zip(question.kinds, question.T_world_tool, strict=True)]
     if question.how == "many":
-        options |= {"threads": threads, "explain_failures": False}
+        options |= {"bulk": BulkOptions(threads=threads, explain=False)}
         return _read_rows(ikde.solve_many(robot, targets, settings, **options))
     if question.how == "one":
         return _read_results([[ikde.solve(robot, target, settings, **options)] for target in targets])

@@ -11,6 +11,7 @@ from ikde.batch.plan import Arm, Batch
 from ikde.model.robot import Detector
 from ikde.model.target import Targets
 from ikde.solver.rows import solve_rows
+from ikde.solver.settings import BulkOptions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,11 +63,9 @@ def solve_task(task: Task, threads: int | None = None) -> Answer:
     rows = solve_rows(
         task.arm.problem,
         task.targets.take(local),
+        BulkOptions(threads=threads, explain=task.explain),
         seed=task.seed,
         first_stream=task.part.first,
-        threads=threads,
-        probe=task.explain,
-        verify="sample",
     )
     solutions = make_solutions(
         task.arm.name,

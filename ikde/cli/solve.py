@@ -123,7 +123,9 @@ def solve(
     from ikde.io.target import make_target
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
-    from ikde.solver.distinct import solve_distinct
+    from ikde.solver.distinct import check_rank, solve_distinct
+    from ikde.solver.grade import confirm
+    from ikde.solver.solve import solve as solve_one
 
     model, units = load_robot(robot), Units(unit, angles)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
@@ -132,20 +134,15 @@ def solve(
     start = None if near is None else read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = read_freeze(model, freeze, unit, angles, convention)
+    check_rank(rank)
     check_drawable(plot)
     note_unchecked(model, detector)
     with working("searching ..."), note_compile():
-        results = solve_distinct(
-            model,
-            target,
-            count,
-            settings,
-            rank=rank,  # type: ignore[arg-type]
-            seed=seed,
-            collision=checked,
-            near=start,
-            freeze=frozen,
-        )
+        question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen}
+        if count == 1:
+            results = [confirm(model, solve_one(model, target, settings, **question))]
+        else:
+            results = solve_distinct(model, target, count, settings, rank=rank, **question)  # type: ignore[arg-type]
     _print(model, results, count, units, convention, as_json)
     draw(plot, checked, results[0].q, target)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)

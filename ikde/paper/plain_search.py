@@ -11,6 +11,7 @@ from ikde.model.convention import convention_offsets
 from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
 from ikde.paper.inputs import Inputs
+from ikde.solver.distinct import UNEXPLAINED
 from ikde.solver.figures import compute_clearances
 from ikde.solver.problem import Problem, make_problem
 from ikde.solver.rows import solve_rows
@@ -90,7 +91,7 @@ def solve_plainly(inputs: Inputs, setup: Setup, target: Target, solves: int, *, 
     parts = []
     for begin in range(0, solves, CHUNK):
         count = min(CHUNK, solves - begin)
-        parts.append(solve_rows(problem, [target] * count, seed=SEED, first_stream=first_stream + begin, probe=False))
+        parts.append(solve_rows(problem, [target] * count, UNEXPLAINED, seed=SEED, first_stream=first_stream + begin))
         inputs.progress.advance(count)
     reached = np.concatenate([rows.reached for rows in parts])
     return Solutions(

@@ -13,6 +13,7 @@ from ikde.paper.published import APPROXIMATIONS
 from ikde.paper.rejection import READINGS, describe_setup, spread_of
 from ikde.paper.section import Computed, format_spread, make_collision, make_table
 from ikde.report.page import Column, Section, Text
+from ikde.solver.distinct import UNEXPLAINED
 from ikde.solver.rows import Rows, solve_rows
 
 WAITS_IN_TURN = 50
@@ -92,7 +93,7 @@ def compute_waiting(inputs: Inputs) -> Waiting:
     for begin in range(0, inputs.budget.waits, WAITS_IN_TURN):
         count = min(WAITS_IN_TURN, inputs.budget.waits - begin)
         for wait, problem in zip(waits, problems, strict=True):
-            wait.rows.append(solve_rows(problem, [wait.target] * count, seed=SEED, first_stream=begin, probe=False))
+            wait.rows.append(solve_rows(problem, [wait.target] * count, UNEXPLAINED, seed=SEED, first_stream=begin))
             inputs.progress.advance(count)
     return Waiting(
         rows=[wait.outcome for wait in waits],

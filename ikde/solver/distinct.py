@@ -17,13 +17,15 @@ from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.result import SolveResult
 from ikde.solver.rows import solve_rows
-from ikde.solver.settings import SolveSettings, check_seed, choose_settings
+from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, choose_settings
 from ikde.solver.solve import solve
 
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
 SAMPLES = 16  # solves for each solution that is wanted, to choose from
 MOST_WANTED = 10_000  # solutions
 ROUNDS = 4  # as often, if they were too much alike
+
+UNEXPLAINED = BulkOptions(verify="all", explain=False)
 
 Rank = Literal["motion", "clearance", "found"]
 
@@ -62,19 +64,24 @@ def solve_distinct(
     """
     if not 1 <= count <= MOST_WANTED:
         raise InputError(f"expected a whole number of at least 1, up to {MOST_WANTED:,}, got {count}", ("count",))
-    if rank not in get_args(Rank):
-        raise InputError(f"expected one of {', '.join(get_args(Rank))}, got {rank!r}", ("rank",))
+    check_rank(rank)
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
-    options = {"seed": check_seed(seed), "strict": True}
+    options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
     first = confirm(robot, solve(robot, target, chosen, seed=seed, collision=collision, near=near, freeze=freeze))
     if not first.reached or count == 1:
         return [first]
     look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(problem, target, count, first, options)
     return sort_solutions(problem, solutions, rank)[:count]
+
+
+def check_rank(rank: str) -> None:
+    """Raise `InputError` for an order that is none."""
+    if rank not in get_args(Rank):
+        raise InputError(f"expected one of {', '.join(get_args(Rank))}, got {rank!r}", ("rank",))
 
 
 class Clock:
@@ -125,7 +132,7 @@ def _sample(
     begin = LUCKY_ATTEMPTS if problem.near is None else 1
     several = size if problem.settings.timeout_s is None else 1
     for stream in range(1, 1 + ROUNDS * size, several):
-        where = {"first_stream": stream, "first_attempt": begin, "probe": False, "spent_s": clock.spent_s}
+        where = {"first_stream": stream, "first_attempt": begin, "spent_s": clock.spent_s}
         rows = solve_rows(problem, [target] * several, **where, **options)
         for row in np.flatnonzero(rows.reached).tolist():
             if all(are_distinct(problem.robot, rows.q[row], other.q) for other in solutions):
@@ -144,7 +151,7 @@ def _go_on(
     solutions, attempt, clock = [first], first.attempts, Clock(problem, first)
     most = count * problem.settings.budget(first.method)
     while len(solutions) < count and attempt < most and not clock.is_up:
-        where = {"first_attempt": attempt, "probe": False, "spent_s": clock.spent_s}
+        where = {"first_attempt": attempt, "spent_s": clock.spent_s}
         result = solve_rows(problem, [target], **where, **options).row(0)
         attempt += result.attempts
         clock.leave_out(result.compile_seconds)

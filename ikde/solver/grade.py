@@ -6,11 +6,10 @@ every row or a sample, and must agree to 1e-11. What each shares with the search
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
 
 import numpy as np
 
-from ikde.errors import InputError, VerificationError
+from ikde.errors import VerificationError
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.robot import Robot
 from ikde.model.target import Targets
@@ -19,9 +18,9 @@ from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, judge_clearances, measure_scale
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
+from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, MaskedBools, verify_many
 
-Verify = Literal["all", "sample", "none"]
 SPLIT = "met by the last digit: rounding takes it across a tolerance or the safe distance for one of the two graders"
 SAMPLE = 64  # one stream in so many, wherever a batch is cut
 
@@ -47,12 +46,11 @@ def grade(
     problem: Problem,
     targets: Targets,
     found: Found,
+    bulk: BulkOptions,
     *,
     seed: int,
     first_stream: int = 0,
-    strict: bool,
-    probe: bool,
-    verify: Verify = "all",
+    strict: bool = False,
 ) -> Graded:
     """Grade every row of `found`.
 
@@ -60,15 +58,14 @@ def grade(
         problem: robot, collision model, settings and ranges.
         targets: one a row.
         found: the rows.
+        bulk: which rows plain numpy grades, and whether failures are explained, by short searches.
         seed: of the probes.
         first_stream: stream of the first row.
         strict: raise `VerificationError` where the graders disagree; else the row is marked.
-        probe: look into failures by short searches. Plain numpy grades them first.
-        verify: which rows plain numpy grades: `"all"`, one stream in 64, or those that are looked into.
     """
     figures = found.figures
     streams = np.arange(first_stream, first_stream + len(targets))
-    rows = np.flatnonzero(_choose(verify, streams) | (~figures.accepted if probe else False))
+    rows = np.flatnonzero(_choose(bulk, streams) | (~figures.accepted if bulk.explain else False))
     verified = np.ma.masked_array(np.zeros(len(targets), dtype=bool), mask=True)
     reached = figures.accepted.copy()
     explanations: dict[int, Explanation] = {}
@@ -81,7 +78,7 @@ def grade(
         verified[rows] = agrees = gaps <= AGREEMENT  # False for NaN
         reached[rows] &= agrees & verdicts.accepted
         explanations = {int(rows[place]): _unverified(gaps[place]) for place in np.flatnonzero(~agrees)}
-        if probe:
+        if bulk.explain:
             for place in np.flatnonzero(agrees & ~reached[rows]).tolist():
                 row, graded = int(rows[place]), verdicts.row(place)
                 explanations[row] = explain(
@@ -110,11 +107,9 @@ def confirm(robot: Robot, result: SolveResult) -> SolveResult:
     return confirmed
 
 
-def _choose(verify: Verify, streams: Ints) -> Bools:
+def _choose(bulk: BulkOptions, streams: Ints) -> Bools:
     """Which rows plain numpy grades [T]: the sample depends on the streams, not on where a batch is cut."""
-    if verify not in get_args(Verify):
-        raise InputError(f"expected one of {', '.join(get_args(Verify))}, got {verify!r}", ("verify",))
-    return {"all": streams >= 0, "sample": streams % SAMPLE == 0, "none": streams < 0}[verify]
+    return {"all": streams >= 0, "sample": streams % SAMPLE == 0, "none": streams < 0}[bulk.verify]
 
 
 def _refuse(gaps: Floats, Q: Floats) -> None:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -12,11 +11,15 @@ from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.found import Found
 from ikde.solver.explain import Explanation, count_blocking_pairs, reason_from_counts
-from ikde.solver.grade import Graded, Verify, grade
+from ikde.solver.grade import Graded, grade
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, SolveResult, StopReason, reached_reason
+from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, reached_reason
 from ikde.solver.search import search
-from ikde.solver.verify import Bools, MaskedBools, verify
+from ikde.solver.settings import BulkOptions
+from ikde.solver.verify import Bools, MaskedBools
+
+FIGURES = ("position_error_m", "orientation_error_rad", "clearance_m", "closest_pair", "accepted")
+EVERY_ROW = BulkOptions(verify="all")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -135,36 +138,26 @@ class Rows:
 
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
-        problem, story, figures = self.problem, self.explanation(index), self.graded.figures
-        pairs, closest = problem.collision.pairs, int(figures.closest_pair[index])
+        story, figures, found = self.explanation(index), self.graded.figures, self.found
         q = self.q[index].copy()
         q.setflags(write=False)
-        return SolveResult(
+        return ResultMaker(self.problem).make(
+            self.targets[index],
+            q,
+            tuple(getattr(figures, name)[index].item() for name in FIGURES),
+            found.counts[index].tolist(),
+            seed=self.seed,
+            stream=self.first_stream + index,
+            method=NAMES[self.engines[index]],
             reached=story.stop_reason is StopReason.REACHED,
             stop_reason=story.stop_reason,
             reason=story.reason,
             hint=story.hint,
-            q=q,
-            joint_names=problem.robot.joint_names,
-            target=self.targets[index],
-            position_error_m=float(figures.position_error_m[index]),
-            orientation_error_rad=float(figures.orientation_error_rad[index]),
-            clearance_m=float(figures.clearance_m[index]) if closest >= 0 else None,
-            closest_pair=pairs[closest] if closest >= 0 else None,
+            blocking_pairs=story.blocking_pairs,
             self_collision=_verdict(self.self_collision, index),
             verified=_verdict(self.verified, index),
-            method=NAMES[self.engines[index]],
-            settings=problem.settings,
-            detector=problem.collision.name,
-            seed=self.seed,
-            stream=self.first_stream + index,
-            attempts=int(self.attempts[index]),
-            evaluations=int(self.evaluations[index]),
-            rejected=int(self.rejected[index]),
-            blocking_pairs=story.blocking_pairs,
-            solve_seconds=float(self.found.seconds[index]),
+            solve_seconds=float(found.seconds[index]),
             compile_seconds=self.compile_seconds,
-            verify=partial(verify, problem.robot, settings=problem.settings, collision=problem.collision),
         )
 
 
@@ -177,14 +170,12 @@ def _verdict(column: MaskedBools, index: int) -> bool | None:
 def solve_rows(
     problem: Problem,
     targets: Targets | Sequence[Target],
+    bulk: BulkOptions = EVERY_ROW,
     *,
     seed: int,
     first_stream: int = 0,
     first_attempt: int = 0,
-    threads: int | None = None,
-    probe: bool = True,
     strict: bool = False,
-    verify: Verify = "all",
     spent_s: float = 0.0,
 ) -> Rows:
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
@@ -192,41 +183,21 @@ def solve_rows(
     Args:
         problem: robot, collision model, settings and ranges.
         targets: what the tool is asked to do.
+        bulk: threads, and what is verified and explained.
         seed: same seed, same bits.
         first_stream: stream of the first target.
         first_attempt: where in its stream each search begins.
-        threads: how many; None for all cores.
-        probe: whether short searches find out why a target was not reached; else its counts alone tell, at no cost.
         strict: raise where the graders disagree, instead of recording it.
-        verify: which rows plain numpy grades too: `"all"`, `"sample"` (one stream in 64), or `"none"`; beyond those,
-            every unreached row that is probed.
         spent_s: what is gone of each target's time, if the settings have a timeout.
 
     Raises:
         VerificationError: with `strict`, for a disagreement of more than 1e-11: a bug.
     """
     targets = Targets.of(targets)
-    streams = range(first_stream, first_stream + len(targets))
+    where = {"seed": seed, "streams": range(first_stream, first_stream + len(targets)), "first_attempt": first_attempt}
     with compile_clock() as clock:
-        found = search(
-            problem,
-            targets,
-            seed=seed,
-            streams=streams,
-            first_attempt=first_attempt,
-            threads=threads,
-            spent_s=spent_s,
-        )
-        graded = grade(
-            problem,
-            targets,
-            found,
-            seed=seed,
-            first_stream=first_stream,
-            strict=strict,
-            probe=probe,
-            verify=verify,
-        )
+        found = search(problem, targets, threads=bulk.threads, spent_s=spent_s, **where)
+        graded = grade(problem, targets, found, bulk, seed=seed, first_stream=first_stream, strict=strict)
     return Rows(
         problem=problem,
         targets=targets,

@@ -14,6 +14,7 @@ from ikde.solver.engine_table import AUTO, ENGINES, Method
 
 Collision = Literal["reject", "feasibility"]
 Update = Literal["generation", "in_place"]
+Verify = Literal["all", "sample", "none"]
 Rule = tuple[Callable[[Any], bool], str]
 """What is accepted, and how it is asked for."""
 
@@ -132,6 +133,26 @@ class SolveSettings:
         return replace(self, **given)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BulkOptions:
+    """How many solves are run; answers do not depend on it, but for what is verified and explained.
+
+    Raises:
+        InputError: for less than 1 thread, or an unknown word.
+    """
+
+    threads: int | None = None
+    """None for all cores."""
+    explain: bool = True
+    """Whether short searches find out why a target was not reached; else its counts alone tell, at no cost."""
+    verify: Verify = "sample"
+    """Which answers plain numpy grades as well: `all`, `sample` (one stream in 64), or `none`; beyond those, every
+    unreached one that is explained."""
+
+    def __post_init__(self) -> None:
+        check_rules(self, BULK_RULES, ("bulk",))
+
+
 def is_count(least: int, most: int) -> Callable[[Any], bool]:
     """A test for whole numbers of at least and at most so many."""
     return lambda value: (
@@ -201,6 +222,11 @@ RULES: Mapping[str, Rule] = {
     "restarts": (is_count(1, MAX_COUNT), describe_count(1, MAX_COUNT)),
     "timeout_s": POSITIVE,
     "de": (lambda value: isinstance(value, DeSettings), "DeSettings"),
+}
+BULK_RULES: Mapping[str, Rule] = {
+    "threads": (is_count(1, MAX_COUNT), describe_count(1, MAX_COUNT)),
+    "explain": (lambda value: isinstance(value, bool), "True or False"),
+    "verify": one_of(get_args(Verify)),
 }
 DE_RULES: Mapping[str, Rule] = {
     "strategy": one_of(STRATEGIES),

@@ -2,17 +2,15 @@
 
 from collections.abc import Sequence
 
-from ikde.errors import InputError
 from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
-from ikde.solver.grade import Verify
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.quick import find_quick
 from ikde.solver.result import SolveResult
 from ikde.solver.rows import Rows, solve_rows
-from ikde.solver.settings import SolveSettings, check_seed, check_stream, choose_settings
+from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, check_stream, choose_settings
 
 
 def solve(
@@ -70,29 +68,17 @@ def solve_many(
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
-    threads: int | None = None,
-    explain_failures: bool = True,
-    verify: Verify = "sample",
+    bulk: BulkOptions | None = None,
 ) -> Rows:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
-    `verify` says whose answers plain numpy grades as well: `"all"`, `"sample"` (one in 64, and every unreached one that
-    is explained), or `"none"`; `verified` is masked where it was not asked. A disagreement does not raise: that result
-    is not reached, and `verified` is False. Without `explain_failures` an unreached target is told from its counts
-    alone, which costs nothing. Other arguments as for `solve`.
+    `bulk` says on how many threads, whose answers plain numpy grades as well (`verified` is masked where it was not
+    asked), and whether failures are explained. A disagreement does not raise: that result is not reached, and
+    `verified` is False. Other arguments as for `solve`.
 
     Returns:
         A sequence of `SolveResult` whose columns are arrays: `q` [T, N], `reached` [T], `clearance_m` [T] and so on.
     """
-    if threads is not None and threads < 1:
-        raise InputError(f"expected a whole number of at least 1, got {threads}", ("threads",))
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
-    return solve_rows(
-        problem,
-        targets,
-        seed=check_seed(seed),
-        threads=threads,
-        probe=explain_failures,
-        verify=verify,
-    )
+    return solve_rows(problem, targets, bulk or BulkOptions(), seed=check_seed(seed))

@@ -11,7 +11,7 @@ from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES, SEVERAL
 from ikde.solver.plain import compute_frames
-from ikde.solver.settings import SolveSettings
+from ikde.solver.settings import BulkOptions, SolveSettings
 from ikde.solver.solve import solve, solve_many
 
 
@@ -70,4 +70,4 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
 
 def _solve_many(robot: Robot, collision: CollisionChoice, targets: list[Target], settings: SolveSettings) -> object:
     """Solves whose answers are not read: no search for reasons."""
-    return solve_many(robot, targets, settings, collision=collision, explain_failures=False)
+    return solve_many(robot, targets, settings, collision=collision, bulk=BulkOptions(explain=False))

@@ -13,6 +13,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.solver.progress import Progress
 from ikde.solver.search import usable_cores
+from ikde.solver.settings import BulkOptions
 from ikde.solver.solve import solve_many
 from ikde.track.follower import make_follower
 from ikde.track.plan import TrackPlan
@@ -154,7 +155,7 @@ def draw_random_starts(plan: TrackPlan, count: int, seed: int) -> Floats:
     """Free configurations [S, N], S <= count, at the path's first pose, where random ones come to rest."""
     robot, target = plan.robot, plan.path.targets()[0]
     rng, found, prismatic = np.random.default_rng(seed), [], robot.slides
-    options = {"collision": plan.collision, "threads": 1, "explain_failures": False}
+    options = {"collision": plan.collision, "bulk": BulkOptions(threads=1, explain=False)}
     place, lower, upper = np.resize(target.p_world_tool, prismatic.sum()), robot.lower, robot.upper
     for _ in range(DRAWS_PER_START * count):
         near = rng.uniform(lower, upper)

@@ -7,7 +7,7 @@ from ikde.kernels.arrays import Floats
 from ikde.solver.joints import joints_outside
 from ikde.solver.plain import compute_frames
 from ikde.solver.result import SolveResult
-from ikde.solver.settings import SolveSettings
+from ikde.solver.settings import BulkOptions, SolveSettings
 from ikde.solver.solve import solve, solve_many
 from ikde.solver.verify import Bools, verify
 from ikde.track.plan import TrackPlan
@@ -26,7 +26,7 @@ def draw_starts(plan: TrackPlan, draws: int = DRAWS) -> tuple[Floats, SolveResul
     first = solve(robot, target, EXACT, seed=seed, **question)
     if not first.reached:
         return np.empty((0, len(robot.joints))), first
-    question |= {"threads": 1, "explain_failures": False}
+    question |= {"bulk": BulkOptions(threads=1, explain=False)}
     rows = solve_many(robot, [target] * draws, EXACT, seed=seed, **question)
     found = [rows.q[rows.reached]]
     rng = np.random.default_rng(seed)

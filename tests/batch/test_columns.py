@@ -13,6 +13,7 @@ from ikde.batch.parts import serialize
 from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_quat_wxyz
 from ikde.solver.rows import solve_rows
+from ikde.solver.settings import BulkOptions
 from tests.batch.small import FAR, ROBOT, make_arm
 
 NUMBERS = np.arange(5, 9)  # targets 2, 3, 3, 4 of two repeats each
@@ -103,7 +104,7 @@ def test_without_a_detector_clearance_and_self_collision_are_null():
 
 def test_what_plain_numpy_did_not_grade_is_null():
     targets = [ikde.Target((0.5, 0.2, 0.8))] * 3
-    rows = solve_rows(make_arm().problem, targets, seed=1, first_stream=63, verify="sample")
+    rows = solve_rows(make_arm().problem, targets, seed=1, first_stream=63, bulk=BulkOptions())
     table = read_back(tabulate(rows, numbers=np.arange(63, 66), names=None))
     assert table["verified"] == [None, True, None]
     assert table["self_collision"] == [False] * 3

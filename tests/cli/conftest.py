@@ -8,6 +8,7 @@ import pytest
 
 import ikde
 from ikde.cli.app import run
+from ikde.solver.settings import BulkOptions
 from tests.flat_settings import flat_settings
 
 BLAS_PROBE = "scipy.linalg.cython_blas"
@@ -30,7 +31,7 @@ class Outcome:
 def _kernels_are_compiled():
     """So that no command has to say that it compiles."""
     settings = flat_settings(population=6, generations=1, restarts=1)
-    ikde.solve_many(ikde.load_robot("qiao2021"), [ikde.Target((0, 0, 1))], settings, explain_failures=False)
+    ikde.solve_many(ikde.load_robot("qiao2021"), [ikde.Target((0, 0, 1))], settings, bulk=BulkOptions(explain=False))
 
 
 @pytest.fixture(autouse=True)

@@ -13,6 +13,7 @@ import yaml
 import ikde
 from ikde.kernels.tracking import track_span
 from ikde.model.collision_model import CollisionModel
+from ikde.solver.settings import BulkOptions
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 from tests import reference
@@ -90,10 +91,10 @@ def test_one_solve_does_not_believe_them(lie, liar, kind):
 def test_many_solves_do_not_believe_them(lie, liar, kind, verify):
     target = ask(lie, kind)
     for count in (1, 6):
-        alone = ikde.solve_many(ROBOT, [target] * count, ALONE, verify=verify)
+        alone = ikde.solve_many(ROBOT, [target] * count, ALONE, bulk=BulkOptions(verify=verify))
         assert not alone.reached.any()
         assert not any(result.reached for result in alone)
-        for result in ikde.solve_many(ROBOT, [target] * count, HELPED, verify=verify, explain_failures=False):
+        for result in ikde.solve_many(ROBOT, [target] * count, HELPED, bulk=BulkOptions(verify=verify, explain=False)):
             assert_honest(target, result)
 
 

@@ -117,7 +117,7 @@ for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
                 changed = settings.with_changes(de={"collision": collision})
                 ikde.solve(robot, target, changed, collision=detector, near=robot.home)
                 ikde.solve(robot, target, settings, collision=detector, freeze=robot.joint_names[:1])
-    ikde.solve_many(robot, [pose, pose], settings, threads=2)
+    ikde.solve_many(robot, [pose, pose], settings, bulk=BulkOptions(threads=2))
 print(len(solve_lanes.signatures), len(grade_many.signatures))
 """
 

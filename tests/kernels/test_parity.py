@@ -10,6 +10,7 @@ import numba
 import pytest
 
 import ikde
+from ikde.solver.settings import BulkOptions
 from tests.flat_settings import flat_settings
 
 ROOT = Path(__file__).parents[2]
@@ -39,7 +40,7 @@ def solve_all():
     bits = []
     for collision, update in (("reject", "generation"), ("feasibility", "in_place")):
         settings = make_settings(collision=collision, update=update)
-        results = ikde.solve_many(robot, TARGETS, settings, seed=2**63 + 1, threads=1, explain_failures=False)
+        results = ikde.solve_many(robot, TARGETS, settings, seed=2**63 + 1, bulk=BulkOptions(threads=1, explain=False))
         bits += [result.q.tobytes().hex() for result in results]
     return bits
 
@@ -103,7 +104,10 @@ def test_a_full_solve_of_uncompiled_kernels_gives_the_same_bits(qiao):
 def test_one_and_two_threads_give_the_same_bits(qiao, method):
     targets = TARGETS[:2] * 3
     one, two = (
-        [r.q.tobytes() for r in ikde.solve_many(qiao, targets, method=method, seed=5, threads=threads)]
+        [
+            r.q.tobytes()
+            for r in ikde.solve_many(qiao, targets, method=method, seed=5, bulk=BulkOptions(threads=threads))
+        ]
         for threads in (1, 2)
     )
     assert one == two

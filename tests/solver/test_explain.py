@@ -14,6 +14,7 @@ from ikde.model.reach import reach_excess_m
 from ikde.solver.engines.found import make_found
 from ikde.solver.figures import compute_figures
 from ikde.solver.search import Found, search
+from ikde.solver.settings import BulkOptions
 from ikde.solver.touching import find_always_touching
 from tests.bare_robot import BARE
 from tests.flat_settings import flat_settings
@@ -244,7 +245,7 @@ def test_a_target_that_runs_out_of_time_says_how_long_and_how_often_it_was_tried
     assert f"{result.rejected} of them in collision at the target; the best is off by" in result.reason
     assert result.hint.startswith("a longer timeout, or none")
     assert result.blocking_pairs
-    asked = {"freeze": PARKED, "explain_failures": False}
+    asked = {"freeze": PARKED, "bulk": BulkOptions(explain=False)}
     row = ikde.solve_many(qiao, [INSIDE_THE_PLATFORM], timed, **asked)[0]
     assert row.stop_reason == "timed_out"
     assert result.reason.startswith(row.reason)

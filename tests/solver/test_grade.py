@@ -16,6 +16,7 @@ from ikde.solver.figures import AGREEMENT, compute_figures
 from ikde.solver.forward import forward
 from ikde.solver.grade import confirm, grade
 from ikde.solver.search import Found, search
+from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
@@ -51,7 +52,7 @@ def test_a_difference_below_the_agreement_is_no_lie(qiao, substitute):
 
 def test_in_bulk_a_lie_is_recorded_and_the_run_goes_on(qiao, substitute):
     lie_about(substitute, "position_error_m", 1e-6, only=TARGETS[1])
-    results = ikde.solve_many(qiao, TARGETS, QUICK, verify="all")
+    results = ikde.solve_many(qiao, TARGETS, QUICK, bulk=BulkOptions(verify="all"))
     assert [result.verified for result in results] == [True, False, True]
     assert [result.reached for result in results] == results.reached.tolist() == [True, False, True]
     assert results[1].stop_reason != "reached"
@@ -59,14 +60,14 @@ def test_in_bulk_a_lie_is_recorded_and_the_run_goes_on(qiao, substitute):
 
 def test_what_plain_numpy_did_not_grade_is_not_called_verified(qiao, substitute):
     lie_about(substitute, "position_error_m", 1e-6, only=TARGETS[1])
-    rows = ikde.solve_many(qiao, TARGETS, QUICK, verify="none")
+    rows = ikde.solve_many(qiao, TARGETS, QUICK, bulk=BulkOptions(verify="none"))
     assert rows.reached.all()  # nobody was asked who could see the lie
     assert [result.verified for result in rows] == rows.verified.tolist() == [None, None, None]
     assert rows.verified.count() == 0
 
 
 def test_of_a_sample_the_rest_is_not_checked(qiao):
-    rows = ikde.solve_many(qiao, TARGETS[:1] * 130, QUICK, verify="sample", explain_failures=False)
+    rows = ikde.solve_many(qiao, TARGETS[:1] * 130, QUICK, bulk=BulkOptions(explain=False))
     assert rows.verified.tolist() == [True if k % 64 == 0 else None for k in range(130)]
 
 
@@ -105,7 +106,7 @@ def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
         targets = Targets.of([asked])
         figures = compute_figures(CollisionModel(robot=qiao, detector=detector), targets, q[None], QUICK)
         found = replace(make_found(problem, 1), q=q[None], figures=replace(figures, accepted=np.ones(1, dtype=bool)))
-        graded = grade(problem, targets, found, seed=0, strict=False, probe=False, verify=verify_rows)
+        graded = grade(problem, targets, found, BulkOptions(explain=False, verify=verify_rows), seed=0, strict=False)
         assert graded.verified.all()
         assert not graded.reached.any()
 
@@ -116,7 +117,7 @@ def test_the_figures_are_of_exactly_the_returned_q(qiao):
 
 
 def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
-    result = ikde.solve_many(qiao, TARGETS[:1], seed=7, verify="none")[0]
+    result = ikde.solve_many(qiao, TARGETS[:1], seed=7, bulk=BulkOptions(verify="none"))[0]
     assert (result.verified, confirm(qiao, result).verified) == (None, True)
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         with pytest.raises(VerificationError, match="disagree by"):
@@ -126,7 +127,7 @@ def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
 
 
 def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no_bug(qiao):
-    result = ikde.solve_many(qiao, TARGETS[:1], seed=7, verify="none")[0]
+    result = ikde.solve_many(qiao, TARGETS[:1], seed=7, bulk=BulkOptions(verify="none"))[0]
     tolerance = np.nextafter(result.verification.position_error_m, 0.0)
     strict = partial(verify, qiao, settings=replace(result.settings, position_tolerance_m=tolerance))
     confirmed = confirm(qiao, replace(result, verify=strict))
@@ -136,7 +137,7 @@ def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no
 
 def test_of_a_sample_each_unreached_row_is_graded_and_explained(qiao):
     targets = [*TARGETS, ikde.Target((50.0, 0.0, 1.0))]
-    rows = ikde.solve_many(qiao, targets, QUICK, verify="sample")
+    rows = ikde.solve_many(qiao, targets, QUICK, bulk=BulkOptions())
     assert rows.verified.mask.tolist() == [False, True, True, False]  # the first is of the sample
     assert list(rows.graded.explanations) == [3]
     assert rows[3].hint

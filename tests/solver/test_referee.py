@@ -10,6 +10,7 @@ from ikde.model.target import KINDS
 from ikde.solver import referee as module
 from ikde.solver.figures import compute_figures
 from ikde.solver.search import REFUSALS, search
+from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify_many
 from tests.conftest import random_q
 from tests.problems import problem_of
@@ -103,7 +104,11 @@ def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(
     robot = ikde.load_robot("panda")
     settings = ikde.SolveSettings(position_tolerance_m=1e-16, orientation_tolerance_rad=1e-16, restarts=40, method="lm")
     rows = ikde.solve_many(
-        robot, make_targets(robot, random_q(robot, rng, 30), "pose"), settings, collision="none", verify="all"
+        robot,
+        make_targets(robot, random_q(robot, rng, 30), "pose"),
+        settings,
+        collision="none",
+        bulk=BulkOptions(verify="all"),
     )
     assert 0 < rows.reached.sum() < 30
     plain = verify_many(CollisionModel.of(robot, "none"), rows.targets, rows.q, settings)

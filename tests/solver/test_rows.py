@@ -8,6 +8,7 @@ from ikde.errors import InputError
 from ikde.solver.engine_table import NAMES
 from ikde.solver.result import STOP_REASONS
 from ikde.solver.rows import solve_rows
+from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify_many
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
@@ -88,7 +89,11 @@ def test_plain_numpy_grades_what_is_asked(qiao, substitute, verify, first_stream
     problem = problem_of(qiao, SWIFT)
     calls = watch_plain_numpy(substitute)
     rows = solve_rows(
-        problem, TARGETS[:1] * 130, seed=7, first_stream=first_stream, probe=False, verify=verify, threads=1
+        problem,
+        TARGETS[:1] * 130,
+        seed=7,
+        first_stream=first_stream,
+        bulk=BulkOptions(explain=False, verify=verify, threads=1),
     )
     assert calls == [graded] * (graded > 0)
     assert rows.verified.count() == graded
@@ -97,14 +102,14 @@ def test_plain_numpy_grades_what_is_asked(qiao, substitute, verify, first_stream
 
 def test_a_row_that_is_looked_into_is_graded_whatever_is_asked(problem, substitute):
     calls = watch_plain_numpy(substitute)
-    rows = solve_rows(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=7, verify="none")
+    rows = solve_rows(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=7, bulk=BulkOptions(verify="none"))
     unreached = np.flatnonzero(~rows.reached).tolist()
     assert calls == [len(unreached)]
     assert list(rows.graded.explanations) == unreached
 
 
 def test_the_grade_of_plain_numpy_is_made_when_it_is_looked_at(qiao, problem):
-    result = solve_rows(problem, TARGETS[:2], seed=7, first_stream=1, verify="none", probe=False)[1]
+    result = solve_rows(problem, TARGETS[:2], seed=7, first_stream=1, bulk=BulkOptions(verify="none", explain=False))[1]
     assert result.verification is result.verification
     expected = ikde.verify(qiao, TARGETS[1], result.q, settings=QUICK)
     assert result.verification.closest_pair == expected.closest_pair
@@ -115,7 +120,9 @@ def test_self_collision_is_judged_by_the_safe_distance(qiao):
     rows = solve_rows(problem_of(qiao, QUICK), TARGETS, seed=7)
     assert (rows.self_collision == (rows.clearance_m <= 0.0)).all()
     far = ikde.Detector(name="far", spheres="improved", pairs="formula_22", safe_distance_m=1.0)
-    near = solve_rows(problem_of(qiao, SWIFT, collision=far), TARGETS, seed=7, probe=False)
+    near = solve_rows(
+        problem_of(qiao, SWIFT, collision=far), TARGETS, seed=7, bulk=BulkOptions(explain=False, verify="all")
+    )
     assert near.self_collision.tolist() == [True] * 6
     assert not near.reached.any()
 
@@ -130,11 +137,13 @@ def test_without_a_detector_self_collision_is_not_checked(qiao):
 
 def test_another_way_to_verify_is_refused(problem):
     with pytest.raises(InputError, match="verify: expected one of all, sample, none, got 'some'"):
-        solve_rows(problem, TARGETS[:1], seed=7, verify="some")
+        solve_rows(problem, TARGETS[:1], seed=7, bulk=BulkOptions(verify="some"))
 
 
 def test_without_probes_the_bound_still_proves_what_is_out_of_reach(problem):
-    rows = solve_rows(problem, [ikde.Target((50.0, 0.0, 1.0)), TARGETS[0]], seed=0, probe=False)
+    rows = solve_rows(
+        problem, [ikde.Target((50.0, 0.0, 1.0)), TARGETS[0]], seed=0, bulk=BulkOptions(explain=False, verify="all")
+    )
     assert rows.row(0).stop_reason == "out_of_reach"
     assert rows.row(0).reason.startswith("out of reach: at least 43.")
     assert rows.row(1).stop_reason != "out_of_reach"

@@ -8,6 +8,7 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.model.target import KINDS
+from ikde.solver.settings import BulkOptions
 from tests.bare_robot import BARE, platform_to_upper_arm
 from tests.conftest import ROBOTS, random_q
 from tests.problems import CHEAP, QUICK, TARGET, assert_true_to_its_figures
@@ -163,7 +164,7 @@ def test_the_cost_is_counted(qiao):
 
 def test_many_targets_come_back_in_order(qiao, rng):
     targets = [make_target(qiao, free_q(qiao, rng), kind) for kind in KINDS * 2]
-    results = ikde.solve_many(qiao, targets, seed=4, verify="all")
+    results = ikde.solve_many(qiao, targets, seed=4, bulk=BulkOptions(verify="all"))
     assert [result.stream for result in results] == list(range(6))
     for target, result in zip(targets, results, strict=True):
         assert_true_to_its_figures(qiao, target, result, ikde.SolveSettings.for_method("auto"))
@@ -172,7 +173,7 @@ def test_many_targets_come_back_in_order(qiao, rng):
 def test_many_targets_hang_on_seed_and_place_only(qiao):
     targets = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(4)]
     whole = ikde.solve_many(qiao, targets, QUICK, seed=9)
-    others = ikde.solve_many(qiao, [TARGET, TARGET, targets[2]], QUICK, seed=9, threads=1)
+    others = ikde.solve_many(qiao, [TARGET, TARGET, targets[2]], QUICK, seed=9, bulk=BulkOptions(threads=1))
     assert others[2].q.tobytes() == whole[2].q.tobytes()
     assert whole[0].q.tobytes() == ikde.solve(qiao, targets[0], QUICK, seed=9).q.tobytes()
 
@@ -184,7 +185,7 @@ def test_equal_targets_have_streams_of_their_own(qiao):
 
 def test_threads_do_not_change_the_bits(qiao):
     targets = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(4)]
-    one, two = (ikde.solve_many(qiao, targets, QUICK, threads=threads) for threads in (1, 2))
+    one, two = (ikde.solve_many(qiao, targets, QUICK, bulk=BulkOptions(threads=threads)) for threads in (1, 2))
     assert [result.q.tobytes() for result in one] == [result.q.tobytes() for result in two]
 
 
@@ -195,13 +196,13 @@ def test_no_targets_give_no_results(qiao):
 @pytest.mark.parametrize("threads", [0, -1])
 def test_fewer_than_one_thread_is_refused(qiao, threads):
     with pytest.raises(InputError, match="threads: expected a whole number of at least 1"):
-        ikde.solve_many(qiao, [TARGET], CHEAP, threads=threads)
+        ikde.solve_many(qiao, [TARGET], CHEAP, bulk=BulkOptions(threads=threads))
 
 
 def test_unreached_targets_are_told_from_bound_and_counts_alone(qiao):
     far = ikde.Target((0.0, 0.0, 9.0))
     plain, explained = (
-        ikde.solve_many(qiao, [TARGET, far], CHEAP, explain_failures=explain)[1] for explain in (False, True)
+        ikde.solve_many(qiao, [TARGET, far], CHEAP, bulk=BulkOptions(explain=explain))[1] for explain in (False, True)
     )
     assert (plain.reached, plain.stop_reason, plain.hint) == (False, "out_of_reach", None)
     assert (plain.reason, explained.stop_reason) == (explained.reason, "out_of_reach")

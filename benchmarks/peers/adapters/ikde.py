@@ -10,6 +10,7 @@ import numpy as np
 from protocol import Answer, Peer, Setup
 
 import ikde
+from ikde.solver.settings import BulkOptions
 
 
 class Single(Peer):
@@ -44,6 +45,6 @@ class Many(Single):
         self.count += 1
         targets = ikde.Targets(p, R_world_tool=R) if self.setup.is_pose else ikde.Targets(p)
         started = time.perf_counter()
-        rows = ikde.solve_many(self.setup.robot, targets, self.settings, seed=self.count, threads=1)
+        rows = ikde.solve_many(self.setup.robot, targets, self.settings, seed=self.count, bulk=BulkOptions(threads=1))
         share = (time.perf_counter() - started) / len(p)
         return [(share, q if reached else None) for q, reached in zip(rows.q, rows.reached, strict=True)]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from ikde.model.target import Targets
 from ikde.solver.engines.found import Found
 from ikde.solver.engines.pool import rotation_length_m
 from ikde.solver.problem import Problem, shrink
+
+Outputs = tuple[Any, ...]
+"""What the kernels fill: q [N], score [2], counts [COUNTS] and how often each pair blocked [P], or rows of them."""
 
 
 class Engine(Protocol):
@@ -48,7 +51,7 @@ class Question:
         return attempts
 
     @property
-    def outputs(self) -> tuple[Floats, Floats, Ints, Ints]:
+    def outputs(self) -> Outputs:
         """What the kernels fill."""
         return self.found.q, self.found.score, self.found.counts, self.found.pair_counts
 

@@ -1,16 +1,32 @@
 """`lm`: damped least squares from collision-free seeds, by kernels written for the robot."""
 
+from collections.abc import Callable
+
 import numpy as np
 
-from ikde.kernels.arrays import Ints
+from ikde.kernels.arrays import Ints, TargetArrays
 from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.engine import Question, make_descent, make_ranges
+from ikde.solver.engines.engine import Outputs, Question, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
-from ikde.solver.problem import pack_searched
+from ikde.solver.problem import Problem, pack_searched
 
 ONE_BY_ONE = ENGINES["lm"].one_by_one
+
+
+def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
+    """Damped least squares on one target: `search(targets, row, seed, stream, begin, end, outputs)`."""
+    models, seeds = pack_searched(problem.collision), make_seeds(problem, kind)
+    block = flatten_search(*models, make_ranges(problem), make_descent(problem, kind), seeds)
+    solve_target = load_kernels(problem.collision, kind).solve_target
+
+    def search(
+        targets: TargetArrays, row: int, seed: np.uint64, stream: int, begin: int, end: int, outputs: Outputs
+    ) -> None:
+        solve_target(*targets, row, *block, seed, stream, begin, end, *outputs)
+
+    return search
 
 
 class DampedLeastSquares:
@@ -23,27 +39,32 @@ class DampedLeastSquares:
     def __init__(self, question: Question) -> None:
         self._question, problem = question, question.problem
         names = {kind: KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
-        self._kernels = {kind: load_kernels(problem.collision, name) for kind, name in names.items()}
+        self._one_by_one = len(question.streams) <= ONE_BY_ONE
         self._models = pack_searched(problem.collision)
-        self._settings = {
-            kind: (make_ranges(problem), make_descent(problem, name), make_seeds(problem, name))
-            for kind, name in names.items()
-        }
+        prepare = prepare_search if self._one_by_one else self._prepare_many
+        self._searches = {kind: prepare(problem, name) for kind, name in names.items()}
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._question
         stop = np.minimum(last, first + self.attempts_per_call)
-        for kind, module in self._kernels.items():
+        for kind, search in self._searches.items():
             attempts = asked.attempts(rows, first, stop, kind)
-            settings = self._settings[kind]
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-                if len(asked.streams) > ONE_BY_ONE:
-                    where = (asked.targets, np.array([rows.start, rows.stop]))
-                    which = (asked.seed, asked.streams, attempts)
-                    module.solve_targets(*self._models, *where, *settings, *which, *asked.outputs)
+                if not self._one_by_one:
+                    search(rows, attempts)
                     continue
-                block = flatten_search(*self._models, *settings)
                 for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
-                    lane = (asked.seed, int(asked.streams[row]), begin, end, *(array[row] for array in asked.outputs))
-                    module.solve_target(*asked.targets, row, *block, *lane)
+                    outputs = tuple(array[row] for array in asked.outputs)
+                    search(asked.targets, row, asked.seed, int(asked.streams[row]), begin, end, outputs)
+
+    def _prepare_many(self, problem: Problem, kind: str) -> Callable[..., None]:
+        """The same on many targets, side by side: `search(rows, attempts)`."""
+        asked, solve_targets = self._question, load_kernels(problem.collision, kind).solve_targets
+        settings = (make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
+
+        def search(rows: range, attempts: Ints) -> None:
+            where = (asked.targets, np.array([rows.start, rows.stop]))
+            solve_targets(*self._models, *where, *settings, asked.seed, asked.streams, attempts, *asked.outputs)
+
+        return search
