@@ -45,7 +45,7 @@ ROSTER = (
     Entry(
         name="ikde.solve_many",
         adapter="ikde:Many",
-        use="ikde.solve_many(robot, targets, settings, bulk=BulkOptions(threads=1)): arrays in and out: each has its share of the time",
+        use="ikde.solve_many(robot, targets, settings, bulk=BulkOptions(threads=1)), arrays in and out: a share each",
         packages=("ikde", "numpy", "numba"),
         batch=True,
     ),
