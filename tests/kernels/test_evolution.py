@@ -15,7 +15,8 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.target import Target
 from ikde.solver.problem import pack_search
-from ikde.track.typical import TypicalSettings, bound_sample
+from ikde.track.settings import TypicalSettings
+from ikde.track.typical import bound_sample
 from ikde.track.typical import pack_search as pack_sample_search
 from tests import reference
 from tests.conftest import random_q
@@ -295,7 +296,7 @@ def test_near_keeps_the_first_attempt_in_its_box(qiao):
 
 
 def test_a_sample_by_itself_is_one_population_on_its_stream(qiao):
-    follower, sample = follower_of(qiao, short_task(1), detector=False), 3
+    follower, sample = follower_of(qiao, short_task(1), collision="none"), 3
     alone = TypicalSettings(generations=20)
     robot, detector, search = (
         pack_robot(qiao),
