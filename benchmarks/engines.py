@@ -31,7 +31,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
-from ikde.solver.figures import compute_figures
+from ikde.solver.metrics import compute_metrics
 from ikde.solver.problem import make_problem, pack_searched
 from ikde.solver.settings import BulkOptions
 
@@ -95,7 +95,7 @@ def measure(robot: ikde.Robot, targets: ikde.Targets, kind: str, rounds: int) ->
 
 
 def engine_names() -> tuple[str, ...]:
-    """In the order of `Rows.engines`."""
+    """In the order of `SolveResults.engines`."""
     from ikde.solver.engine_table import NAMES
 
     return NAMES
@@ -142,7 +142,7 @@ def time_grader(robot: ikde.Robot, targets: ikde.Targets, q: np.ndarray, rounds:
     detector, settings, times = CollisionModel.of(robot).detector, ikde.SolveSettings(), []
     for _ in range(rounds):
         began = time.perf_counter()
-        compute_figures(CollisionModel(robot=robot, detector=detector), targets, q, settings)
+        compute_metrics(CollisionModel(robot=robot, detector=detector), targets, q, settings)
         times.append((time.perf_counter() - began) / len(q) * 1e6)
     return float(np.median(times))
 

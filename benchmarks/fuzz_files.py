@@ -27,7 +27,7 @@ os.environ.setdefault("IKDE_KERNELS", "tables")
 from fuzzer import KINDS, Fuzzer
 from machine import describe
 
-from ikde.errors import LONGEST, InputError
+from ikde.errors import MAX_LENGTH, InputError
 
 RESULTS = Path(__file__).parent / "results" / "fuzz_files.json"
 SECONDS = 30.0  # a file, on a machine that does other things as well
@@ -41,7 +41,7 @@ def judge(read: Callable[[], None]) -> str:
         read()
     except InputError as error:
         text = str(error)
-        return "one line" if text.isprintable() and len(text) <= LONGEST else f"not one line: {text!r:.200}"
+        return "one line" if text.isprintable() and len(text) <= MAX_LENGTH else f"not one line: {text!r:.200}"
     except BaseException as error:
         return f"{type(error).__name__}: {str(error)[:200]!r}"
     return "answer"

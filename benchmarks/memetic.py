@@ -38,7 +38,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.plot import style
 from ikde.plot.images import to_png
-from ikde.solver.figures import compute_clearances
+from ikde.solver.metrics import compute_clearances
 from ikde.solver.problem import ROUNDING, Problem, make_problem, pack_search
 from ikde.solver.search import usable_cores
 
@@ -48,7 +48,7 @@ SEED = 2024
 BUDGETS = (300, 1_000, 3_000, 10_000, 30_000, 100_000, 200_000)
 SHORT = 20_000  # evaluations of an attempt, where not as published
 CLEARANCE_M = 0.03
-LEAST_HORIZONTAL = 0.3  # of a tool axis, to be turned horizontal
+MIN_HORIZONTAL = 0.3  # of a tool axis, to be turned horizontal
 NEAR_M, NEAR_RAD = 0.2, 0.35  # half-widths of the box about a configuration
 FROZEN = {"d_x": 0.0, "d_y": 0.0, "q_z": 0.0}
 PAPER = {"population": 50, "weight": 0.5, "crossover": 0.9, "update": "generation"}
@@ -119,7 +119,7 @@ def make_clear(robot: ikde.Robot, count: int, rng: np.random.Generator) -> list[
         for q in sample_free(problem, 50, rng):
             T = ikde.forward(robot, q)[robot.tool]
             level = math.hypot(T[0, 2], T[1, 2])
-            if level < LEAST_HORIZONTAL:
+            if level < MIN_HORIZONTAL:
                 continue
             target = ikde.Target(T[:3, 3], axis_world_tool=T[:3, 2] * [1.0, 1.0, 0.0] / level)
             for _ in range(50):

@@ -49,7 +49,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.settings import SolveSettings as SolveSettings
     from ikde.solver.solve import solve as solve
     from ikde.solver.solve import solve_many as solve_many
-    from ikde.solver.verify import Verification as Verification
+    from ikde.solver.verify import Grade as Grade
     from ikde.solver.verify import verify as verify
     from ikde.track.follow_path import follow_path as follow_path
     from ikde.track.limits import MotionLimits as MotionLimits
@@ -103,7 +103,7 @@ _HOME = {
     "check_surface": "ikde.paper.surface",
     "CheckResult": "ikde.solver.check",
     "verify": "ikde.solver.verify",
-    "Verification": "ikde.solver.verify",
+    "Grade": "ikde.solver.verify",
     "from_convention": "ikde.model.convention",
     "to_convention": "ikde.model.convention",
     "compile_clock": "ikde.kernels.jit",

@@ -1,15 +1,15 @@
 """The one family of exceptions that ikde raises, and foreign text as it may be shown.
 
 A target that cannot be reached is not an error: it is a `SolveResult` with a `StopReason`. An error is one line of at
-most `LONGEST` characters: files and names may hold anything, also what a terminal would obey.
+most `MAX_LENGTH` characters: files and names may hold anything, also what a terminal would obey.
 """
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-LONGEST = 300  # characters of an error; file, line and key are kept, the message is cut
-LONGEST_FILE, LONGEST_KEYS, LONGEST_QUOTE = 140, 100, 60
-MOST_COMPARED = 1000  # names that a misspelt one is compared with
+MAX_LENGTH = 300  # characters of an error; file, line and key are kept, the message is cut
+MAX_FILE_LENGTH, MAX_KEYS_LENGTH, MAX_QUOTE_LENGTH = 140, 100, 60
+MAX_COMPARED = 1000  # names that a misspelt one is compared with
 
 
 class IkdeError(Exception):
@@ -23,7 +23,7 @@ class InputError(IkdeError):
     """
 
     def __init__(self, message: str, where: tuple[str | int, ...] = ()) -> None:
-        self.message = shorten(printable(message), LONGEST)
+        self.message = shorten(printable(message), MAX_LENGTH)
         self.where = where
         super().__init__(_write_line(format_path(where), self.message))
 
@@ -33,7 +33,7 @@ class FileError(InputError):
 
     def __init__(self, path: object, message: str, where: tuple[str | int, ...] = (), line: int | None = None) -> None:
         super().__init__(message, where)
-        file = shorten(printable(str(path)), LONGEST_FILE, keep_end=True)
+        file = shorten(printable(str(path)), MAX_FILE_LENGTH, keep_end=True)
         place = f"{file}:{line}" if line else file
         self.args = (_write_line(f"{place} → {format_path(where)}" if where else place, self.message),)
 
@@ -48,13 +48,13 @@ class VerificationError(IkdeError):
 
 def format_path(where: tuple[str | int, ...]) -> str:
     """Write `("spheres", "typical", 2, "radius")` as `spheres.typical[2].radius`."""
-    text = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(str(key), LONGEST_KEYS)}" for key in where)
-    return shorten(printable(text.removeprefix(".")), LONGEST_KEYS, keep_end=True)
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(str(key), MAX_KEYS_LENGTH)}" for key in where)
+    return shorten(printable(text.removeprefix(".")), MAX_KEYS_LENGTH, keep_end=True)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """` (did you mean 'x'?)`, or nothing when no known name is close."""
-    close = get_close_matches(name[:LONGEST_QUOTE], list(known)[:MOST_COMPARED], n=1)
+    close = get_close_matches(name[:MAX_QUOTE_LENGTH], list(known)[:MAX_COMPARED], n=1)
     return f" (did you mean {quoted(close[0])}?)" if close else ""
 
 
@@ -71,7 +71,7 @@ def printable(text: str, keep: str = "") -> str:
 
 def quoted(value: object) -> str:
     """A value as Python writes it, in so few characters that a line has room for it."""
-    return shorten(printable(repr(value)), LONGEST_QUOTE)
+    return shorten(printable(repr(value)), MAX_QUOTE_LENGTH)
 
 
 def shorten(text: str, most: int, *, keep_end: bool = False) -> str:
@@ -82,4 +82,4 @@ def shorten(text: str, most: int, *, keep_end: bool = False) -> str:
 
 
 def _write_line(place: str, message: str) -> str:
-    return f"{place}: {shorten(message, LONGEST - len(place) - 2)}" if place else message
+    return f"{place}: {shorten(message, MAX_LENGTH - len(place) - 2)}" if place else message

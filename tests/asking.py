@@ -27,7 +27,7 @@ MOST = {
     "memetic": 40,
     "de": 5,
 }  # targets of one question; what costs more is asked fewer
-MOST_BY_CALL = {"many": 250, "one": 10, "distinct": 2}
+MAX_BY_CALL = {"many": 250, "one": 10, "distinct": 2}
 FIGURES = 1e-9  # m or rad, how far told figures may be from the grader's, of targets within a metre
 
 
@@ -93,7 +93,7 @@ def draw_question(grader, rng, most, *, kinds=KINDS, detectors=None, methods=MET
     """One question with at most so many targets, of these kinds, under one of these detectors; None for all."""
     how, method = _choose(rng, HOW), _choose(rng, methods)
     kinds = ("pose",) if method == "analytic" else kinds
-    count = min(most, MOST[method], MOST_BY_CALL[how])
+    count = min(most, MOST[method], MAX_BY_CALL[how])
     freeze = _draw_freeze(grader, rng) if rng.random() < 0.2 else {}
     near = rng.uniform(grader.lower, grader.upper) if rng.random() < 0.15 else None
     least = -9.0 if rng.random() < 0.9 else -12.0
@@ -174,7 +174,7 @@ def _read_rows(rows):
         q=rows.q,
         reached=rows.reached,
         figures=np.column_stack([rows.position_error_m, rows.orientation_error_rad, rows.clearance_m]),
-        collides=rows.self_collision.tolist(),
+        collides=rows.collision.tolist(),
         verified=rows.verified.tolist(),
         methods=[row.method for row in rows],
     )
@@ -190,7 +190,7 @@ def _read_results(lists):
         figures=np.column_stack(
             [[r.position_error_m for r in results], [r.orientation_error_rad for r in results], clearances]
         ),
-        collides=[result.self_collision for result in results],
+        collides=[result.collision for result in results],
         verified=[result.verified for result in results],
         methods=[result.method for result in results],
     )

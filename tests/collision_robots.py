@@ -11,7 +11,7 @@ from ikde.model.robot import Detector, SphereRow
 from ikde.solver.plain import compute_gaps
 from tests.random_robots import make_frame, make_robot, random_robot
 
-LEAST_FREE = 0.3  # of the configurations of a random robot
+MIN_FREE = 0.3  # of the configurations of a random robot
 
 
 def loosen(robot):
@@ -22,7 +22,7 @@ def loosen(robot):
     hits = compute_gaps(CollisionModel(robot=robot, detector=detector), Q, every) <= detector.safe_distance_m
     kept, hit = [], np.zeros(len(Q), dtype=bool)
     for k in np.argsort(hits.mean(axis=0), kind="stable"):
-        if (hit | hits[:, k]).mean() <= 1.0 - LEAST_FREE:
+        if (hit | hits[:, k]).mean() <= 1.0 - MIN_FREE:
             kept.append(int(k))
             hit |= hits[:, k]
     return replace(robot, pair_lists={"some": tuple(every[k] for k in sorted(kept))})

@@ -30,7 +30,7 @@ def are_apart(robot, q, other):
 def assert_true_to_its_figures(robot, target, result, settings):
     """A reached result is inside, free, within tolerance, and its figures are `verify`'s."""
     graded = ikde.verify(robot, target, result.q, settings=settings)
-    assert result.verification == graded
+    assert result.grade == graded
     assert graded.accepted
     assert result.verified
     assert result.reached
@@ -40,4 +40,4 @@ def assert_true_to_its_figures(robot, target, result, settings):
     assert result.orientation_error_rad <= settings.orientation_tolerance_rad
     assert np.all(robot.lower <= result.q)
     assert np.all(result.q <= robot.upper)
-    assert not result.self_collision
+    assert not result.collision

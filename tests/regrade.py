@@ -23,7 +23,7 @@ class Grader:
         self.length, self.angle = UNITS[units["length"]], UNITS[units["angle"]]
         self.file, self.frames, self.tool = file, file["frames"], file["tool"]
         self.joints = list(file["joints"])
-        self.slides = {name: entry["kind"] == "prismatic" for name, entry in file["joints"].items()}
+        self.is_prismatic = {name: entry["kind"] == "prismatic" for name, entry in file["joints"].items()}
         self.lower, self.upper, self.home = (self._read_limits(key) for key in ("lower", "upper", "home"))
 
     @classmethod
@@ -32,7 +32,7 @@ class Grader:
         return cls(yaml.load(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader)))
 
     def _read_limits(self, key):
-        units = [self.length if self.slides[name] else self.angle for name in self.joints]
+        units = [self.length if self.is_prismatic[name] else self.angle for name in self.joints]
         return np.array([float(entry.get(key, 0)) for entry in self.file["joints"].values()]) * units
 
     # ---- where everything is
@@ -55,7 +55,7 @@ class Grader:
         if "joint" in entry:
             axis = self._vector(entry, "axis")
             motion = Q[:, self.joints.index(entry["joint"]), None] * (axis / np.linalg.norm(axis))
-            if self.slides[entry["joint"]]:
+            if self.is_prismatic[entry["joint"]]:
                 p = p + (R @ motion[:, :, None])[:, :, 0]
             else:
                 R = R @ Rotation.from_rotvec(motion).as_matrix()

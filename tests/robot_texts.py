@@ -10,9 +10,9 @@ import yaml
 
 from tests.regrade import Grader
 
-MOST_JOINTS = 12
+MAX_JOINTS = 12
 SAMPLES = 300  # configurations that tell how often a robot is free
-LEAST_FREE = 0.2  # of them
+MIN_FREE = 0.2  # of them
 WIDE = np.pi * np.array([1.0, 1.0, 2.0, 3.0])
 WORDS = ("j", "Gelenk ", "axis-", "関節")
 
@@ -30,7 +30,7 @@ class _Draft:
         self.rng, self.name = rng, f"random {seed}"
         self.joints, self.frames, self.spheres, self.bodies = {}, {}, {}, {"world": ["world"]}
         self.word = str(rng.choice(WORDS))
-        count = int(rng.integers(1, MOST_JOINTS + 1))
+        count = int(rng.integers(1, MAX_JOINTS + 1))
         self.drives = count >= 4 and rng.random() < 0.25
         if self.drives:
             self._add_base()
@@ -187,7 +187,7 @@ class _Draft:
         grader = Grader(file)
         for _ in range(8):
             hits = [hit for name in ("own", "wide") for hit in self._find_hits(grader, name).values() if not hit.all()]
-            if not hits or 1.0 - np.any(hits, axis=0).mean() >= LEAST_FREE:
+            if not hits or 1.0 - np.any(hits, axis=0).mean() >= MIN_FREE:
                 return
             for row in (*self.spheres["fine"], *self.spheres["coarse"]):
                 row["radius"] *= 0.6

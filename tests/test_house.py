@@ -9,7 +9,7 @@ PACKAGE = ROOT / "ikde"
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 FORBIDDEN_NAMES = {"utils", "util", "types", "core", "base", "helpers", "common", "misc"}
-LONGEST_FILE, LONGEST_BODY = 400, 60
+MAX_FILE_LENGTH, MAX_BODY_LENGTH = 400, 60
 KERNEL_DECORATORS = {"kernel", "leaf_kernel", "inline_kernel"}
 PROVENANCE = {"published", "derived", "calibrated"}
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
@@ -80,12 +80,12 @@ def test_a_file_says_in_its_name_what_it_holds():
 
 
 def test_a_file_is_short():
-    assert offences(lambda path: len(path.read_text(encoding="utf-8").splitlines()) > LONGEST_FILE) == {}
+    assert offences(lambda path: len(path.read_text(encoding="utf-8").splitlines()) > MAX_FILE_LENGTH) == {}
 
 
 def test_a_function_is_short():
     def measure(path):
-        return {f.name: body_length(f) for f in functions(path) if body_length(f) > LONGEST_BODY}
+        return {f.name: body_length(f) for f in functions(path) if body_length(f) > MAX_BODY_LENGTH}
 
     assert offences(measure) == {}
 

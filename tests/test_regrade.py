@@ -142,7 +142,7 @@ def test_random_robots_are_as_odd_as_the_law_asks():
     graders = [Grader.of_text(random_robot_text(seed)) for seed in range(60)]
     counts = [len(grader.joints) for grader in graders]
     assert min(counts) <= 2
-    assert max(counts) == robot_texts.MOST_JOINTS
+    assert max(counts) == robot_texts.MAX_JOINTS
     odd = [sum(bool(is_odd(grader)) for grader in graders) for is_odd in ODDITIES]
     assert min(odd) >= 3, odd
 
@@ -163,7 +163,7 @@ ODDITIES = [
     lambda grader: not grader.compared(),
     lambda grader: grader.compared() and grader.body(grader.tool) != list(grader.joints)[-1],
     lambda grader: np.any(grader.lower == grader.upper),
-    lambda grader: any(grader.slides.values()) and not all(grader.slides.values()),
+    lambda grader: any(grader.is_prismatic.values()) and not all(grader.is_prismatic.values()),
     lambda grader: grader.length != 1.0,
     lambda grader: "adjacent" in grader.file,
     lambda grader: len(grader.file.get("detectors", ())) > 1,

@@ -46,7 +46,7 @@ ROOT = Path(__file__).parent.parent.parent
 RESULTS = ROOT / "benchmarks" / "results" / "peer_tracks.json"
 TASKS = ("task1", "task2", "task3", "task4")
 PACKAGES = ("ikde", "pin-pink", "pin", "mink", "mujoco", "daqp", "qpsolvers")
-MOST_STEPS = 10
+MAX_STEPS = 10
 DEFAULT_GAIN = 0.85  # of mink's CollisionAvoidanceLimit
 NEAR_M, NEAR_RAD = 1e-3, 1e-2  # what counts as followed from a random start
 TIMES = {"median": 50, "p99": 99, "max": 100}
@@ -68,12 +68,12 @@ def make_ways(plan: TrackPlan, files: dict[str, Path]) -> list[Way]:
     drives: tuple[tuple[str, Drive], ...] = (("ikde", "omnidirectional"), ("ikde, differential", "differential"))
     ways = [Way(name=name, run=partial(run_ikde, plan, drive), drive=drive) for name, drive in drives]
     usual, split = make_manner(plan, is_split=False), make_manner(plan, is_split=True)
-    many = f"up to {MOST_STEPS} steps"
+    many = f"up to {MAX_STEPS} steps"
     for name, kind, manner, steps in (
         ("Pink, one step", PinkProgram, usual, 1),
-        (f"Pink, {many}", PinkProgram, split, MOST_STEPS),
+        (f"Pink, {many}", PinkProgram, split, MAX_STEPS),
         ("mink, one step", MinkProgram, usual, 1),
-        (f"mink, {many}", MinkProgram, split, MOST_STEPS),
+        (f"mink, {many}", MinkProgram, split, MAX_STEPS),
         ("mink, one step, default gain", MinkProgram, replace(usual, approach=DEFAULT_GAIN / usual.dt_s), 1),
     ):
         program = kind(plan.robot, files["urdf" if kind is PinkProgram else "mjcf"], manner)

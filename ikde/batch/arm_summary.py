@@ -11,8 +11,8 @@ from ikde.batch.manifest import ArmFacts, Manifest
 from ikde.batch.read import read_verdicts
 from ikde.batch.statistics import Rate, Spread, compute_spread
 
-MOST_LISTED = 1000  # unreached targets of an arm that are kept with name and reason
-MOST_COMPARED = 10  # targets that are few enough to be counted one by one
+MAX_LISTED = 1000  # unreached targets of an arm that are kept with name and reason
+MAX_COMPARED = 10  # targets that are few enough to be counted one by one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +91,7 @@ class ArmTally:
     def __init__(self, facts: ArmFacts, manifest: Manifest) -> None:
         self._facts = facts
         self._graders = manifest.graders
-        self._one_by_one = manifest.repeats > 1 and 2 <= manifest.targets <= MOST_COMPARED
+        self._one_by_one = manifest.repeats > 1 and 2 <= manifest.targets <= MAX_COMPARED
         self._all = _Counts()
         self._of_target: dict[int, _Counts] = {}
         self._collision_checked = 0
@@ -105,7 +105,7 @@ class ArmTally:
     def add(self, solutions: pa.Table, seconds: np.ndarray) -> None:
         """Count one part in."""
         self._all.add(solutions, self._graders)
-        self._collision_checked += len(solutions) - solutions["self_collision"].null_count
+        self._collision_checked += len(solutions) - solutions["collision"].null_count
         self._verified += Rate.of(read_verdicts(solutions["verified"]))
         for entry in solutions["stop_reason"].value_counts().to_pylist():
             self._stop_reasons[entry["values"]] += entry["counts"]
@@ -155,7 +155,7 @@ class ArmTally:
         known = np.isin(targets, list(self._listed))
         for target, count in zip(targets[known].tolist(), counts[known].tolist(), strict=True):
             self._listed[target] = replace(self._listed[target], missed=self._listed[target].missed + count)
-        new = np.flatnonzero(~known)[: MOST_LISTED - len(self._listed)]
+        new = np.flatnonzero(~known)[: MAX_LISTED - len(self._listed)]
         rows = missed.take(pa.array(first[new])).to_pylist() if new.size else []
         for row, count in zip(rows, counts[new].tolist(), strict=True):
             self._listed[row["target"]] = Unreached(

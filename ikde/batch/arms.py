@@ -8,9 +8,9 @@ from ikde.batch.plan import Arm
 from ikde.batch.recipe import as_plain
 from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.errors import InputError
-from ikde.files.entries import UnitsEntry
-from ikde.files.placed import placed
-from ikde.files.robot_entries import read_collision, to_si, with_ranges
+from ikde.formats.entries import UnitsEntry
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.robot_entries import read_collision, to_si, with_ranges
 from ikde.model.robot import Robot
 from ikde.solver.problem import make_problem
 from ikde.solver.settings import SolveSettings
@@ -22,7 +22,7 @@ TOLERANCES = {"position_tolerance": "position_tolerance_m", "orientation_toleran
 def make_arms(spec: BatchSpec, robot: Robot) -> tuple[Arm, ...]:
     """The arms of a run, or the one that is called like its method."""
     if not spec.arms:
-        with placed("solve"):
+        with prefix_errors("solve"):
             return (make_arm(spec.solve.method, robot, spec.solve, spec.units),)
     return tuple(_make_named(name, spec, robot) for name in spec.arms)
 
@@ -30,7 +30,7 @@ def make_arms(spec: BatchSpec, robot: Robot) -> tuple[Arm, ...]:
 def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry) -> Arm:
     """One arm; raises `InputError` with a path inside a `SolveEntry`."""
     own = with_ranges(robot, entry.ranges, units)
-    with placed("detector"):
+    with prefix_errors("detector"):
         collision = read_collision(own, entry.detector, units)
     problem = make_problem(
         own,

@@ -12,13 +12,13 @@ from ikde.batch.parts import SOLUTIONS, TIMING, Part
 from ikde.errors import FileError
 
 ALWAYS = {
-    SOLUTIONS: ("arm", "target", "repeat", "reached", "self_collision", "verified", "stop_reason"),
+    SOLUTIONS: ("arm", "target", "repeat", "reached", "collision", "verified", "stop_reason"),
     TIMING: ("arm", "target", "repeat", "solve_seconds", "host"),
 }
 WORDY = ("arm", "target_name", "stop_reason", "pair_a", "pair_b", "reason", "hint", "target_kind", "host")
-VERDICTS = ("self_collision", "verified")  # and `<grader>_collides`: null where nothing was checked
-LONGEST_WORD = 5000  # characters
-LARGEST = 1e12  # of a number
+VERDICTS = ("collision", "verified")  # and `<grader>_collides`: null where nothing was checked
+MAX_WORD_LENGTH = 5000  # characters
+MAX_NUMBER = 1e12  # of a number
 
 
 def check_part(
@@ -76,8 +76,8 @@ def _is_of_kind(name: str, kind: pa.DataType) -> bool:
 def _find_wrong_values(name: str, column: pa.ChunkedArray, manifest: Manifest, part: Part) -> Iterator[str]:
     if pa.types.is_dictionary(column.type):
         words = {word for chunk in column.chunks for word in chunk.dictionary.to_pylist()}
-        if max((len(word or "") for word in words), default=0) > LONGEST_WORD:
-            yield f"{name} holds words of more than {LONGEST_WORD:,} characters"
+        if max((len(word or "") for word in words), default=0) > MAX_WORD_LENGTH:
+            yield f"{name} holds words of more than {MAX_WORD_LENGTH:,} characters"
         known = {"arm": [part.arm], "stop_reason": WORDS}.get(name)
         if known and not words <= set(known):
             yield f"{name} holds words that are not among its own"
@@ -88,5 +88,5 @@ def _find_wrong_values(name: str, column: pa.ChunkedArray, manifest: Manifest, p
         yield f"{name} counts other solves than this part's"
     if pa.types.is_floating(column.type):
         numbers = column.to_numpy()
-        if np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0) > LARGEST:
-            yield f"{name} holds numbers beyond {LARGEST:g}"
+        if np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0) > MAX_NUMBER:
+            yield f"{name} holds numbers beyond {MAX_NUMBER:g}"

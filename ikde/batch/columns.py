@@ -12,9 +12,9 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector
 from ikde.model.rotation import quat_wxyz_from_rotation
 from ikde.model.target import KINDS, POSITION
-from ikde.solver.figures import Clearances, Figures, compute_clearances
+from ikde.solver.metrics import Clearances, Metrics, compute_clearances
 from ikde.solver.result import STOP_REASONS
-from ikde.solver.rows import Rows
+from ikde.solver.results import SolveResults
 from ikde.solver.verify import MaskedBools
 
 Columns = dict[str, Any]
@@ -23,7 +23,7 @@ WORDS = [str(reason) for reason in STOP_REASONS]
 
 def make_solutions(
     arm: str,
-    rows: Rows,
+    rows: SolveResults,
     *,
     numbers: Ints,
     repeats: int,
@@ -51,7 +51,7 @@ def make_solutions(
     return pa.table(columns)
 
 
-def make_timing(arm: str, rows: Rows, *, numbers: Ints, repeats: int) -> pa.Table:
+def make_timing(arm: str, rows: SolveResults, *, numbers: Ints, repeats: int) -> pa.Table:
     """What depends on the machine: seconds and host of each solve of a part."""
     columns = _identity(arm, numbers, repeats, None)
     columns["solve_seconds"] = pa.array(rows.found.seconds)
@@ -67,28 +67,28 @@ def _identity(arm: str, numbers: Ints, repeats: int, names: pa.Array | Sequence[
     return columns
 
 
-def _verdict(rows: Rows) -> Columns:
+def _verdict(rows: SolveResults) -> Columns:
     return {
         "reached": pa.array(rows.reached),
-        "self_collision": _verdicts(rows.self_collision),
+        "collision": _verdicts(rows.collision),
         "verified": _verdicts(rows.verified),
         "stop_reason": _coded(rows.stop_reasons, WORDS),
     }
 
 
-def _joints(rows: Rows) -> Columns:
+def _joints(rows: SolveResults) -> Columns:
     return {f"q_{name}": pa.array(rows.q[:, k]) for k, name in enumerate(rows.problem.robot.joint_names)}
 
 
-def _errors(rows: Rows) -> Columns:
+def _errors(rows: SolveResults) -> Columns:
     return {name: pa.array(getattr(rows, name)) for name in ("position_error_m", "orientation_error_rad")}
 
 
-def _clearance(rows: Rows) -> Columns:
-    return _closest(rows.graded.figures, rows.problem.collision)
+def _clearance(rows: SolveResults) -> Columns:
+    return _closest(rows.outcomes.metrics, rows.problem.collision)
 
 
-def _cost(rows: Rows) -> Columns:
+def _cost(rows: SolveResults) -> Columns:
     return {
         "attempts": _integers(rows.attempts),
         "evaluations": pa.array(rows.evaluations),
@@ -96,9 +96,9 @@ def _cost(rows: Rows) -> Columns:
     }
 
 
-def _reason(rows: Rows) -> Columns:
+def _reason(rows: SolveResults) -> Columns:
     """Why not, and what would help; null where the target was reached."""
-    missed, stories = np.flatnonzero(~rows.reached), rows.graded.explanations
+    missed, stories = np.flatnonzero(~rows.reached), rows.outcomes.explanations
     told = np.full(len(rows), -1)
     told[missed], reasons = _reasons(rows, missed)
     looked_into = sorted(stories)
@@ -108,9 +108,9 @@ def _reason(rows: Rows) -> Columns:
     return {"reason": _coded(told, reasons), "hint": _coded(hinted, hints)}
 
 
-def _reasons(rows: Rows, missed: Ints) -> tuple[Ints, list[str]]:
+def _reasons(rows: SolveResults, missed: Ints) -> tuple[Ints, list[str]]:
     """The reasons of rows that were missed, as codes and words: one is put into words for all that tell the same."""
-    stories, found = rows.graded.explanations, rows.found
+    stories, found = rows.outcomes.explanations, rows.found
     own = np.array([row if row in stories else -1 for row in missed.tolist()] if stories else np.full(len(missed), -1))
     facts = (own, rows.stop_reasons[missed], found.engine[missed], rows.attempts[missed], rows.rejected[missed])
     _, first, which = np.unique(
@@ -127,7 +127,7 @@ def _words_and_codes(words: Sequence[str | None]) -> tuple[list[str], list[int]]
     return list(known), codes
 
 
-def _target(rows: Rows) -> Columns:
+def _target(rows: SolveResults) -> Columns:
     """What was asked for. Of an axis target only the quaternion's z axis counts; a position target has none."""
     targets = rows.targets
     quats = quat_wxyz_from_rotation(targets.R_world_tool)
@@ -138,7 +138,7 @@ def _target(rows: Rows) -> Columns:
     )
 
 
-def _graded(rows: Rows, grader: Detector) -> Columns:
+def _graded(rows: SolveResults, grader: Detector) -> Columns:
     collision = CollisionModel(robot=rows.problem.robot, detector=grader)
     seen = compute_clearances(collision, rows.q)
     columns = _closest(seen, collision)
@@ -146,7 +146,7 @@ def _graded(rows: Rows, grader: Detector) -> Columns:
     return {f"{grader.name}_{name}": columns[name] for name in ("clearance_m", "collides", "pair_a", "pair_b")}
 
 
-def _closest(seen: Figures | Clearances, collision: CollisionModel) -> Columns:
+def _closest(seen: Metrics | Clearances, collision: CollisionModel) -> Columns:
     """Clearance and the pair it is between, null where there is no pair."""
     names = list(dict.fromkeys(name for pair in collision.pairs for name in pair))
     sides = np.array([*([names.index(a), names.index(b)] for a, b in collision.pairs), [-1, -1]])  # -1: no pair
@@ -157,7 +157,7 @@ def _closest(seen: Figures | Clearances, collision: CollisionModel) -> Columns:
     }
 
 
-GROUPS: Mapping[str, Callable[[Rows], Columns]] = {
+GROUPS: Mapping[str, Callable[[SolveResults], Columns]] = {
     "q": _joints,
     "errors": _errors,
     "clearance": _clearance,

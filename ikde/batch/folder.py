@@ -21,7 +21,7 @@ from ikde.batch.manifest import (
 from ikde.batch.parts import GO_ON, SOLUTIONS, TIMING
 from ikde.batch.plan import Batch
 from ikde.errors import FileError
-from ikde.files.atomic import remove_temporaries, sync_folder, temporary_path
+from ikde.formats.atomic import remove_temporaries, sync_folder, temporary_path
 
 LOCK = ".lock"
 SYNC_SECONDS = 1.0

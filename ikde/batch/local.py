@@ -13,9 +13,9 @@ from dataclasses import replace
 from ikde.batch.parts import Part, SealedPart, seal_part
 from ikde.batch.plan import Batch
 from ikde.batch.task import make_task, solve_task
+from ikde.solver.cancellation import stoppable
 from ikde.solver.engine_table import SEVERAL
 from ikde.solver.search import usable_cores
-from ikde.solver.stopping import stoppable
 
 AHEAD = 1  # parts that may wait to be written, beyond one a thread: memory stays flat
 

@@ -13,11 +13,11 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, ConfigDict, Field, StringConstraints, TypeAdapter, ValidationError
 
 from ikde.batch.machine import describe_machine, describe_versions
-from ikde.batch.parts import MOST_PARTS, PLAIN_NAME, SOLUTIONS, TIMING, Part, list_parts
+from ikde.batch.parts import MAX_PARTS, PLAIN_NAME, SOLUTIONS, TIMING, Part, list_parts
 from ikde.batch.plan import Batch
 from ikde.errors import FileError, format_path, quoted
-from ikde.files.atomic import replace_all
-from ikde.files.reading import read_json
+from ikde.formats.atomic import replace_all
+from ikde.formats.reading import read_json
 
 MANIFEST = "manifest.json"
 REPORT = "report"  # where `ikde report` puts its page
@@ -68,7 +68,7 @@ class Manifest:
     seed: int
     chunk: Count
     """Solves a part."""
-    parts: Annotated[int, Field(ge=1, le=MOST_PARTS)]
+    parts: Annotated[int, Field(ge=1, le=MAX_PARTS)]
     """Of all arms."""
     started: str
     """UTC, ISO 8601."""

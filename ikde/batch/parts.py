@@ -10,14 +10,14 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ikde.errors import FileError
-from ikde.files.atomic import write_together
-from ikde.files.reading import errors_of, read_bytes
-from ikde.files.tables import check_room, claimed_bytes
+from ikde.formats.atomic import write_together
+from ikde.formats.reading import errors_of, read_bytes
+from ikde.formats.tables import check_room, claimed_bytes
 
 PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]{1,100}")  # arms name files, graders name columns
 SOLUTIONS, TIMING = "solutions", "timing"
 RECIPE, SEAL = b"ikde_recipe", b"ikde_seal"  # keys in the metadata of a file
-MOST_PARTS = 10**6  # of a run
+MAX_PARTS = 10**6  # of a run
 GO_ON = "finished parts are intact; run the same command again to go on"
 
 

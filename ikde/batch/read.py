@@ -11,7 +11,7 @@ from ikde.batch.check_part import check_part
 from ikde.batch.manifest import Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part, read_table
 from ikde.errors import FileError
-from ikde.files.reading import errors_of
+from ikde.formats.reading import errors_of
 from ikde.solver.verify import MaskedBools
 
 

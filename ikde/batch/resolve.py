@@ -4,19 +4,19 @@ from pathlib import Path
 from typing import Any
 
 from ikde.batch.arms import describe_arm, make_arm, make_arms
-from ikde.batch.parts import MOST_PARTS, PLAIN_NAME
+from ikde.batch.parts import MAX_PARTS, PLAIN_NAME
 from ikde.batch.plan import Batch
 from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
 from ikde.errors import InputError
-from ikde.files.placed import placed
-from ikde.files.robot_entries import read_collision
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.robot_entries import read_collision
 from ikde.model.generate.module import describe_kernels
 from ikde.model.robot import Detector, Robot
 
-MOST_SOLVES = 10**9  # of an arm
-LEAST_CHUNK, MOST_CHUNK = 1000, 10_000
+MAX_SOLVES = 10**9  # of an arm
+MIN_CHUNK, MAX_CHUNK = 1000, 10_000
 
 
 def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None) -> Batch:
@@ -33,15 +33,15 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
         FileError: for what is wrong inside a table.
     """
     arms, graders = make_arms(spec, robot), _make_graders(spec, robot)
-    with placed("solve"):
+    with prefix_errors("solve"):
         shared = make_arm("solve", robot, spec.solve, spec.units)
     source, targets = make_source(spec, shared.problem, folder)
-    if source.count * spec.repeats > MOST_SOLVES:
-        raise InputError(f"{source.count:,} targets make more than {MOST_SOLVES:,} solves an arm", ("repeats",))
+    if source.count * spec.repeats > MAX_SOLVES:
+        raise InputError(f"{source.count:,} targets make more than {MAX_SOLVES:,} solves an arm", ("repeats",))
     chunk = spec.chunk or choose_chunk(source.count * spec.repeats)
     parts = len(arms) * -(-source.count * spec.repeats // chunk)
-    if parts > MOST_PARTS:
-        raise InputError(f"this makes {parts:,} files; expected at most {MOST_PARTS:,}", ("chunk",))
+    if parts > MAX_PARTS:
+        raise InputError(f"this makes {parts:,} files; expected at most {MAX_PARTS:,}", ("chunk",))
     asked: dict[str, Any] = {
         "repeats": spec.repeats,
         "seed": spec.seed,
@@ -66,13 +66,13 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
 
 def choose_chunk(solves: int) -> int:
     """Solves a part: a hundredth of an arm's; a part costs 10 ms beside its solves, and a kill costs some parts."""
-    return min(max(solves // 100, LEAST_CHUNK), MOST_CHUNK)
+    return min(max(solves // 100, MIN_CHUNK), MAX_CHUNK)
 
 
 def _make_graders(spec: BatchSpec, robot: Robot) -> tuple[Detector, ...]:
     graders: dict[str, Detector] = {}
     for index, choice in enumerate(spec.grade):
-        with placed("grade", index):
+        with prefix_errors("grade", index):
             detector = read_collision(robot, choice, spec.units).detector
             if detector is None:
                 raise InputError("expected a detector; 'none' grades nothing")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from ikde.files.poses import Orientation, join_poses
+from ikde.formats.poses import Orientation, join_poses
 from ikde.kernels.arrays import Floats
 from ikde.model.target import KINDS, Target, Targets
 

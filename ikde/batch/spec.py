@@ -4,7 +4,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
-from ikde.files.entries import (
+from ikde.formats.entries import (
     Count,
     DetectorChoice,
     Entry,
@@ -16,7 +16,7 @@ from ikde.files.entries import (
     UnitsEntry,
     Vector,
 )
-from ikde.files.names import Name, Text
+from ikde.formats.names import Name, Text
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.engine_table import Method
 from ikde.solver.settings import Collision, Update
@@ -156,7 +156,7 @@ class OutputEntry(Entry):
     """What the results hold."""
 
     columns: list[ColumnGroup] = list(COLUMN_GROUPS)
-    """Groups of columns besides arm, target, repeat, reached, self_collision, verified and stop_reason."""
+    """Groups of columns besides arm, target, repeat, reached, collision, verified and stop_reason."""
 
 
 class BatchSpec(Entry):

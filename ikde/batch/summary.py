@@ -64,5 +64,5 @@ def summarise(folder: str | PathLike[str]) -> RunSummary:
 
 def _columns(manifest: Manifest) -> list[str]:
     identity = ["arm", "target", "target_name", "repeat", "stop_reason", "reason", "attempts"]
-    verdicts = ["reached", "self_collision", "verified"]
+    verdicts = ["reached", "collision", "verified"]
     return [*identity, *verdicts, *(f"{grader}_collides" for grader in manifest.graders)]

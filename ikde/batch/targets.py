@@ -9,10 +9,10 @@ from ikde.batch.generators import ReachableSource, make_ball, make_box, make_gri
 from ikde.batch.recipe import array_digest, as_plain, digest
 from ikde.batch.sources import ListSource, TargetSource
 from ikde.batch.spec import BatchSpec, BoxEntry, GridEntry, ReachableEntry, SphereEntry
-from ikde.files.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry, only_key
-from ikde.files.placed import placed
-from ikde.files.poses import read_orientation, read_position
-from ikde.files.table_targets import TableSource, read_targets
+from ikde.formats.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry, only_key
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.poses import read_orientation, read_position
+from ikde.formats.table_targets import TableSource, read_targets
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target, Targets
 from ikde.solver.problem import Problem
@@ -32,10 +32,10 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
         InputError: with the path of the key inside the run file.
         FileError: for what is wrong inside a table.
     """
-    with placed("targets"):
+    with prefix_errors("targets"):
         key = only_key(spec.targets)
         entry, units = getattr(spec.targets, key), spec.units
-        with placed(key):
+        with prefix_errors(key):
             if isinstance(entry, FileEntry):
                 table = read_targets(folder / entry.path, entry.columns, entry.units or units)
                 return table, {key: _describe_table(table)}
@@ -51,7 +51,7 @@ def _make_listed(
 ) -> TargetSource:
     if isinstance(entry, list):
         return _make_inline(entry, units)
-    with placed("orientation"):
+    with prefix_errors("orientation"):
         orientation = read_orientation(entry.orientation or OrientationEntry(), units)
     if isinstance(entry, SphereEntry):
         center = read_position("center", entry.center, units)
@@ -67,7 +67,7 @@ def _make_listed(
 def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
     targets = []
     for index, entry in enumerate(entries):
-        with placed(index):
+        with prefix_errors(index):
             position = read_position("position", entry.position, units)
             targets.append(Target(position, **read_orientation(entry, units)))
     named = any(entry.name for entry in entries)
@@ -76,7 +76,7 @@ def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
 
 
 def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> ReachableSource:
-    with placed("detector"):
+    with prefix_errors("detector"):
         collision = CollisionModel.of(problem.robot, entry.detector)
     source = ReachableSource(
         collision=collision,

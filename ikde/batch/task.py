@@ -10,7 +10,7 @@ from ikde.batch.parts import Part
 from ikde.batch.plan import Arm, Batch
 from ikde.model.robot import Detector
 from ikde.model.target import Targets
-from ikde.solver.rows import solve_rows
+from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions
 
 

@@ -96,9 +96,9 @@ def read_collision(
     from dataclasses import replace
 
     from ikde.errors import InputError
-    from ikde.files.entries import LENGTHS_M
+    from ikde.formats.entries import LENGTHS_M
     from ikde.model.collision_model import CollisionModel
-    from ikde.model.names import LONGEST_NAME
+    from ikde.model.names import MAX_NAME_LENGTH
 
     detector = CollisionModel.of(robot, name).detector
     if detector is None:
@@ -109,7 +109,7 @@ def read_collision(
         if pairs not in robot.pair_lists:
             known = ", ".join(robot.pair_lists)
             raise InputError(f"no pair list is called {pairs!r}; {robot.name} has {known}", ("pairs",))
-        detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}"[:LONGEST_NAME])
+        detector = replace(detector, pairs=pairs, name=f"{detector.name} over {pairs}"[:MAX_NAME_LENGTH])
     if safe_distance is not None:
         if not 0.0 <= safe_distance < float("inf"):
             raise InputError(f"expected a distance of at least 0, got {safe_distance:g}", ("safe-distance",))

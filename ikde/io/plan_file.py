@@ -9,8 +9,8 @@ from pydantic import ValidationError
 
 from ikde.batch.spec import BatchSpec
 from ikde.errors import FileError, InputError
-from ikde.files.placed import placed
-from ikde.files.reading import read_text
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.reading import read_text
 from ikde.io.robot_file import parse_robot
 from ikde.io.robots import is_file_name, load_robot
 from ikde.io.schema import Given, as_file_error
@@ -52,7 +52,7 @@ def _resolve(
     except ValidationError as error:
         raise as_file_error(source, error, model) from None
     try:
-        with placed("robot"):
+        with prefix_errors("robot"):
             robot = _load(spec.robot, folder)
         return make(spec, robot, folder=folder, file=file)
     except FileError:

@@ -8,7 +8,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from ikde.errors import FileError
-from ikde.files.atomic import replace_all
+from ikde.formats.atomic import replace_all
 
 RESULTS = "results.json"
 

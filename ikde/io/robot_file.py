@@ -7,9 +7,9 @@ from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError, nearest
-from ikde.files.entries import DetectorPartsEntry, Entry, Number, UnitsEntry, Vector
-from ikde.files.names import LONGEST_TEXT, Name, Text
-from ikde.files.robot_entries import make_detector
+from ikde.formats.entries import DetectorPartsEntry, Entry, Number, UnitsEntry, Vector
+from ikde.formats.names import MAX_TEXT_LENGTH, Name, Text
+from ikde.formats.robot_entries import make_detector
 from ikde.io.schema import as_file_error
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
@@ -120,7 +120,7 @@ class RobotFile(Entry):
     """The whole file."""
 
     name: Name
-    title: Annotated[str, Field(max_length=LONGEST_TEXT)] = ""
+    title: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] = ""
     units: UnitsEntry = UnitsEntry()
     convention: Name = "own"
     sources: dict[Name, SourceEntry] = {}

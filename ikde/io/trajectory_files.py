@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import yaml
 
 from ikde.errors import InputError
-from ikde.files.atomic import replace_all
+from ikde.formats.atomic import replace_all
 from ikde.io.report_folder import prepare_folder
 from ikde.kernels.arrays import Floats
 from ikde.track.trajectory import Trajectory

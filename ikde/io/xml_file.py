@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ikde.errors import FileError, InputError
-from ikde.files.atomic import replace_all
+from ikde.formats.atomic import replace_all
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Robot
 from ikde.model.spheres import Sphere, expand_rows

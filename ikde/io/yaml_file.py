@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from ikde.errors import FileError, InputError, quoted
-from ikde.files.reading import MAX_DEPTH, read_text
+from ikde.formats.reading import MAX_DEPTH, read_text
 
 Where = tuple[str | int, ...]
 

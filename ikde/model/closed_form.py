@@ -19,7 +19,7 @@ from ikde.model.rotation import snap
 from ikde.model.tree import transform
 
 ALIGNED = 1e-9  # how far from parallel, perpendicular or meeting axes may be; m or rad
-SHORTEST_M = 1e-6  # a shorter link is no link
+MIN_LENGTH_M = 1e-6  # a shorter link is no link
 QUARTER_TURNS = (1, 0, 0, 1, -1, 0)  # of alpha in the Denavit-Hartenberg model
 CHECKED, AGREEMENT = 20, 1e-9  # configurations at which an arm is checked, and how far it may be off; m and rad
 
@@ -153,7 +153,7 @@ def _measure(arrays: RobotArrays, chain: list[int], Ts_carrier_body: Floats) -> 
     z4 = axes[4] * _sign(beyond @ (plane @ axes[4]))
     z5 = axes[5] * _sign((T_carrier_tool[:3, 3] - wrist) @ axes[5])
     x4 = np.cross(z1, z4)
-    if min(np.linalg.norm(upper), np.linalg.norm(fore)) < SHORTEST_M:
+    if min(np.linalg.norm(upper), np.linalg.norm(fore)) < MIN_LENGTH_M:
         return None
     turns = np.array([0.0, _angle(upper), _angle(fore), _angle(plane @ x4)])  # of x1, x2, x3 and x4 in the plane
     angle_5 = np.arctan2(-z5 @ x4, z5 @ z1)

@@ -11,7 +11,7 @@ from ikde.kernels.arrays import CollisionArrays
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
-from ikde.model.robot import FARTHEST, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, SphereRow
+from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, SphereRow
 
 NAMED = 3  # pairs in a message that is about many
 MAX_PAIRS, MAX_SPHERE_PAIRS = 50_000, 2_000_000  # of components in a list, and of spheres that a detector compares
@@ -101,8 +101,8 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
     if detector.name == NO_DETECTOR:
         raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where)
     distance = detector.safe_distance_m
-    if not (is_number(distance) and 0.0 <= distance <= FARTHEST):
-        raise InputError(f"expected a distance of at least 0, up to {FARTHEST:g} m", (*where, "safe_distance"))
+    if not (is_number(distance) and 0.0 <= distance <= MAX_MAGNITUDE):
+        raise InputError(f"expected a distance of at least 0, up to {MAX_MAGNITUDE:g} m", (*where, "safe_distance"))
     described = robot.components(detector.spheres)
     if not described:
         raise InputError(f"this detector compares nothing: {detector.spheres!r} has no spheres", (*where, "spheres"))

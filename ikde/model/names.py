@@ -4,7 +4,7 @@ from typing import Any
 
 from ikde.errors import InputError
 
-LONGEST_NAME = 100  # characters
+MAX_NAME_LENGTH = 100  # characters
 
 
 def check_printable(name: Any, where: tuple[str | int, ...]) -> None:
@@ -18,7 +18,7 @@ def find_fault(name: Any) -> str | None:
     """What is wrong with a name, or None. Control characters, invisible ones and those that turn text are refused."""
     if not isinstance(name, str):
         return f"expected a name, got {type(name).__name__}"
-    if not 1 <= len(name) <= LONGEST_NAME:
-        return f"expected a name of 1 to {LONGEST_NAME} characters, got {len(name):,}"
+    if not 1 <= len(name) <= MAX_NAME_LENGTH:
+        return f"expected a name of 1 to {MAX_NAME_LENGTH} characters, got {len(name):,}"
     hidden = next((character for character in name if not character.isprintable()), None)
     return None if hidden is None else f"expected a name of printable characters, got one with {hidden!a}"

@@ -12,7 +12,7 @@ from ikde.kernels.arrays import Floats
 WORLD = "world"
 NO_DETECTOR = "none"
 TOOL = "tool"  # what the tool's frame is called beside its own name
-FARTHEST = 1e5  # m or rad, of all that a robot is made of: beyond it an angle has lost its last digits
+MAX_MAGNITUDE = 1e5  # m or rad, of all that a robot is made of: beyond it an angle has lost its last digits
 
 JointKind = Literal["revolute", "prismatic"]
 Spacing = Literal["touching", "even"]
@@ -164,7 +164,7 @@ class Robot:
         return np.array([joint.home for joint in self.joints])
 
     @property
-    def slides(self) -> NDArray[np.bool_]:
+    def is_prismatic(self) -> NDArray[np.bool_]:
         """Which joints are prismatic [N]."""
         return np.array([joint.kind == "prismatic" for joint in self.joints])
 

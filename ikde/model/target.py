@@ -12,9 +12,9 @@ from ikde.kernels.arrays import AXIS, POSE, POSITION, Floats, Ints
 from ikde.model.numbers import read_numbers
 from ikde.model.rotation import are_rotations, check_rotation, length, rotation_with_z
 
-FARTHEST = 1e6  # m: beyond it, doubles hold less than a nanometre
-LONGEST = 1e100  # of an axis, whose length says nothing
-SHORTEST = 1e-12
+MAX_MAGNITUDE = 1e6  # m: beyond it, doubles hold less than a nanometre
+MAX_LENGTH = 1e100  # of an axis, whose length says nothing
+MIN_LENGTH = 1e-12
 TargetKind = Literal["position", "axis", "pose"]
 KINDS: tuple[TargetKind, ...] = ("position", "axis", "pose")  # in the order of their numbers in `Targets.kind`
 NO_DIRECTION = "an axis of length 0 has no direction"
@@ -45,7 +45,7 @@ class Target:
         axis_world_tool: ArrayLike | None = None,
     ) -> None:
         kind, R = _read_orientation(R_world_tool, axis_world_tool, rows=())
-        p = _read_vectors(p_world_tool, "p_world_tool", FARTHEST, rows=())
+        p = _read_vectors(p_world_tool, "p_world_tool", MAX_MAGNITUDE, rows=())
         self._set(KINDS[kind], np.concatenate([R, p[:, None]], axis=1))
 
     @property
@@ -105,7 +105,7 @@ class Targets:
         axis_world_tool: ArrayLike | None = None,
     ) -> None:
         kind, R = _read_orientation(R_world_tool, axis_world_tool, rows=("T",))
-        p = _read_vectors(p_world_tool, "p_world_tool", FARTHEST, rows=("T",))
+        p = _read_vectors(p_world_tool, "p_world_tool", MAX_MAGNITUDE, rows=("T",))
         if kind == POSITION:
             R = np.broadcast_to(R, (len(p), 3, 3))
         if len(R) != len(p):
@@ -203,9 +203,9 @@ def _read_rotations(values: ArrayLike, rows: Rows) -> Floats:
 
 def _read_axes(values: ArrayLike, rows: Rows) -> Floats:
     """Directions [*rows, 3] of vectors that have one."""
-    axes = _read_vectors(values, "axis_world_tool", LONGEST, rows)
+    axes = _read_vectors(values, "axis_world_tool", MAX_LENGTH, rows)
     lengths = length(axes)
-    _refuse(lengths > SHORTEST, "axis_world_tool", lambda row: NO_DIRECTION)
+    _refuse(lengths > MIN_LENGTH, "axis_world_tool", lambda row: NO_DIRECTION)
     return axes / lengths[..., None]
 
 

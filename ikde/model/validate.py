@@ -10,7 +10,7 @@ from ikde.model.base_motion import find_planar_base
 from ikde.model.collision_model import check_detector
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
-from ikde.model.robot import FARTHEST, NO_DETECTOR, TOOL, WORLD, Frame, Joint, Pairs, Robot, SphereRow
+from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, TOOL, WORLD, Frame, Joint, Pairs, Robot, SphereRow
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
 
@@ -89,7 +89,7 @@ def _check_joints(robot: Robot) -> None:
     for joint in robot.joints:
         where = ("joints", joint.name)
         for key in ("lower", "upper", "home"):
-            _require(bool(abs(getattr(joint, key)) <= FARTHEST), _too_far(joint, getattr(joint, key)), *where, key)
+            _require(bool(abs(getattr(joint, key)) <= MAX_MAGNITUDE), _too_far(joint, getattr(joint, key)), *where, key)
         _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
         _require(inside, "home is outside the limits", *where, "home")
@@ -101,7 +101,7 @@ def _check_joints(robot: Robot) -> None:
 
 def _too_far(joint: Joint, value: float) -> str:
     unit = "m" if joint.kind == "prismatic" else "rad"
-    return f"expected a finite number, at most {FARTHEST:g} {unit} from 0, got {float(value)}"
+    return f"expected a finite number, at most {MAX_MAGNITUDE:g} {unit} from 0, got {float(value)}"
 
 
 def _sort_frames(robot: Robot) -> tuple[Frame, ...]:
@@ -144,8 +144,8 @@ def _check_frame(robot: Robot, frame: Frame, frames: Mapping[str, Frame]) -> Non
     where = ("frames", frame.name)
     _require(frame.name != WORLD, f"{WORLD!r} is the root and cannot be defined", *where)
     _check_name(frame.parent, [WORLD, *frames], (*where, "parent"), "frame")
-    is_near = bool(np.all(np.abs(frame.p_parent_frame) <= FARTHEST))  # False for NaN
-    _require(is_near, f"expected finite numbers, at most {FARTHEST:g} m from 0", *where, "xyz")
+    is_near = bool(np.all(np.abs(frame.p_parent_frame) <= MAX_MAGNITUDE))  # False for NaN
+    _require(is_near, f"expected finite numbers, at most {MAX_MAGNITUDE:g} m from 0", *where, "xyz")
     check_rotation(frame.R_parent_frame)
     if frame.joint is None:
         _require(frame.axis is None, "an axis needs a joint", *where, "axis")
@@ -169,7 +169,12 @@ def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int,
         here = (*where, index)
         _check_name(row.start, tree.frame_body, (*here, "from"), "frame")
         _check_name(row.end, tree.frame_body, (*here, "to"), "frame")
-        _require(0.0 < row.radius_m <= FARTHEST, f"expected a radius above 0, up to {FARTHEST:g} m", *here, "radius")
+        _require(
+            0.0 < row.radius_m <= MAX_MAGNITUDE,
+            f"expected a radius above 0, up to {MAX_MAGNITUDE:g} m",
+            *here,
+            "radius",
+        )
         _require(row.count >= 1, "expected a count of at least 1", *here, "count")
         body = tree.frame_body[row.start]
         _require(
@@ -226,8 +231,8 @@ def _check_conventions(robot: Robot) -> None:
         for joint, offset in offsets.items():
             _check_name(joint, kinds, ("conventions", name, joint), "joint")
             _require(kinds[joint] == "revolute", "only a revolute joint can be shifted", "conventions", name, joint)
-            is_near = bool(abs(offset) <= FARTHEST)
-            _require(is_near, f"expected at most {FARTHEST:g} rad either way", "conventions", name, joint)
+            is_near = bool(abs(offset) <= MAX_MAGNITUDE)
+            _require(is_near, f"expected at most {MAX_MAGNITUDE:g} rad either way", "conventions", name, joint)
 
 
 def _check_wheels(robot: Robot) -> None:
@@ -239,4 +244,4 @@ def _check_wheels(robot: Robot) -> None:
     needed = "wheels need a base that slides along x, then y, turns about z, and carries all that can collide"
     _require(drives, needed, "wheels")
     for key, what, value in (("radius", "radius", wheels.radius_m), ("half_track", "distance", wheels.half_track_m)):
-        _require(0.0 < value <= FARTHEST, f"expected a {what} above 0, up to {FARTHEST:g} m", "wheels", key)
+        _require(0.0 < value <= MAX_MAGNITUDE, f"expected a {what} above 0, up to {MAX_MAGNITUDE:g} m", "wheels", key)

@@ -67,7 +67,7 @@ class ListDifference:
 
     @property
     def changed(self) -> int:
-        """Verdicts that differ."""
+        """Grades that differ."""
         return self.only_this_collides + self.only_the_other_collides
 
 
@@ -135,7 +135,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Detection(Computed):
-    """Verdicts of all variants."""
+    """Grades of all variants."""
 
     lists: list[ListVerdicts]
     lists_differ: list[ListDifference]

@@ -38,7 +38,7 @@ def _introduce(data: Detection) -> Text:
         f"that coincide, sees {sum(row.surface_collides for row in blind):,} of "
         f"{sum(row.centres_collide for row in blind):,} collisions; eq. 20, which allows for the grid's spacing, "
         f"reports collisions that centres do not: {_count_extra(data.surface_differs)}.\n\n"
-        f"The list decides, too. Verdicts that differ from Formula 22 as meant: "
+        f"The list decides, too. Grades that differ from Formula 22 as meant: "
         f"{_count_changed(data.lists_differ)}."
     )
 
@@ -53,7 +53,7 @@ def _count_extra(rows: Iterable[SurfaceDifference]) -> str:
 
 
 def _count_changed(rows: Iterable[ListDifference]) -> str:
-    """Verdicts that another list changes: `all non-adjacent 3 (typical), 363 (improved)`."""
+    """Grades that another list changes: `all non-adjacent 3 (typical), 363 (improved)`."""
     found: dict[str, list[str]] = {}
     for row in rows:
         found.setdefault(LIST_NAMES[row.pairs], []).append(f"{row.changed:,} ({row.approximation})")
@@ -91,7 +91,7 @@ def _make_differences(data: Detection) -> Table:
         (Column("does not compare", align="left"), lambda row: name_pairs(row.pairs_missing)),
         (Column("collide by this list alone", mark="ours"), lambda row: f"{row.only_this_collides:,}"),
         (Column("by Formula 22 alone", mark="ours"), lambda row: f"{row.only_the_other_collides:,}"),
-        caption="Verdicts that differ from those over Formula 22 as meant",
+        caption="Grades that differ from those over Formula 22 as meant",
         note=f"Of {data.settings['verdicts']:,} configurations.",
     )
 

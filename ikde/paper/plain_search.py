@@ -12,9 +12,9 @@ from ikde.model.robot import Detector, Robot
 from ikde.model.target import Target
 from ikde.paper.inputs import Inputs
 from ikde.solver.distinct import UNEXPLAINED
-from ikde.solver.figures import compute_clearances
+from ikde.solver.metrics import compute_clearances
 from ikde.solver.problem import Problem, make_problem
-from ikde.solver.rows import solve_rows
+from ikde.solver.results import solve_rows
 from ikde.solver.settings import DeSettings, SolveSettings
 
 SEED = 2021

@@ -27,7 +27,7 @@ READINGS: dict[str, dict[str, str]] = {
 """Which pairs each detector compares. `equal` compares the spheres alone. `unequal` is the one reading found that meets
 all four printed rates: the typical detector compares every pair, the improved one those of Formula 22 to the letter."""
 PAPERS_SAMPLE = 100
-Verdicts = Mapping[tuple[str, str], np.ndarray]  # (spheres, pairs) -> whether each solution is rejected
+Grades = Mapping[tuple[str, str], np.ndarray]  # (spheres, pairs) -> whether each solution is rejected
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -249,7 +249,7 @@ def _grade_sample(robot: Robot, Q: Floats, solves: int) -> Sample:
     )
 
 
-def _pair_verdicts(reading: str, rejected: Verdicts) -> PairedVerdicts:
+def _pair_verdicts(reading: str, rejected: Grades) -> PairedVerdicts:
     typical, improved = (rejected[key] for key in READINGS[reading].items())
     return PairedVerdicts(
         reading=reading,
@@ -260,7 +260,7 @@ def _pair_verdicts(reading: str, rejected: Verdicts) -> PairedVerdicts:
     )
 
 
-def _split_gain(rejected: Verdicts) -> GainSplit:
+def _split_gain(rejected: Grades) -> GainSplit:
     start, end = rejected["typical", "non_adjacent"], rejected["improved", "formula_22_printed"]
     between = {
         "spheres": rejected["improved", "non_adjacent"],

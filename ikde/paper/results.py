@@ -11,7 +11,7 @@ from typing import Any
 
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.errors import FileError, quoted
-from ikde.files.reading import read_json
+from ikde.formats.reading import read_json
 from ikde.io.report_folder import RESULTS
 from ikde.kernels.jit import compile_clock
 from ikde.paper.inputs import FULL, Budget, Inputs

@@ -18,7 +18,7 @@ from ikde.plot.style import Axis
 from ikde.report.markup import verbatim
 from ikde.report.numbers import fixed
 from ikde.report.page import Block, Cell, Column, Figure, Gallery, Section, Table, Text
-from ikde.solver.figures import compute_clearances
+from ikde.solver.metrics import compute_clearances
 
 FIGURES = {"1": "Figure 9", "2": "Figure 10", "3": "Figure 11"}
 

@@ -14,7 +14,7 @@ from ikde.paper.rejection import READINGS, describe_setup, spread_of
 from ikde.paper.section import Computed, format_spread, make_collision, make_table
 from ikde.report.page import Column, Section, Text
 from ikde.solver.distinct import UNEXPLAINED
-from ikde.solver.rows import Rows, solve_rows
+from ikde.solver.results import SolveResults, solve_rows
 
 WAITS_IN_TURN = 50
 
@@ -60,7 +60,7 @@ class _Wait:
     cell: WaitCell
     target: Target
     collision: CollisionModel
-    rows: list[Rows] = field(default_factory=list)
+    rows: list[SolveResults] = field(default_factory=list)
 
     @property
     def outcome(self) -> CellOutcome:

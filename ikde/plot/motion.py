@@ -49,7 +49,7 @@ def plot_path(motion: TrackSummary) -> Any:
 
 def plot_errors(motion: TrackSummary) -> Any:
     """How far the tool is from its path: along each axis at the samples, its orientation, and half-way between them."""
-    graded, times = motion.verification, motion.trajectory.times_s
+    graded, times = motion.grade, motion.trajectory.times_s
     sizes = np.maximum(MM * np.abs(graded.error_m), MIN_MM)
     lines = [Line(label=axis, x=times, y=sizes[:, k]) for k, axis in enumerate("xyz")]
     limit = MM * motion.limits.position_error_m
@@ -72,7 +72,7 @@ def plot_joints(motion: TrackSummary) -> Any:
 
 def plot_joint_speeds(motion: TrackSummary) -> Any:
     """Joint speeds of the arm with their limits; None without an arm."""
-    values = _in_steps(motion, motion.verification.speeds)
+    values = _in_steps(motion, motion.grade.speeds)
     return _plot_arm(motion, *values, _speed_bounds(motion), ("deg/s", MIN_RATE), ("mm/s", MIN_RATE))
 
 
@@ -114,7 +114,7 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
 
 def plot_clearance(motion: TrackSummary) -> Any:
     """Clearance at the samples, and what it is certain not to fall below between them; None without a detector."""
-    collision, gaps, proof = motion.collision, motion.verification.gaps_m, motion.certificate
+    collision, gaps, proof = motion.collision, motion.grade.gaps_m, motion.certificate
     if not gaps.size:
         return None
     lines = [Line(label="at samples", x=motion.trajectory.times_s, y=MM * gaps.min(axis=1))]
@@ -149,7 +149,7 @@ def _ranges(motion: TrackSummary) -> list[Floats]:
     """Ends of each joint's range; of a rotation not those beyond a full turn: its curve would be pressed flat."""
     robot = motion.robot
     ends = np.column_stack([robot.lower, robot.upper])
-    shown = np.abs(ends) <= np.where(robot.slides, np.finfo(float).max, 2.0 * np.pi)[:, None]
+    shown = np.abs(ends) <= np.where(robot.is_prismatic, np.finfo(float).max, 2.0 * np.pi)[:, None]
     return [row[kept] for row, kept in zip(ends, shown, strict=True)]
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ikde.files.entries import LENGTHS_M
+from ikde.formats.entries import LENGTHS_M
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot

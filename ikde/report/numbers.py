@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ikde.files.entries import ANGLES_RAD, LENGTHS_M
+from ikde.formats.entries import ANGLES_RAD, LENGTHS_M
 from ikde.model.robot import Joint
 
 

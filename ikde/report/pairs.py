@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ikde.files.entries import LENGTHS_M
+from ikde.formats.entries import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import explain_no_detector
 from ikde.model.robot import NO_DETECTOR

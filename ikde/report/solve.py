@@ -30,8 +30,8 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "orientation_error_rad": result.orientation_error_rad,
         "clearance_m": result.clearance_m,
         "closest_pair": list(result.closest_pair) if result.closest_pair else None,
-        "self_collision": result.self_collision,
-        "outside_limits": list(result.verification.outside_limits),
+        "collision": result.collision,
+        "outside_limits": list(result.grade.outside_limits),
         "method": result.method,
         "family": result.family,
         "settings": asdict(result.settings),
@@ -103,8 +103,8 @@ def _figure_table(robot: Robot, result: SolveResult, units: Units) -> Any:
     else:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
         table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
-    table.add_row("self-collision", COLLISIONS[result.self_collision])
-    table.add_row("outside limits", plain(", ".join(result.verification.outside_limits) or "none"))
+    table.add_row("self-collision", COLLISIONS[result.collision])
+    table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
     table.add_row(
         "cost",

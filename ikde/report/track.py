@@ -25,7 +25,7 @@ Row = tuple[str, str, str]
 
 def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
     """A motion's figures as plain data: m, rad, s; None where there is nothing to measure or nothing was checked."""
-    trajectory, graded, certificate = motion.trajectory, motion.verification, motion.certificate
+    trajectory, graded, certificate = motion.trajectory, motion.grade, motion.certificate
     stop, steps_s = trajectory.stop, trajectory.seconds
     turned, wheeled = trajectory.path.orientation != "free", trajectory.drive == "differential"
     return {
@@ -84,7 +84,7 @@ def format_track(plan: TrackPlan, motion: TrackSummary, files: tuple[Path, ...] 
 
 
 def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
-    trajectory, graded = motion.trajectory, motion.verification
+    trajectory, graded = motion.trajectory, motion.grade
     of = f"of {trajectory.path.samples} points of {plain(plan.name)}"
     if trajectory.stop is not None:
         return f"[bold red]stopped after {trajectory.reached_points} {of}[/]\n{plain(trajectory.stop.text)}"
@@ -101,7 +101,7 @@ def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
 def list_figures(motion: TrackSummary) -> Iterator[Row]:
     """What was measured, row by row; nothing about what does not apply."""
     trajectory, limits = motion.trajectory, motion.limits
-    graded = motion.verification
+    graded = motion.grade
     yield "points reached", str(motion.met_points), f"{trajectory.path.samples}"
     errors = " / ".join(_mm(error) for error in motion.largest_axis_errors_m)
     yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
@@ -129,7 +129,7 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
 
 def _list_limits(motion: TrackSummary) -> Iterator[Row]:
     """Ranges, the tool's distance, speeds, accelerations, wheels."""
-    left, violations = motion.range_left, motion.verification.violations
+    left, violations = motion.range_left, motion.grade.violations
     if motion.limits.ranges and left is not None:
         name, value, end = left
         scale, unit = (MM, "mm") if _is_prismatic(motion, name) else (DEG, "deg")
@@ -157,11 +157,11 @@ def _list_limits(motion: TrackSummary) -> Iterator[Row]:
 
 def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     """At the samples and between them."""
-    collision, pair, clearance_m = motion.collision, motion.closest_pair, motion.verification.clearance_m
+    collision, pair, clearance_m = motion.collision, motion.closest_pair, motion.grade.clearance_m
     if pair is None or clearance_m is None:
         yield "self-collision", "not checked", ""
         return
-    count = motion.verification.violations.collision
+    count = motion.grade.violations.collision
     hits = f", {count} collide" if count else ""
     safe = f"above {MM * collision.limit_m:g} mm"
     yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe

@@ -126,7 +126,7 @@ def _warn(motion: TrackSummary) -> list[Block]:
 def _headline(motion: TrackSummary) -> list[Block]:
     if not motion.started:
         return []
-    trajectory, graded = motion.trajectory, motion.verification
+    trajectory, graded = motion.trajectory, motion.grade
     items = [
         Number(f"{motion.met_points} of {trajectory.path.samples}", "points reached"),
         Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
@@ -144,7 +144,7 @@ def _headline(motion: TrackSummary) -> list[Block]:
 
 def _make_clearance(motion: TrackSummary) -> Number:
     """The least clearance, and what is certain between samples."""
-    clearance_m, proof = motion.verification.clearance_m, motion.certificate
+    clearance_m, proof = motion.grade.clearance_m, motion.certificate
     if clearance_m is None:
         return Number("not checked", "self-collision", "no detector")
     certain = f"{gap_mm(proof.clearance_m, 1)} mm certified between" if proof else ""

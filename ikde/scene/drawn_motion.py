@@ -35,7 +35,7 @@ class DrawnMotion:
 def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp]) -> DrawnMotion:
     """The robot at `samples` of a motion, coloured by what plain numpy measured there."""
     trajectory, chosen = motion.trajectory, np.asarray(samples, np.intp)
-    gaps_m = motion.verification.gaps_m[chosen]
+    gaps_m = motion.grade.gaps_m[chosen]
     return DrawnMotion(
         robot=draw_robot(motion.collision, trajectory.q[chosen], gaps_m),
         samples=chosen,
@@ -54,7 +54,7 @@ def choose_moments(motion: TrackSummary, count: int) -> list[int]:
     """Evenly spaced samples; where one nearby collides the worst of those is shown instead."""
     even = spread_samples(motion, count)
     edges = np.concatenate([[0], (even[1:] + even[:-1] + 1) // 2, [len(motion.trajectory.q)]])
-    gaps = motion.verification.gaps_m.min(axis=1, initial=np.inf)
+    gaps = motion.grade.gaps_m.min(axis=1, initial=np.inf)
     chosen = []
     for sample, first, end in zip(even, edges[:-1], edges[1:], strict=True):
         wrong = [k for k in range(first, end) if motion.colliding[k]]

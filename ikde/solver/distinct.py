@@ -16,13 +16,13 @@ from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.result import SolveResult
-from ikde.solver.rows import solve_rows
+from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, choose_settings
 from ikde.solver.solve import solve
 
 TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
 SAMPLES = 16  # solves for each solution that is wanted, to choose from
-MOST_WANTED = 10_000  # solutions
+MAX_WANTED = 10_000  # solutions
 ROUNDS = 4  # as often, if they were too much alike
 
 UNEXPLAINED = BulkOptions(verify="all", explain=False)
@@ -62,8 +62,8 @@ def solve_distinct(
         near: as for `solve`.
         freeze: as for `solve`.
     """
-    if not 1 <= count <= MOST_WANTED:
-        raise InputError(f"expected a whole number of at least 1, up to {MOST_WANTED:,}, got {count}", ("count",))
+    if not 1 <= count <= MAX_WANTED:
+        raise InputError(f"expected a whole number of at least 1, up to {MAX_WANTED:,}, got {count}", ("count",))
     check_rank(rank)
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
@@ -165,6 +165,6 @@ def _go_on(
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
     """True if a revolute joint differs by more than 0.1 rad (around the circle) or a slide by more than 50 mm."""
     difference = np.abs(q - other)
-    turns = difference[~robot.slides] % (2.0 * np.pi)
+    turns = difference[~robot.is_prismatic] % (2.0 * np.pi)
     turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
-    return bool(np.any(turned) or np.any(difference[robot.slides] > SLIDE_APART_M))
+    return bool(np.any(turned) or np.any(difference[robot.is_prismatic] > SLIDE_APART_M))

@@ -84,7 +84,7 @@ ENGINES: Mapping[str, EngineRow] = {
         },
     ),
 }
-"""In the order of their numbers in `Found.engine`."""
+"""In the order of their numbers in `SearchState.engine`."""
 NAMES = tuple(ENGINES)
 SEVERAL = 1 + max(row.one_by_one for row in ENGINES.values())
 """Targets: as many are solved side by side."""

@@ -10,7 +10,7 @@ from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.found import Found
+from ikde.solver.engines.search_state import SearchState
 from ikde.solver.hints import (
     Probe,
     excess_of_bounds,
@@ -26,15 +26,15 @@ from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, StopReason
 from ikde.solver.search import search
 from ikde.solver.touching import find_always_touching
-from ikde.solver.verify import Verification
+from ikde.solver.verify import Grade
 
 COUNTED = 64  # attempts whose collisions are counted pair by pair
 
 MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and looks into what is in the way"
 
-_OUT_OF_REACH, _SELF_COLLISION, _BUDGET, _TIMED_OUT = map(
+_OUT_OF_REACH, _COLLISION, _BUDGET, _TIMED_OUT = map(
     STOP_REASONS.index,
-    (StopReason.OUT_OF_REACH, StopReason.SELF_COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT),
+    (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT),
 )
 
 
@@ -62,9 +62,9 @@ def count_blocking_pairs(pairs: Pairs, pair_counts: np.ndarray) -> dict[tuple[st
     return dict(sorted(blocking.items(), key=lambda item: -item[1]))
 
 
-def stop_from_counts(found: Found, timeout_s: float | None) -> Ints:
+def stop_from_counts(found: SearchState, timeout_s: float | None) -> Ints:
     """What the counts of the search alone tell, at no cost: index [T] into `STOP_REASONS` of rows not reached."""
-    stops = np.where(found.counts[:, COLLIDING] > 0, _SELF_COLLISION, _BUDGET)
+    stops = np.where(found.counts[:, COLLIDING] > 0, _COLLISION, _BUDGET)
     if timeout_s is not None:
         stops[found.seconds >= timeout_s] = _TIMED_OUT
     return np.where(found.excess_m > 0.0, _OUT_OF_REACH, stops)
@@ -76,7 +76,7 @@ def reason_from_counts(
     """One line that says it."""
     if stop is StopReason.OUT_OF_REACH:
         return _out_of_reach(excess_m)
-    if stop is StopReason.SELF_COLLISION:
+    if stop is StopReason.COLLISION:
         return f"only colliding solutions found, {colliding} of them"
     if stop is StopReason.TIMED_OUT:
         met = f", {colliding} of them in collision at the target" if colliding else ""
@@ -85,7 +85,7 @@ def reason_from_counts(
 
 
 def explain(
-    problem: Problem, target: Target, found: Found, graded: Verification, *, seed: int, stream: int
+    problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
 ) -> Explanation:
     """Explain an unreached target from its counts, proved bounds, and short searches that change one thing."""
     proof = _prove(problem, target)
@@ -103,7 +103,7 @@ def explain(
 
 
 def _explain_by_remedies(
-    problem: Problem, target: Target, probe: Probe, met: _Met, found: Found, graded: Verification
+    problem: Problem, target: Target, probe: Probe, met: _Met, found: SearchState, graded: Grade
 ) -> Explanation:
     remedy = try_freeing(problem, probe) or try_widening(problem, probe)
     if met.colliding > 0:
@@ -114,7 +114,7 @@ def _explain_by_remedies(
     return _spent(found, graded, hint_at_tolerance(problem, target, found.q[0], graded))
 
 
-def _never_free(problem: Problem, met: _Met, graded: Verification) -> Explanation | None:
+def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | None:
     """That some pairs touch in every configuration, if they do."""
     touching = find_always_touching(problem.collision)
     if touching is None:
@@ -124,7 +124,7 @@ def _never_free(problem: Problem, met: _Met, graded: Verification) -> Explanatio
     is_enough = is_met and set(graded.colliding_pairs) <= set(touching.pairs)
     hint = "these pairs left out: a solution was found that touches in no others"
     return Explanation(
-        stop_reason=StopReason.SELF_COLLISION,
+        stop_reason=StopReason.COLLISION,
         reason=f"{touching}; if that is meant, {touching.remedy}{lines}",
         hint=hint if is_enough else None,
         blocking_pairs=met.blocking,
@@ -150,20 +150,20 @@ def _colliding(met: _Met, remedy: str | None) -> Explanation:
     worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
     collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
     return Explanation(
-        stop_reason=StopReason.SELF_COLLISION,
+        stop_reason=StopReason.COLLISION,
         reason=f"only colliding solutions found: {collisions}",
         hint=remedy,
         blocking_pairs=met.blocking,
     )
 
 
-def _spent(found: Found, graded: Verification, hint: str | None) -> Explanation:
+def _spent(found: SearchState, graded: Grade, hint: str | None) -> Explanation:
     reason = f"{_count(int(found.counts[0, ATTEMPTS]))} spent; {_best(graded)}"
     return Explanation(stop_reason=StopReason.BUDGET, reason=reason, hint=hint, blocking_pairs={})
 
 
 def _timed_out(
-    found: Found, graded: Verification, timeout_s: float | None, blocking: Mapping[tuple[str, str], int]
+    found: SearchState, graded: Grade, timeout_s: float | None, blocking: Mapping[tuple[str, str], int]
 ) -> Explanation:
     attempts, colliding = found.counts[0, [ATTEMPTS, COLLIDING]].tolist()
     reason = reason_from_counts(StopReason.TIMED_OUT, 0.0, attempts, colliding, timeout_s)
@@ -179,11 +179,11 @@ def _count(attempts: int) -> str:
     return f"{attempts} attempt{'s' if attempts != 1 else ''}"
 
 
-def _best(graded: Verification) -> str:
+def _best(graded: Grade) -> str:
     return f"the best is off by {graded.position_error_m:.3g} m and {graded.orientation_error_rad:.3g} rad"
 
 
-def _read_counts(problem: Problem, found: Found) -> _Met:
+def _read_counts(problem: Problem, found: SearchState) -> _Met:
     pairs = problem.collision.pairs
     return _Met(int(found.counts[0, COLLIDING]), count_blocking_pairs(pairs, found.pair_counts[0]))
 
@@ -204,14 +204,14 @@ def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str |
     return counted if counted.colliding else met, hint_at_stream(problem, probe.target, often)
 
 
-def _search_often(problem: Problem, probe: Probe) -> Found:
+def _search_often(problem: Problem, probe: Probe) -> SearchState:
     """One attempt on each of many streams; attempt 0 with `near` is `near` itself, on every stream."""
     begin = 0 if problem.near is None else 1
     lanes = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
     return search(problem, [probe.target] * COUNTED, **lanes)
 
 
-def _count_pairs(problem: Problem, found: Found) -> _Met:
+def _count_pairs(problem: Problem, found: SearchState) -> _Met:
     met = found.q[(found.score[:, 0] == 0.0) & (found.counts[:, REACHED] == 0)]
     collision = problem.collision
     if not collision.pairs or not len(met):

@@ -1,6 +1,6 @@
 """Grade and explain what the kernels found, on exactly the returned q.
 
-The figures and the verdict of every row are the kernels' grader's (`kernels/grade_many.py`); plain numpy grades again,
+The metrics and the verdict of every row are the kernels' grader's (`kernels/grade_many.py`); plain numpy grades again,
 every row or a sample, and must agree to 1e-11. What each shares with the search stands in docs/design.md.
 """
 
@@ -13,9 +13,9 @@ from ikde.errors import VerificationError
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.robot import Robot
 from ikde.model.target import Targets
-from ikde.solver.engines.found import Found
+from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, explain, stop_from_counts
-from ikde.solver.figures import AGREEMENT, Figures, compute_disagreement, judge_clearances, measure_scale
+from ikde.solver.metrics import AGREEMENT, Metrics, compute_disagreement, judge_clearances, measure_scale
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
 from ikde.solver.settings import BulkOptions
@@ -26,11 +26,11 @@ SAMPLE = 64  # one stream in so many, wherever a batch is cut
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Graded:
+class Outcomes:
     """The grades of T rows, whether they agree, and why rows ended."""
 
-    figures: Figures
-    self_collision: MaskedBools
+    metrics: Metrics
+    collision: MaskedBools
     """[T] masked where it was not checked."""
     verified: MaskedBools
     """[T] whether plain numpy agrees; masked where it was not asked."""
@@ -45,13 +45,13 @@ class Graded:
 def grade(
     problem: Problem,
     targets: Targets,
-    found: Found,
+    found: SearchState,
     bulk: BulkOptions,
     *,
     seed: int,
     first_stream: int = 0,
     strict: bool = False,
-) -> Graded:
+) -> Outcomes:
     """Grade every row of `found`.
 
     Args:
@@ -63,16 +63,16 @@ def grade(
         first_stream: stream of the first row.
         strict: raise `VerificationError` where the graders disagree; else the row is marked.
     """
-    figures = found.figures
+    metrics = found.metrics
     streams = np.arange(first_stream, first_stream + len(targets))
-    rows = np.flatnonzero(_choose(bulk, streams) | (~figures.accepted if bulk.explain else False))
+    rows = np.flatnonzero(_choose(bulk, streams) | (~metrics.accepted if bulk.explain else False))
     verified = np.ma.masked_array(np.zeros(len(targets), dtype=bool), mask=True)
-    reached = figures.accepted.copy()
+    reached = metrics.accepted.copy()
     explanations: dict[int, Explanation] = {}
     if rows.size:
         asked, Q = targets.take(rows), found.q[rows]
         verdicts = verify_many(problem.collision, asked, Q, problem.settings)
-        gaps = compute_disagreement(asked, figures.take(rows), verdicts)
+        gaps = compute_disagreement(asked, metrics.take(rows), verdicts)
         if strict:
             _refuse(gaps, Q)
         verified[rows] = agrees = gaps <= AGREEMENT  # False for NaN
@@ -84,9 +84,9 @@ def grade(
                 explanations[row] = explain(
                     problem, targets[row], found.row(row), graded, seed=seed, stream=int(streams[row])
                 )
-    return Graded(
-        figures=figures,
-        self_collision=judge_clearances(figures, problem.collision),
+    return Outcomes(
+        metrics=metrics,
+        collision=judge_clearances(metrics, problem.collision),
         verified=verified,
         reached=reached,
         stop_reasons=_stop_reasons(problem, found, reached, explanations),
@@ -96,14 +96,14 @@ def grade(
 
 def confirm(robot: Robot, result: SolveResult) -> SolveResult:
     """The result, verified; raises `VerificationError` if plain numpy does not see on its `q` what it says."""
-    plain, scale = result.verification, measure_scale(robot, result.target.p_world_tool[None], result.q[None])[0]
+    plain, scale = result.grade, measure_scale(robot, result.target.p_world_tool[None], result.q[None])[0]
     names = ["position_error_m", "orientation_error_rad", *(["clearance_m"] if result.clearance_m is not None else [])]
     gap = float(np.max([abs(getattr(result, name) - getattr(plain, name)) for name in names]) / scale)  # keeps NaN
     if not gap <= AGREEMENT or (result.reached and plain.outside_limits):
         raise _disagreement(gap, result.q)
     split = {"reached": False, "stop_reason": StopReason.BUDGET, "reason": SPLIT, "hint": None}
     confirmed = replace(result, verified=True, **(split if result.reached and not plain.accepted else {}))
-    confirmed.__dict__["verification"] = plain  # else it would be computed once more
+    confirmed.__dict__["grade"] = plain  # else it would be computed once more
     return confirmed
 
 
@@ -123,7 +123,9 @@ def _disagreement(gap: float, q: Floats) -> VerificationError:
     return VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
 
 
-def _stop_reasons(problem: Problem, found: Found, reached: Bools, explanations: Mapping[int, Explanation]) -> Ints:
+def _stop_reasons(
+    problem: Problem, found: SearchState, reached: Bools, explanations: Mapping[int, Explanation]
+) -> Ints:
     unreached = stop_from_counts(found, problem.settings.timeout_s)
     codes = np.where(reached, STOP_REASONS.index(StopReason.REACHED), unreached)
     for row, story in explanations.items():

@@ -8,15 +8,15 @@ import numpy as np
 from ikde.kernels.arrays import REACHED, Floats
 from ikde.model.orientation_reach import orientation_excess_rad
 from ikde.model.reach import reach_excess_m
-from ikde.model.robot import FARTHEST
+from ikde.model.robot import MAX_MAGNITUDE
 from ikde.model.target import Target
 from ikde.solver.digits import round_up
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.found import Found
+from ikde.solver.engines.search_state import SearchState
 from ikde.solver.problem import Problem
 from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
-from ikde.solver.verify import Verification, verify_many
+from ikde.solver.verify import Grade, verify_many
 
 WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
@@ -34,7 +34,7 @@ class Probe:
     stream: int
     spent_s: float
 
-    def run(self, problem: Problem, **attempts: int) -> Found:
+    def run(self, problem: Problem, **attempts: int) -> SearchState:
         """A few attempts at a question that may have been changed, at most as many as were asked for."""
         few = ENGINES[problem.settings.engines[-1]].attempts_of_probe
         brief = problem.with_settings(restarts=min(few, problem.settings.restarts or few))
@@ -42,7 +42,7 @@ class Probe:
         self.spent_s += float(found.seconds[0])
         return found
 
-    def confirms(self, problem: Problem, found: Found) -> bool:
+    def confirms(self, problem: Problem, found: SearchState) -> bool:
         """Whether the question was answered, in the eyes of plain numpy, too."""
         return bool(found.counts[0, REACHED]) and meets(problem, self.target, found.q[0])
 
@@ -86,7 +86,7 @@ def hint_at_bounds(problem: Problem, target: Target) -> str:
     return f"{asked}; no joint range brings the tool there"
 
 
-def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Verification) -> str | None:
+def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Grade) -> str | None:
     """The tolerances that would accept the best `q` [N], where they are not much larger than those asked for."""
     asked = problem.settings
     position_m = max(asked.position_tolerance_m, _rounded(graded.position_error_m))
@@ -101,7 +101,7 @@ def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Verif
     return f"a tolerance of {wanted} would accept the best"
 
 
-def hint_at_stream(problem: Problem, target: Target, found: Found) -> str | None:
+def hint_at_stream(problem: Problem, target: Target, found: SearchState) -> str | None:
     """The first of the streams 0, 1 .. that were `found` to lead to a solution, if one does."""
     for stream in np.flatnonzero(found.counts[:, REACHED]).tolist():
         if meets(problem, target, found.q[stream]):
@@ -143,15 +143,15 @@ def _open_ranges(problem: Problem, freed: Names, widened: Names) -> tuple[Floats
     robot, is_free = problem.robot, np.isin(problem.robot.joint_names, freed)
     is_wide = np.isin(robot.joint_names, widened) & (is_free | ~np.isin(robot.joint_names, problem.frozen))
     lower, upper = np.where(is_free, robot.lower, problem.lower), np.where(is_free, robot.upper, problem.upper)
-    return np.where(is_wide, -FARTHEST, lower), np.where(is_wide, FARTHEST, upper)
+    return np.where(is_wide, -MAX_MAGNITUDE, lower), np.where(is_wide, MAX_MAGNITUDE, upper)
 
 
 def _widen(problem: Problem) -> tuple[Floats, Floats]:
     """Slides four times as wide, revolute joints free to turn once around; what is frozen stays."""
-    slides, is_frozen = problem.robot.slides, np.isin(problem.robot.joint_names, problem.frozen)
+    slides, is_frozen = problem.robot.is_prismatic, np.isin(problem.robot.joint_names, problem.frozen)
     grow = 0.5 * (WIDER - 1.0) * (problem.upper - problem.lower)
-    lower = np.where(slides, np.maximum(problem.lower - grow, -FARTHEST), np.minimum(problem.lower, -np.pi))
-    upper = np.where(slides, np.minimum(problem.upper + grow, FARTHEST), np.maximum(problem.upper, np.pi))
+    lower = np.where(slides, np.maximum(problem.lower - grow, -MAX_MAGNITUDE), np.minimum(problem.lower, -np.pi))
+    upper = np.where(slides, np.minimum(problem.upper + grow, MAX_MAGNITUDE), np.maximum(problem.upper, np.pi))
     return np.where(is_frozen, problem.lower, lower), np.where(is_frozen, problem.upper, upper)
 
 

@@ -9,7 +9,7 @@ from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
 from ikde.model.numbers import read_numbers
-from ikde.model.robot import FARTHEST, Robot
+from ikde.model.robot import MAX_MAGNITUDE, Robot
 
 JointValues = ArrayLike | Mapping[str, float]
 
@@ -41,8 +41,8 @@ def _from_array(robot: Robot, q: ArrayLike) -> Floats:
     if values.ndim == 0 or values.shape[-1] != len(names):
         count = values.shape[-1] if values.ndim else 1
         raise InputError(f"expected {len(names)} joint values ({', '.join(names)}), got {count}", ("q",))
-    if not np.all(np.abs(values) <= FARTHEST):  # False for NaN
-        raise InputError(f"expected finite joint values below {FARTHEST:g}, got {values.tolist()}", ("q",))
+    if not np.all(np.abs(values) <= MAX_MAGNITUDE):  # False for NaN
+        raise InputError(f"expected finite joint values below {MAX_MAGNITUDE:g}, got {values.tolist()}", ("q",))
     return values
 
 

@@ -1,6 +1,6 @@
 """One target at a time, without preparation: everything but target, seed and stream is ready and waits.
 
-The answer is that of the long way (`solver.rows`), bit for bit; what this way cannot answer is left to that one.
+The answer is that of the long way (`solver.results`), bit for bit; what this way cannot answer is left to that one.
 """
 
 import time
@@ -18,7 +18,7 @@ from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.lm import prepare_search
 from ikde.solver.engines.pool import runs_on_tables
 from ikde.solver.explain import count_blocking_pairs
-from ikde.solver.figures import pack_grader
+from ikde.solver.metrics import pack_grader
 from ikde.solver.problem import make_problem
 from ikde.solver.result import ResultMaker, SolveResult
 from ikde.solver.search import choose_engines
@@ -62,13 +62,13 @@ class Quick:
             return None
         seconds = time.perf_counter() - started
         q.setflags(write=False)
-        figures = grade_one(*self._grader, *targets, q)
-        if not figures[-1]:
+        metrics = grade_one(*self._grader, *targets, q)
+        if not metrics[-1]:
             return None
         told = counts.tolist()
         blocking = {"blocking_pairs": count_blocking_pairs(self._pairs, blocked)} if told[COLLIDING] else {}
         where = {"seed": seed, "stream": stream, "method": ENGINE, "solve_seconds": seconds}
-        return self._results.make(target, q, figures, told, **where, **blocking)
+        return self._results.make(target, q, metrics, told, **where, **blocking)
 
 
 @lru_cache(maxsize=64)

@@ -8,17 +8,17 @@ import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, REACHED, Ints
 from ikde.model.target import Targets
-from ikde.solver.engines.found import Found
-from ikde.solver.figures import Limits, compute_figures
+from ikde.solver.engines.search_state import SearchState
+from ikde.solver.metrics import Limits, compute_metrics
 from ikde.solver.problem import Problem
 
 REFUSED = (1.0, 0.0)  # the score of a refused answer: any that is met is better, any that is not met is worse
 
 
 class Referee:
-    """Keeps the figures of `found` (`solver.figures`) those of its `q`."""
+    """Keeps the metrics of `found` (`solver.metrics`) those of its `q`."""
 
-    def __init__(self, problem: Problem, targets: Targets, found: Found) -> None:
+    def __init__(self, problem: Problem, targets: Targets, found: SearchState) -> None:
         self._targets, self._found = targets, found
         self._problem, self._limits = problem, _widest(problem)
         self._graded = np.full(len(targets), -1)  # attempts of each row when it was graded: without a new one, no new q
@@ -26,10 +26,10 @@ class Referee:
     def refuse(self) -> Ints:
         """Grade every row with new attempts; open those again that are called reached but not accepted; which ones."""
         found, reached = self._found, self._found.counts[:, REACHED] == 1
-        new = np.flatnonzero((found.counts[:, ATTEMPTS] != self._graded) | (reached & ~found.figures.accepted))
+        new = np.flatnonzero((found.counts[:, ATTEMPTS] != self._graded) | (reached & ~found.metrics.accepted))
         if len(new):
             self._grade(new)
-        refused = np.flatnonzero(reached & ~found.figures.accepted)
+        refused = np.flatnonzero(reached & ~found.metrics.accepted)
         found.counts[refused, REACHED] = 0
         found.score[refused] = REFUSED
         return refused
@@ -38,7 +38,7 @@ class Referee:
         found, problem, targets = self._found, self._problem, self._targets
         some = rows if len(rows) < len(targets) else slice(None)  # mostly all at once, without a copy
         asked = problem.collision, targets.take(some), found.q[some], problem.settings
-        found.figures.put(some, compute_figures(*asked, limits=self._limits))
+        found.metrics.put(some, compute_metrics(*asked, limits=self._limits))
         self._graded[some] = found.counts[some, ATTEMPTS]
 
 

@@ -1,4 +1,4 @@
-"""What a solve gives back: joint values, their graded figures, what it cost, and the reason it stopped."""
+"""What a solve gives back: joint values, their graded metrics, what it cost, and the reason it stopped."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
-from ikde.solver.verify import Verification, verify
+from ikde.solver.verify import Grade, verify
 
 
 class StopReason(StrEnum):
@@ -20,7 +20,7 @@ class StopReason(StrEnum):
     REACHED = "reached"
     OUT_OF_REACH = "out_of_reach"
     """A bound proves that no joint values bring the tool there, or turn it so."""
-    SELF_COLLISION = "self_collision"
+    COLLISION = "collision"
     """The pose was met, but only by configurations that collide with themselves, as far as trying tells."""
     LIMITS = "limits"
     """As far as trying tells, the pose is met only outside the joint limits (or with a frozen joint set free)."""
@@ -32,12 +32,12 @@ class StopReason(StrEnum):
     """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
 
 
-STOP_REASONS = tuple(StopReason)  # in the order of their numbers in `Rows.stop_reasons`
+STOP_REASONS = tuple(StopReason)  # in the order of their numbers in `SolveResults.stop_reasons`
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolveResult:
-    """One configuration and everything known about it. The figures are graded on exactly this `q`."""
+    """One configuration and everything known about it. The metrics are graded on exactly this `q`."""
 
     reached: bool
     """Within tolerance, inside the limits, and free of self-collision if that was checked: with the detector `"none"`
@@ -59,11 +59,11 @@ class SolveResult:
     """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
     closest_pair: tuple[str, str] | None
     """The two components that the clearance lies between."""
-    self_collision: bool | None
+    collision: bool | None
     """True if the clearance is not above the safe distance; None: not checked, there is no detector."""
     verified: bool | None
-    """True: plain numpy graded exactly this `q` and agrees with the figures to 1e-11. False: it does not, a bug, which
-    raises, or in bulk is recorded here. None: it was not asked; asking for `verification` later does not change it."""
+    """True: plain numpy graded exactly this `q` and agrees with the metrics to 1e-11. False: it does not, a bug, which
+    raises, or in bulk is recorded here. None: it was not asked; asking for `grade` later does not change it."""
     method: str
     """The engine that answered."""
     settings: SolveSettings
@@ -82,18 +82,18 @@ class SolveResult:
     solve_seconds: float
     """Wall time of this search, without compilation; in bulk, very short searches share a call and its time evenly."""
     compile_seconds: float
-    verify: Callable[[Target, Floats], Verification] = field(repr=False)
+    verify: Callable[[Target, Floats], Grade] = field(repr=False)
     """Grades any target and configuration as this one was graded, by plain numpy."""
 
     @cached_property
-    def verification(self) -> Verification:
+    def grade(self) -> Grade:
         """The grade of plain numpy, on exactly this `q`; computed when it is first asked for."""
         return self.verify(self.target, self.q)
 
     @property
     def family(self) -> str | None:
         """How a UR-type arm holds itself, such as `left/up/no flip`; None for other arms and what is not reached."""
-        return self.verification.family if self.reached else None
+        return self.grade.family if self.reached else None
 
 
 class ResultMaker:
@@ -111,7 +111,7 @@ class ResultMaker:
             "reason": reached_reason(collision),
             "hint": None,
             "joint_names": collision.robot.joint_names,
-            "self_collision": False if collision.pairs else None,
+            "collision": False if collision.pairs else None,
             "verified": None,
             "settings": settings,
             "detector": collision.name,
@@ -121,10 +121,10 @@ class ResultMaker:
         }
 
     def make(
-        self, target: Target, q: Floats, figures: tuple[Any, ...], counts: Sequence[int], **others: Any
+        self, target: Target, q: Floats, metrics: tuple[Any, ...], counts: Sequence[int], **others: Any
     ) -> SolveResult:
-        """One result; `figures` as `grade_one` gives them, `counts` [COUNTS] as an engine does, `others` by field."""
-        position, orientation, clearance, pair, _ = figures
+        """One result; `metrics` as `grade_one` gives them, `counts` [COUNTS] as an engine does, `others` by field."""
+        position, orientation, clearance, pair, _ = metrics
         result = object.__new__(SolveResult)
         result.__dict__.update(
             self._shared,

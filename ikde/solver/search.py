@@ -15,13 +15,13 @@ from ikde.model.closed_form import find_ur_arm
 from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target, Targets
+from ikde.solver.cancellation import get_cancel_check
 from ikde.solver.engine_table import AUTO, ENGINES, NAMES
-from ikde.solver.engines.engine import Engine, Question
-from ikde.solver.engines.found import Found, make_found
+from ikde.solver.engines.engine import Engine, SearchInputs
+from ikde.solver.engines.search_state import SearchState, make_search_state
 from ikde.solver.problem import Problem
 from ikde.solver.referee import Referee
 from ikde.solver.settings import SolveSettings
-from ikde.solver.stopping import get_brake
 
 REFUSALS = 16  # of one row by the grader, before the next engine takes over
 
@@ -36,7 +36,7 @@ def search(
     attempts: int | None = None,
     threads: int | None = None,
     spent_s: float = 0.0,
-) -> Found:
+) -> SearchState:
     """Search every target until it is reached or the attempts are spent; one lane a target, on all cores.
 
     Reached is what an engine and the grader accept: a refused row goes on with its next attempt, then the next engine.
@@ -48,18 +48,18 @@ def search(
     how the attempts are cut into calls; with a timeout also on the clock.
     """
     targets = Targets.of(targets)
-    found = make_found(problem, len(targets))
+    found = make_search_state(problem, len(targets))
     referee = Referee(problem, targets, found)
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
-    question = Question(problem, targets, found, seed=seed, streams=streams)
-    plan = _plan(problem, question, attempts)
+    inputs = SearchInputs(problem, targets, found, seed=seed, streams=streams)
+    plan = _plan(problem, inputs, attempts)
     found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
     for name, budget in plan:
         rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0) & (found.seconds < left_s))
         if not len(rows):
             break
         before, spent = found.score[rows].copy(), found.counts[:, ATTEMPTS] - first_attempt
-        lanes = _Lanes(make_engine(name, question), found, threads or usable_cores(), left_s)
+        lanes = _Lanes(make_engine(name, inputs), found, threads or usable_cores(), left_s)
         few = min(ENGINES[name].attempts_before_proof, budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         if attempts is None:
@@ -67,14 +67,14 @@ def search(
         lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
         _go_on(lanes, referee, found, spent, first_attempt + budget)
         found.engine[rows[(found.score[rows] != before).any(axis=1)]] = NAMES.index(name)
-    referee.refuse()  # also what no engine had time for has figures
+    referee.refuse()  # also what no engine had time for has metrics
     return found
 
 
-def make_engine(name: str, question: Question) -> Engine:
+def make_engine(name: str, inputs: SearchInputs) -> Engine:
     """An engine by name; each brings its kernels along, so only the one that is needed is imported."""
     module, maker = ENGINES[name].maker.split(":")
-    return getattr(import_module(f"ikde.solver.engines.{module}"), maker)(question)
+    return getattr(import_module(f"ikde.solver.engines.{module}"), maker)(inputs)
 
 
 def choose_engines(
@@ -100,11 +100,11 @@ def _find_free(lower: Floats, upper: Floats) -> set[int]:
     return set(np.flatnonzero(upper > lower).tolist())
 
 
-def _plan(problem: Problem, question: Question, attempts: int | None) -> list[tuple[str, int]]:
+def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[tuple[str, int]]:
     """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""
     robot, settings, arm = problem.robot, problem.settings, find_ur_arm(problem.robot)
     inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
-    kinds = {KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
+    kinds = {KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
     free = _find_free(problem.lower, problem.upper)
     names = choose_engines(robot, settings, kinds, inside=inside, free=free)
     stands_still = arm is not None and free <= set(arm.coordinates)
@@ -118,7 +118,7 @@ def _plan(problem: Problem, question: Question, attempts: int | None) -> list[tu
     return [(name, budget(name)) for name in names]
 
 
-def _prove(problem: Problem, targets: Targets, found: Found) -> None:
+def _prove(problem: Problem, targets: Targets, found: SearchState) -> None:
     """Find out which of the unreached targets are out of reach."""
     rows = np.flatnonzero(found.counts[:, REACHED] == 0)
     if len(rows):
@@ -129,7 +129,7 @@ def _prove(problem: Problem, targets: Targets, found: Found) -> None:
 class _Lanes:
     """One engine on all rows, piece by piece, each until its time `left_s` is up; it may go on where it stopped."""
 
-    def __init__(self, engine: Engine, found: Found, threads: int, left_s: float) -> None:
+    def __init__(self, engine: Engine, found: SearchState, threads: int, left_s: float) -> None:
         self._engine, self._found, self._threads, self._left_s = engine, found, threads, left_s
         count = len(found.q)
         if left_s < np.inf:
@@ -139,7 +139,7 @@ class _Lanes:
 
     def run(self, first: int, last: Ints) -> None:
         """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet."""
-        stop, brake, reached = threading.Event(), get_brake(), self._found.counts[:, REACHED]
+        stop, check_cancelled, reached = threading.Event(), get_cancel_check(), self._found.counts[:, REACHED]
         open_rows = (reached == 0) & (self._found.excess_m == 0.0) & (last > first)
         last = np.where(open_rows, last, first)
         pieces = _cut(open_rows, self._engine.rows_per_call)
@@ -151,7 +151,7 @@ class _Lanes:
                 searched = (reached[inside] == 0) & (wanted > begin) & (seconds < self._left_s)
                 if stop.is_set() or not searched.any():
                     break
-                brake()
+                check_cancelled()
                 wanted[~searched] = first
                 started = time.perf_counter()
                 self._engine.call(rows, begin, last)
@@ -160,7 +160,7 @@ class _Lanes:
         _on_threads(run, pieces, self._threads, stop)
 
 
-def _go_on(lanes: _Lanes, referee: Referee, found: Found, spent: Ints, last_attempt: int) -> None:
+def _go_on(lanes: _Lanes, referee: Referee, found: SearchState, spent: Ints, last_attempt: int) -> None:
     """Go on with rows that the grader refuses, each with its next attempt; `spent` [T]: those of other engines."""
     refused = referee.refuse()
     for _ in range(REFUSALS):

@@ -9,7 +9,7 @@ from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.quick import find_quick
 from ikde.solver.result import SolveResult
-from ikde.solver.rows import Rows, solve_rows
+from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, check_stream, choose_settings
 
 
@@ -41,7 +41,7 @@ def solve(
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
-        where plain numpy was not asked: of what `lm` reaches by kernels written for the robot. `result.verification`
+        where plain numpy was not asked: of what `lm` reaches by kernels written for the robot. `result.grade`
         asks it. docs/design.md tells what each grader shares with the search.
 
     Raises:
@@ -69,7 +69,7 @@ def solve_many(
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     bulk: BulkOptions | None = None,
-) -> Rows:
+) -> SolveResults:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
     `bulk` says on how many threads, whose answers plain numpy grades as well (`verified` is masked where it was not

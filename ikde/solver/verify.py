@@ -23,8 +23,8 @@ MaskedBools = np.ma.MaskedArray[Any, np.dtype[np.bool_]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Verification:
-    """The figures of one configuration against one target, and the verdict."""
+class Grade:
+    """The metrics of one configuration against one target, and the verdict."""
 
     position_error_m: float
     orientation_error_rad: float
@@ -32,7 +32,7 @@ class Verification:
     clearance_m: float | None
     """None without a detector."""
     closest_pair: tuple[str, str] | None
-    self_collision: bool | None
+    collision: bool | None
     """None: not checked, no pair was compared."""
     colliding_pairs: tuple[tuple[str, str], ...]
     """Worst first."""
@@ -45,8 +45,8 @@ class Verification:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Verdicts:
-    """The figures of T configurations against a target each, and the verdicts."""
+class Grades:
+    """The metrics of T configurations against a target each, and the verdicts."""
 
     collision: CollisionModel
     Q: Floats  # [T, N]
@@ -62,19 +62,19 @@ class Verdicts:
         """Smallest clearance [T] in m; inf without a pair."""
         return self.gaps_m.min(axis=1, initial=np.inf)
 
-    def row(self, index: int) -> Verification:
+    def row(self, index: int) -> Grade:
         """One configuration's."""
         robot, pairs = self.collision.robot, self.collision.pairs
         gaps = self.gaps_m[index]
         worst_first = np.argsort(gaps, kind="stable") if pairs else []
         colliding = tuple(pairs[k] for k in worst_first if gaps[k] <= self.collision.limit_m)
         outside = zip(robot.joints, self.outside[index], strict=True)
-        return Verification(
+        return Grade(
             position_error_m=float(self.position_error_m[index]),
             orientation_error_rad=float(self.orientation_error_rad[index]),
             clearance_m=float(gaps[worst_first[0]]) if pairs else None,
             closest_pair=pairs[worst_first[0]] if pairs else None,
-            self_collision=bool(colliding) if pairs else None,
+            collision=bool(colliding) if pairs else None,
             colliding_pairs=colliding,
             outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
             within_tolerance=bool(self.within_tolerance[index]),
@@ -91,7 +91,7 @@ def verify(
     settings: SolveSettings | None = None,
     collision: CollisionChoice = None,
     convention: str | None = None,
-) -> Verification:
+) -> Grade:
     """Grade joint values against a target.
 
     Args:
@@ -114,7 +114,7 @@ def verify_many(
     targets: Targets | Sequence[Target],
     Q: Floats,
     settings: SolveSettings,
-) -> Verdicts:
+) -> Grades:
     """Grade configurations `Q` [T, N] in the robot's own convention, a target each; as `verify`, in bulk."""
     robot = collision.robot
     T_world_tool = compute_frames(robot, Q)[robot.tool]
@@ -125,7 +125,7 @@ def verify_many(
     free = ~np.any(gaps <= collision.limit_m, axis=1)
     outside = ~((robot.lower <= Q) & (robot.upper >= Q))
     within = (position <= settings.position_tolerance_m) & (orientation <= settings.orientation_tolerance_rad)
-    return Verdicts(
+    return Grades(
         collision=collision,
         Q=Q,
         position_error_m=position,

@@ -110,7 +110,7 @@ def _side_by_side(run: Callable[[Item], Result], items: Iterable[Item]) -> Itera
 
 def measure(motion: TrackSummary) -> dict[str, Any]:
     """A motion's row of the table; None where there is nothing to measure or nothing was checked."""
-    graded, trajectory = motion.verification, motion.trajectory
+    graded, trajectory = motion.grade, motion.trajectory
     broken, seconds = asdict(graded.violations), trajectory.seconds
     return {
         "points": trajectory.path.samples,
@@ -154,7 +154,7 @@ def count_dead_ends(plan: TrackPlan, methods: Sequence[TrackMethod], count: int,
 def draw_random_starts(plan: TrackPlan, count: int, seed: int) -> Floats:
     """Free configurations [S, N], S <= count, at the path's first pose, where random ones come to rest."""
     robot, target = plan.robot, plan.path.targets()[0]
-    rng, found, prismatic = np.random.default_rng(seed), [], robot.slides
+    rng, found, prismatic = np.random.default_rng(seed), [], robot.is_prismatic
     options = {"collision": plan.collision, "bulk": BulkOptions(threads=1, explain=False)}
     place, lower, upper = np.resize(target.p_world_tool, prismatic.sum()), robot.lower, robot.upper
     for _ in range(DRAWS_PER_START * count):

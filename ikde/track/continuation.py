@@ -7,7 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import DRIFT, Floats
 from ikde.kernels.jit import compile_clock
-from ikde.model.robot import FARTHEST
+from ikde.model.robot import MAX_MAGNITUDE
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
 from ikde.track.certify import bound_pairs
@@ -130,7 +130,7 @@ class Continuation:
         robot = self.follower.robot
         lower, upper = robot.lower.copy(), robot.upper.copy()
         if not self.follower.plan.limits.ranges:
-            lower[:], upper[:] = -FARTHEST, FARTHEST
+            lower[:], upper[:] = -MAX_MAGNITUDE, MAX_MAGNITUDE
         for name, value in self.follower.plan.frozen.items():
             index = robot.joint_names.index(name)
             lower[index] = upper[index] = value

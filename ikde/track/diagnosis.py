@@ -11,7 +11,7 @@ from ikde.kernels.tracking import REACHED, track_sample
 from ikde.model.base_motion import wheel_speeds
 from ikde.model.pack import pack_robot
 from ikde.model.reach import reach_excess_m
-from ikde.model.robot import FARTHEST
+from ikde.model.robot import MAX_MAGNITUDE
 from ikde.solver.digits import at_least
 from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
@@ -23,7 +23,7 @@ from ikde.track.trajectory import TrackStop, TrackStopReason
 FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 OF_SOLVER = {
     StopReason.OUT_OF_REACH: TrackStopReason.OUT_OF_REACH,
-    StopReason.SELF_COLLISION: TrackStopReason.SELF_COLLISION,
+    StopReason.COLLISION: TrackStopReason.COLLISION,
     StopReason.LIMITS: TrackStopReason.JOINT_LIMIT,
 }
 
@@ -87,7 +87,7 @@ def explain_stop(rollout: Rollout, static: SolveResult | None) -> TrackStop:
 def tell_uncertified(follower: Follower, sample: int, pair: tuple[str, str]) -> TrackStop:
     """A stop before a segment in which a pair may touch on its way."""
     text = f"{tell_when(follower, sample)}: contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
-    return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
+    return TrackStop(sample=sample, reason=TrackStopReason.COLLISION, text=text, pair=pair)
 
 
 def _try(follower: Follower, rollout: Rollout, scale: Floats | float = 1.0) -> Finding | None:
@@ -126,13 +126,13 @@ def _without_collision(rollout: Rollout) -> TrackStop | None:
         return None
     how = f"are {gap:.3g} mm apart, not {least:.3g} mm," if gap > 0.0 else f"overlap by {-gap:.3g} mm"
     text = f"{tell_when(follower, sample)}: {pair[0]} and {pair[1]} {how} {IN_STEP}"
-    return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=pair)
+    return TrackStop(sample=sample, reason=TrackStopReason.COLLISION, text=text, pair=pair)
 
 
 def _without_ranges(rollout: Rollout) -> TrackStop | None:
     follower, sample = rollout.follower, rollout.last + 1
     ranges = follower.track.ranges
-    found = _try(follower.with_track(ranges=np.sign(ranges - ranges.mean(axis=0)) * FARTHEST), rollout)
+    found = _try(follower.with_track(ranges=np.sign(ranges - ranges.mean(axis=0)) * MAX_MAGNITUDE), rollout)
     if found is None:
         return None
     beyond = np.maximum(ranges[0] - found[0], found[0] - ranges[1])

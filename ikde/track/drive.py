@@ -49,7 +49,7 @@ def pack_drive(
 
 def max_steps(robot: Robot) -> Floats:
     """[N] m or rad: what a joint moves in one sample at most."""
-    return np.where(robot.slides, MAX_STEP_M, MAX_STEP_RAD)
+    return np.where(robot.is_prismatic, MAX_STEP_M, MAX_STEP_RAD)
 
 
 def _wheels_of(limits: MotionLimits, wheels: Wheels | None, dt_s: float) -> tuple[float, float]:

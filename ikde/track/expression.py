@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.files.placed import placed
+from ikde.formats.error_path import prefix_errors
 from ikde.kernels.arrays import Floats
 
-LONGEST = 1000  # characters of a formula
+MAX_LENGTH = 1000  # characters of a formula
 DEEPEST = 300  # operations inside each other
 BUDGET = 2 * 10**8  # operations of one formula at all samples together: seconds
 PIECE = 2**16  # samples at a time
@@ -90,8 +90,8 @@ class Expression:
 def parse_expression(text: str | float) -> Expression:
     """Read a formula, or a number that stands for itself; raises `InputError` that says what is not allowed."""
     text = str(text).strip()
-    if len(text) > LONGEST:
-        raise InputError(f"expected at most {LONGEST} characters, got {len(text)}")
+    if len(text) > MAX_LENGTH:
+        raise InputError(f"expected at most {MAX_LENGTH} characters, got {len(text)}")
     for unlisted in UNLISTED.findall(text)[:1]:
         raise InputError(f"{_quote(unlisted)} is not allowed here; {ALLOWED}")
     try:
@@ -108,7 +108,7 @@ def parse_expression(text: str | float) -> Expression:
 
 def evaluate_formula(key: str | int, formula: float | str, k: Floats, samples: int) -> Floats:
     """Values [S] of the formula under `key` at samples `k` [S] of so many."""
-    with placed(key):
+    with prefix_errors(key):
         return parse_expression(formula).evaluate(k, samples)
 
 

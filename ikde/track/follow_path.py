@@ -113,7 +113,7 @@ def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
         stop=followed.stop,
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,
-        verification=graded,
+        grade=graded,
         certificate=certify(plan.collision, q),
         deviation_m=deviation_m,
         deviation_rad=deviation_rad,

@@ -10,7 +10,7 @@ from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, TargetArrays, TrackA
 from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
-from ikde.model.robot import FARTHEST, Robot
+from ikde.model.robot import MAX_MAGNITUDE, Robot
 from ikde.solver.engines.pool import rotation_length_m
 from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
@@ -169,7 +169,7 @@ def pack_track(collision: CollisionModel, limits: MotionLimits) -> TrackArrays:
         inside = np.minimum(ROUNDING, 0.5 * (ranges[1] - ranges[0]))
         ranges = ranges + np.array([inside, -inside])
     else:
-        ranges = np.array([np.full_like(robot.lower, -FARTHEST), np.full_like(robot.upper, FARTHEST)])
+        ranges = np.array([np.full_like(robot.lower, -MAX_MAGNITUDE), np.full_like(robot.upper, MAX_MAGNITUDE)])
     return TrackArrays(
         ranges=ranges,
         reach=safe + REACH_M if collision.pairs else -np.inf,

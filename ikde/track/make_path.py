@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.files.entries import only_key
-from ikde.files.placed import placed
+from ikde.formats.entries import only_key
+from ikde.formats.error_path import prefix_errors
 from ikde.kernels.arrays import Floats
 from ikde.track.expression import evaluate_formula
 from ikde.track.orientations import Turn, make_turn
@@ -63,11 +63,11 @@ def make_path(spec: TrackSpec, name: str, folder: Path) -> ToolPath:
 
 
 def _make_way(spec: TrackSpec, folder: Path) -> Way:
-    with placed("path"):
+    with prefix_errors("path"):
         key = only_key(spec.path)
         entry = getattr(spec.path, key)
         if not isinstance(entry, ExpressionsEntry):
-            with placed(key):
+            with prefix_errors(key):
                 if isinstance(entry, CurveEntry):
                     return _along_curve(entry, spec)
                 return _between_waypoints(read_waypoints(entry, spec.units, folder), spec)
@@ -77,7 +77,7 @@ def _make_way(spec: TrackSpec, folder: Path) -> Way:
 
 
 def _follow_formulas(entry: ExpressionsEntry, spec: TrackSpec, k: Floats) -> Floats:
-    with placed("path", "expressions"):
+    with prefix_errors("path", "expressions"):
         columns = [evaluate_formula(key, getattr(entry, key), k, spec.samples or 0) for key in ("x", "y", "z")]
     return np.column_stack(columns) * spec.units.length_m
 
@@ -108,9 +108,9 @@ def _turn(spec: TrackSpec, way: Way, k: Floats) -> Turn:
     if way.turn is not None:
         if spec.orientation is not None:
             raise InputError("the waypoints have orientations of their own; leave one of the two out", ("orientation",))
-        with placed("path"):
+        with prefix_errors("path"):
             return way.turn(k)
     if spec.orientation is None or isinstance(spec.orientation, str):
         return "free", np.broadcast_to(np.eye(3), (len(k), 3, 3))
-    with placed("orientation"):
+    with prefix_errors("orientation"):
         return make_turn(spec.orientation, spec.units, k, way.samples)

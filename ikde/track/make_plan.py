@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from ikde.errors import InputError, nearest
-from ikde.files.entries import UnitsEntry
-from ikde.files.placed import placed
-from ikde.files.robot_entries import read_collision, to_si, with_ranges
+from ikde.formats.entries import UnitsEntry
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.robot_entries import read_collision, to_si, with_ranges
 from ikde.kernels.arrays import Floats
 from ikde.model.base_motion import Drive, find_wheels, usual_drive
 from ikde.model.robot import WORLD, Robot
@@ -38,7 +38,7 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
     robot = with_ranges(robot, spec.ranges, spec.units)
     drive = _read_drive(spec, robot)
     name = spec.name or (Path(file).stem if file else "track")
-    with placed("detector"):
+    with prefix_errors("detector"):
         collision = read_collision(robot, spec.detector, spec.units)
     plan = TrackPlan(
         name=name,
@@ -69,7 +69,7 @@ def _read_drive(spec: TrackSpec, robot: Robot) -> Drive:
 def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> MotionLimits:
     """Those of the file; what it leaves out is the robot's own, or as in the paper (`MotionLimits.of`)."""
     limits, units, usual = spec.limits, spec.units, MotionLimits.of(robot)
-    with placed("limits"):
+    with prefix_errors("limits"):
         if limits.wheel_speed is not None and robot.wheels is None:
             raise InputError(f"{robot.name} has no wheels: its file has no `wheels`", ("wheel_speed",))
         if limits.wheel_speed is not None and drive == "omnidirectional":

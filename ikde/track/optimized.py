@@ -87,7 +87,7 @@ def tell_unsolved(follower: Follower, sample: int, verdict: int, pair: int, q: F
     if verdict == COLLIDES:
         names = follower.collision.pairs[pair]
         text = f"{when}: {names[0]} and {names[1]} collide in {best}"
-        return TrackStop(sample=sample, reason=TrackStopReason.SELF_COLLISION, text=text, pair=names)
+        return TrackStop(sample=sample, reason=TrackStopReason.COLLISION, text=text, pair=names)
     if verdict == LIMITED:
         reason, what, limit = find_broken(follower, q, steps[1])
         return TrackStop(sample=sample, reason=reason, text=f"{when}: {best} breaks {what}", limit=limit)

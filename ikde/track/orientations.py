@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.files.entries import UnitsEntry, only_key
-from ikde.files.placed import placed
-from ikde.files.poses import make_orientation, read_orientation
+from ikde.formats.entries import UnitsEntry, only_key
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.poses import make_orientation, read_orientation
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import length, rotation_with_z
-from ikde.model.target import SHORTEST, Target, Targets
+from ikde.model.target import MIN_LENGTH, Target, Targets
 from ikde.track.expression import evaluate_formula
 from ikde.track.slerp import PathOrientation, slerp
 from ikde.track.spec import Formula, KeyframeEntry, TurnEntry
@@ -22,7 +22,7 @@ Turn = tuple[PathOrientation, Floats]
 def make_turn(entry: TurnEntry, units: UnitsEntry, k: Floats, samples: int) -> Turn:
     """Orientations at samples `k` [S] of so many; raises `InputError` with a path inside `entry`."""
     key = only_key(entry)
-    with placed(key):
+    with prefix_errors(key):
         if entry.keyframes is not None:
             return _turn_keyframes(entry.keyframes, units, k / samples)
         formulas: Sequence[Formula] = getattr(entry, key)
@@ -35,7 +35,7 @@ def _turn_formulas(key: str, values: Floats, units: UnitsEntry, k: Floats) -> Tu
     if key == "rpy":
         return "pose", make_orientation("rpy", values * units.angle_rad)["R_world_tool"]
     lengths = np.linalg.norm(values, axis=1)
-    for (row,) in np.argwhere(~(lengths > SHORTEST))[:1]:
+    for (row,) in np.argwhere(~(lengths > MIN_LENGTH))[:1]:
         raise InputError(f"a length of 0 has no direction, at k = {k[row]:g}")
     units_only = values / lengths[:, None]
     if key == "axis":
@@ -47,7 +47,7 @@ def _turn_keyframes(entries: Sequence[KeyframeEntry], units: UnitsEntry, share: 
     """Orientations at shares [S] of the path's time; before the first keyframe and after the last they stay."""
     targets = []
     for index, entry in enumerate(entries):
-        with placed(index):
+        with prefix_errors(index):
             targets.append(Target((0.0, 0.0, 0.0), **read_orientation(entry, units)))
             if targets[-1].kind == "position":
                 raise InputError("expected one of axis, rpy, quat_wxyz")

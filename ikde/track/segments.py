@@ -3,9 +3,9 @@
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.files.entries import UnitsEntry, only_key
-from ikde.files.placed import placed
-from ikde.files.poses import read_position
+from ikde.formats.entries import UnitsEntry, only_key
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.poses import read_position
 from ikde.kernels.arrays import Floats
 from ikde.track.path import MAX_SAMPLES
 from ikde.track.shapes import Curve, Segment, make_arc, make_arc_through, make_line, make_spline
@@ -19,7 +19,7 @@ def make_segments(entry: CurveEntry, units: UnitsEntry, dt_s: float) -> list[Seg
     """The pieces of a curve, each from where the last one ends; raises `InputError` with a path inside `entry`."""
     place, segments = read_position("from", entry.start, units), []
     for index, piece in enumerate(entry.segments):
-        with placed("segments", index):
+        with prefix_errors("segments", index):
             samples = _count(piece.duration_s, dt_s)
             curve = _make_curve(piece, place, units)
         segments.append(Segment(curve=curve, samples=samples, smooth=piece.pace == "smooth"))
@@ -37,7 +37,7 @@ def _count(duration_s: float, dt_s: float) -> int:
 
 def _make_curve(piece: SegmentEntry, place: Floats, units: UnitsEntry) -> Curve:
     shape = only_key(piece, SHAPES)
-    with placed(shape):
+    with prefix_errors(shape):
         return _make_shape(getattr(piece, shape), place, units)
 
 
@@ -49,7 +49,7 @@ def _make_shape(shape: LineEntry | ArcEntry | ArcThroughEntry | SplineEntry, pla
         return make_arc(place, center, np.array(shape.normal), shape.angle * units.angle_rad)
     if isinstance(shape, ArcThroughEntry):
         return make_arc_through(place, read_position("via", shape.via, units), read_position("to", shape.to, units))
-    with placed("through"):
+    with prefix_errors("through"):
         points = [read_position(index, point, units) for index, point in enumerate(shape.through)]
         return _spline(np.array([place, *points]))
 

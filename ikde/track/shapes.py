@@ -9,7 +9,7 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import rotation_about
 
-SHORTEST_M = 1e-9
+MIN_LENGTH_M = 1e-9
 Curve = Callable[[Floats], Floats]
 """Shares [S] of the way, 0 .. 1 -> positions [S, 3] in m."""
 
@@ -26,11 +26,11 @@ def make_arc(start: Floats, center: Floats, normal: Floats, angle_rad: float) ->
         InputError: for a normal of length 0, or a start on the axis.
     """
     length = np.linalg.norm(normal)
-    if not length > SHORTEST_M:
+    if not length > MIN_LENGTH_M:
         raise InputError("a normal of length 0 has no direction", ("normal",))
     axis = normal / length
     spoke = start - center
-    if not np.linalg.norm(np.cross(axis, spoke)) > SHORTEST_M:
+    if not np.linalg.norm(np.cross(axis, spoke)) > MIN_LENGTH_M:
         raise InputError("the arc starts on its own axis: its radius is 0", ("center",))
     return lambda share: center + rotation_about(axis, share * angle_rad) @ spoke
 
@@ -59,7 +59,7 @@ def make_spline(points: Floats) -> Curve:
         InputError: for two points in a row in one place, with the second one's index.
     """
     chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    for (index,) in np.argwhere(~(chords > SHORTEST_M))[:1]:
+    for (index,) in np.argwhere(~(chords > MIN_LENGTH_M))[:1]:
         raise InputError("this point is the one before it", (int(index) + 1,))
     knots = np.concatenate([[0.0], np.cumsum(chords)])
     bends = _natural_bends(points, chords)

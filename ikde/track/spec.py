@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from ikde.files.entries import (
+from ikde.formats.entries import (
     DetectorChoice,
     Entry,
     FileEntry,
@@ -15,7 +15,7 @@ from ikde.files.entries import (
     UnitsEntry,
     Vector,
 )
-from ikde.files.names import Name, Text
+from ikde.formats.names import Name, Text
 from ikde.model.base_motion import Drive
 
 TrackMethod = Literal["continuation", "optimized", "typical"]

@@ -32,7 +32,7 @@ def draw_starts(plan: TrackPlan, draws: int = DRAWS) -> tuple[Floats, SolveResul
     rng = np.random.default_rng(seed)
     quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")
     for stream in range(draws):
-        near = np.where(robot.slides, robot.home, rng.uniform(robot.lower, robot.upper))
+        near = np.where(robot.is_prismatic, robot.home, rng.uniform(robot.lower, robot.upper))
         row = solve_many(robot, [target], quick, seed=stream, near=near, **question)
         found.append(row.q[row.reached])
     q = np.concatenate(found)
@@ -64,7 +64,7 @@ def settle_start(plan: TrackPlan, q: Floats) -> Floats:
     if moved:
         raise InputError(f"{', '.join(moved)} is not where it is frozen", ("start",))
     grade = verify(robot, target, q, settings=limits.tolerances, collision=plan.collision)
-    if grade.self_collision:
+    if grade.collision:
         a, b = grade.colliding_pairs[0]
         raise InputError(f"{a} and {b} collide", ("start",))
     if not keeps_distance(plan, q[None])[0]:

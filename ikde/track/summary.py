@@ -14,7 +14,7 @@ from ikde.track.certify import Certificate
 from ikde.track.drive import implied_wheel_speed
 from ikde.track.limits import MotionLimits
 from ikde.track.trajectory import Trajectory
-from ikde.track.verify_track import ROUNDING, TrackVerification
+from ikde.track.verify_track import ROUNDING, TrackGrade
 
 Worst = tuple[str, float, float]
 """A joint, its value, and its limit."""
@@ -35,9 +35,9 @@ class TrackSummary:
         return self.collision.robot
 
     @property
-    def verification(self) -> TrackVerification:
+    def grade(self) -> TrackGrade:
         """What plain numpy says about the samples."""
-        return self.trajectory.verification
+        return self.trajectory.grade
 
     @property
     def certificate(self) -> Certificate | None:
@@ -62,12 +62,12 @@ class TrackSummary:
     @property
     def largest_axis_errors_m(self) -> Floats:
         """Along x, y and z, at any sample [3]."""
-        return np.abs(self.verification.error_m).max(axis=0, initial=0.0)
+        return np.abs(self.grade.error_m).max(axis=0, initial=0.0)
 
     @property
     def met_points(self) -> int:
         """Samples after the start where the tool is within its tolerances."""
-        graded, limits = self.verification, self.limits
+        graded, limits = self.grade, self.limits
         near = (np.abs(graded.error_m) <= limits.position_error_m).all(axis=1)
         near &= graded.orientation_error_rad <= limits.orientation_error_rad
         return int(near[1:].sum())
@@ -76,29 +76,29 @@ class TrackSummary:
     def colliding(self) -> list[set[str]]:
         """Components seen within the safe distance of another, for each sample; none without a detector."""
         pairs = self.collision.pairs
-        touching = self.verification.gaps_m <= self.collision.limit_m
+        touching = self.grade.gaps_m <= self.collision.limit_m
         return [{name for pair in np.flatnonzero(row) for name in pairs[pair]} for row in touching]
 
     @property
     def closest_pair(self) -> tuple[str, str] | None:
         """The pair with the smallest clearance at any sample."""
-        gaps = self.verification.gaps_m
+        gaps = self.grade.gaps_m
         return self.collision.pairs[int(np.argmin(gaps.min(axis=0)))] if gaps.size else None
 
     @property
     def steps(self) -> Floats:
         """Change of every joint from sample to sample [M, N], m and rad; of a base with wheels along its arc."""
-        return self.verification.driven * self.trajectory.path.dt_s
+        return self.grade.driven * self.trajectory.path.dt_s
 
     def largest_step(self, kind: str) -> float:
         """Largest change of a joint of a kind between two samples, m or rad."""
-        chosen = self.robot.slides if kind == "prismatic" else ~self.robot.slides
+        chosen = self.robot.is_prismatic if kind == "prismatic" else ~self.robot.is_prismatic
         return float(np.abs(self.steps[:, chosen]).max(initial=0.0))
 
     @property
     def fastest(self) -> Worst | None:
         """The joint nearest to its speed limit, or farthest beyond it; None without a limit or a motion."""
-        return self._worst(np.abs(self.verification.driven), self.limits.speed)
+        return self._worst(np.abs(self.grade.driven), self.limits.speed)
 
     @property
     def wheel_limit_rad_s(self) -> float:
@@ -112,7 +112,7 @@ class TrackSummary:
     @property
     def largest_acceleration(self) -> Worst | None:
         """The joint nearest to its acceleration limit."""
-        changes = np.diff(self.verification.driven, axis=0)
+        changes = np.diff(self.grade.driven, axis=0)
         return self._worst(np.abs(changes) / self.trajectory.path.dt_s, self.limits.acceleration)
 
     def _worst(self, values: Floats, limit: Floats | None) -> Worst | None:
@@ -147,7 +147,7 @@ class TrackSummary:
     def largest_distance_m(self) -> float | None:
         """Largest distance of the tool from the centre that it is held near, m; None if it is not, or did not start."""
         asked = self.limits.max_distance_m is not None and self.started
-        return float(self.verification.distance_m.max()) if asked else None
+        return float(self.grade.distance_m.max()) if asked else None
 
 
 def summarise_track(collision: CollisionModel, trajectory: Trajectory) -> TrackSummary:

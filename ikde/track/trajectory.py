@@ -10,7 +10,7 @@ from ikde.model.base_motion import Drive
 from ikde.track.certify import Certificate
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
-from ikde.track.verify_track import TrackVerification, Violations
+from ikde.track.verify_track import TrackGrade, Violations
 
 
 class TrackStopReason(StrEnum):
@@ -28,7 +28,7 @@ class TrackStopReason(StrEnum):
     """A joint leaves its range."""
     DISTANCE_LIMIT = "distance_limit"
     """The tool is too far from the platform's centre."""
-    SELF_COLLISION = "self_collision"
+    COLLISION = "collision"
     """Components collide, or it can't be excluded that they do between samples."""
     BUDGET = "budget"
     """The attempts were spent without a reason that was found."""
@@ -95,7 +95,7 @@ class Trajectory:
     search_seconds: float
     """Wall time of the whole motion: starts, all rollouts, backtracking; without compiling and grading. Of the paper's
     methods it holds `continuation`'s search for a start, if none was given."""
-    verification: TrackVerification
+    grade: TrackGrade
     """What plain numpy says about the samples."""
     certificate: Certificate | None
     """What is certain about self-collision between them; None: not checked, without a detector or a motion."""
@@ -111,29 +111,29 @@ class Trajectory:
     @property
     def error_m(self) -> Floats:
         """[M + 1, 3] tool minus path, along x, y, z."""
-        return self.verification.error_m
+        return self.grade.error_m
 
     @property
     def orientation_error_rad(self) -> Floats:
         """[M + 1] of what the path asks for."""
-        return self.verification.orientation_error_rad
+        return self.grade.orientation_error_rad
 
     @property
     def clearance_m(self) -> Floats | None:
         """[M + 1] smallest over the detector's pairs; None without any: not checked."""
-        gaps = self.verification.gaps_m
+        gaps = self.grade.gaps_m
         return gaps.min(axis=1) if gaps.shape[1] else None
 
     @property
     def certified_clearance_m(self) -> float | None:
         """What no pair falls below at any moment, samples or between; None without pairs, or a motion."""
-        sampled, proof = self.verification.clearance_m, self.certificate
+        sampled, proof = self.grade.clearance_m, self.certificate
         return sampled if sampled is None or proof is None else min(proof.clearance_m, sampled)
 
     @property
     def violations(self) -> Violations:
         """How often each limit is broken."""
-        return self.verification.violations
+        return self.grade.violations
 
     @property
     def reached_points(self) -> int:
@@ -143,7 +143,7 @@ class Trajectory:
     @property
     def reached(self) -> bool:
         """True if the whole path was followed and no limit is broken, self-collision among them if it was checked."""
-        return self.stop is None and self.reached_points == self.path.samples and self.verification.accepted
+        return self.stop is None and self.reached_points == self.path.samples and self.grade.accepted
 
     @property
     def times_s(self) -> Floats:

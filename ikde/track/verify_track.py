@@ -48,7 +48,7 @@ class Violations:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TrackVerification:
+class TrackGrade:
     """The figures of a motion of M segments, at its samples 0 .. M."""
 
     error_m: Floats
@@ -101,7 +101,7 @@ class TrackVerification:
 
 def verify_track(
     collision: CollisionModel, path: ToolPath, q: Floats, *, drive: str, limits: MotionLimits
-) -> TrackVerification:
+) -> TrackGrade:
     """Grade the joint values `q` [M + 1, N] of the samples 0 .. M, M <= K, against path and limits.
 
     Raises `InputError` for limits that do not fit the robot.
@@ -126,7 +126,7 @@ def verify_track(
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
     driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)
     wrong = (np.abs(error) > limits.position_error_m).any(axis=1) | (turn > limits.orientation_error_rad)
-    return TrackVerification(
+    return TrackGrade(
         error_m=error,
         orientation_error_rad=turn,
         speeds=speeds,

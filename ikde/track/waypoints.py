@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ikde.errors import FileError, InputError
-from ikde.files.entries import FileEntry, InlineTarget, UnitsEntry
-from ikde.files.placed import placed
-from ikde.files.poses import read_orientation, read_position
-from ikde.files.table_targets import read_targets
-from ikde.files.tables import row_error
+from ikde.formats.entries import FileEntry, InlineTarget, UnitsEntry
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.poses import read_orientation, read_position
+from ikde.formats.table_targets import read_targets
+from ikde.formats.tables import row_error
 from ikde.kernels.arrays import Floats
 from ikde.model.target import AXIS, POSITION, Target, Targets
 from ikde.track.orientations import Turn
@@ -51,7 +51,7 @@ def read_waypoints(entry: FileEntry | Sequence[InlineTarget], units: UnitsEntry,
         return _read_table(folder / entry.path, entry, units)
     targets = []
     for index, waypoint in enumerate(entry):
-        with placed(index):
+        with prefix_errors(index):
             position = read_position("position", waypoint.position, units)
             targets.append(Target(position, **read_orientation(waypoint, units)))
             if targets[-1].kind != targets[0].kind:

@@ -41,7 +41,7 @@ def test_columns_that_are_not_kept_are_missed_by_nobody(tmp_path):
 
 
 def test_of_very_many_unreached_targets_the_first_are_kept(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "MOST_LISTED", 4)
+    monkeypatch.setattr(module, "MAX_LISTED", 4)
     arm = ikde.run_batch(make_batch(), tmp_path).arms[0]
     assert [(row.target, row.missed) for row in arm.listed] == [(k, 2) for k in range(4)]
     assert arm.unreached_targets == 12

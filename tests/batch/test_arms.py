@@ -6,7 +6,7 @@ import pytest
 from ikde.batch.arms import describe_arm, make_arm, make_arms
 from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.errors import InputError
-from ikde.files.entries import UnitsEntry
+from ikde.formats.entries import UnitsEntry
 
 MM_DEG = UnitsEntry(length="mm", angle="deg")
 SI = UnitsEntry()

@@ -29,7 +29,7 @@ def identity(part):
 
 def solutions(part=PART, **changes):
     graded = {"reached": [True] * part.rows, "verified": pa.nulls(part.rows, pa.bool_())}
-    graded |= {"self_collision": [False] * part.rows}
+    graded |= {"collision": [False] * part.rows}
     graded |= {"stop_reason": words(*["reached"] * part.rows), "typical_collides": [False] * part.rows}
     return {**identity(part), **graded, "clearance_m": [0.1] * part.rows, **changes}
 

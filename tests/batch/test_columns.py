@@ -12,13 +12,13 @@ from ikde.batch.columns import GROUPS, WORDS, make_solutions, make_timing
 from ikde.batch.parts import serialize
 from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_quat_wxyz
-from ikde.solver.rows import solve_rows
+from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions
 from tests.batch.small import FAR, ROBOT, make_arm
 
 NUMBERS = np.arange(5, 9)  # targets 2, 3, 3, 4 of two repeats each
 POSE = rotation_from_quat_wxyz(np.array([0.5, 0.5, -0.5, 0.5]))
-ALWAYS = ["arm", "target", "target_name", "repeat", "reached", "self_collision", "verified", "stop_reason"]
+ALWAYS = ["arm", "target", "target_name", "repeat", "reached", "collision", "verified", "stop_reason"]
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_a_solve_is_known_by_arm_target_and_repeat(rows):
 def test_the_verdict_is_that_of_the_rows(rows):
     table = tabulate(rows).to_pydict()
     assert table["reached"] == [True, True, True, False]
-    assert table["self_collision"] == [False] * 3 + [rows.row(3).self_collision]
+    assert table["collision"] == [False] * 3 + [rows.row(3).collision]
     assert table["verified"] == [True] * 4
     assert table["stop_reason"] == ["reached"] * 3 + ["out_of_reach"]
     assert set(table["stop_reason"]) <= set(WORDS)
@@ -95,10 +95,10 @@ def read_back(table):
     return pq.read_table(pa.BufferReader(serialize(table))).to_pydict()
 
 
-def test_without_a_detector_clearance_and_self_collision_are_null():
+def test_without_a_detector_clearance_and_collision_are_null():
     rows = solve_rows(make_arm(detector="none").problem, [ikde.Target((0.5, 0.2, 0.8))], seed=1)
     table = read_back(tabulate(rows, numbers=NUMBERS[:1], names=None))
-    assert [table[name] for name in ("clearance_m", "pair_a", "pair_b", "self_collision")] == [[None]] * 4
+    assert [table[name] for name in ("clearance_m", "pair_a", "pair_b", "collision")] == [[None]] * 4
     assert table["reached"] == [True]
 
 
@@ -107,7 +107,7 @@ def test_what_plain_numpy_did_not_grade_is_null():
     rows = solve_rows(make_arm().problem, targets, seed=1, first_stream=63, bulk=BulkOptions())
     table = read_back(tabulate(rows, numbers=np.arange(63, 66), names=None))
     assert table["verified"] == [None, True, None]
-    assert table["self_collision"] == [False] * 3
+    assert table["collision"] == [False] * 3
 
 
 def test_a_grader_that_compares_nothing_gives_nulls(rows):

@@ -10,7 +10,7 @@ from ikde.batch import folder as module
 from ikde.batch.folder import LOCK, claim_folder, keep_names
 from ikde.batch.manifest import MANIFEST, read_manifest, write_manifest
 from ikde.errors import FileError
-from ikde.files.atomic import sync_folder, temporary_path
+from ikde.formats.atomic import sync_folder, temporary_path
 from tests.batch.small import make_batch
 
 HOLD = """

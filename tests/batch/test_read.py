@@ -31,7 +31,7 @@ def test_verdicts_that_are_null_are_masked(folder):
     assert (read.tolist(), read.data.tolist()) == ([True, None, False], [True, False, False])
     table = ikde.read_batch(folder)
     checked = np.array([row["arm"] == "z" for row in table.to_pylist()])
-    assert (~np.ma.getmaskarray(read_verdicts(table["self_collision"])) == checked).all()
+    assert (~np.ma.getmaskarray(read_verdicts(table["collision"])) == checked).all()
 
 
 def test_only_finished_parts_are_read(folder):

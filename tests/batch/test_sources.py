@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ikde.batch.sources import ListSource, PointSource
-from ikde.files.table_targets import TableSource
+from ikde.formats.table_targets import TableSource
 from ikde.model.target import Target
 from tests.batch.small import target_bits
 

@@ -9,7 +9,7 @@ import yaml
 from pydantic import ValidationError
 
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec, DeEntry, SettingsEntry, TargetsEntry
-from ikde.files.entries import Entry
+from ikde.formats.entries import Entry
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.settings import DeSettings, SolveSettings
 
@@ -19,7 +19,7 @@ LEAST = {"robot": "qiao2021", "targets": {"inline": [{"position": [1, 2, 3]}]}}
 
 def entries(model=Entry):
     """Every part of a run file."""
-    own = [model] if model.__module__ in ("ikde.files.entries", "ikde.batch.spec") else []
+    own = [model] if model.__module__ in ("ikde.formats.entries", "ikde.batch.spec") else []
     return [*own, *(found for child in model.__subclasses__() for found in entries(child))]
 
 

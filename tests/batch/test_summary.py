@@ -62,9 +62,7 @@ def test_only_what_was_checked_is_counted(run):
         verdicts = [row["verified"] for row in of_arm(rows, arm.name) if row["verified"] is not None]
         assert arm.verified == Rate(len(verdicts), len(verdicts))
         assert 0 < len(verdicts) < 32
-        assert (
-            arm.collision_checked == checked == sum(row["self_collision"] is not None for row in of_arm(rows, arm.name))
-        )
+        assert arm.collision_checked == checked == sum(row["collision"] is not None for row in of_arm(rows, arm.name))
 
 
 def test_cost_is_spread_over_all_solves(run):

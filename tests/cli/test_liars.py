@@ -69,7 +69,7 @@ def ask(lie, kind):
 def assert_honest(target, result):
     """What is called reached is."""
     assert is_met(ROBOT, target, result.q, result.settings) or not result.reached
-    assert is_met(ROBOT, target, result.q, result.settings) or not result.verification.accepted
+    assert is_met(ROBOT, target, result.q, result.settings) or not result.grade.accepted
 
 
 @each_kind

@@ -3,10 +3,10 @@
 import pytest
 
 from ikde.errors import InputError
-from ikde.model.names import LONGEST_NAME, check_printable, find_fault
+from ikde.model.names import MAX_NAME_LENGTH, check_printable, find_fault
 
 
-@pytest.mark.parametrize("name", ["x", "x" * LONGEST_NAME, "漢" * 100, "a\\b", 'a"""b', "$(rm -rf .)", "<b>", " "])
+@pytest.mark.parametrize("name", ["x", "x" * MAX_NAME_LENGTH, "漢" * 100, "a\\b", 'a"""b', "$(rm -rf .)", "<b>", " "])
 def test_printable_text_is_a_name(name):
     assert find_fault(name) is None
 

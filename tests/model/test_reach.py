@@ -249,10 +249,10 @@ def test_axes_that_are_only_nearly_parallel_are_no_proof_of_a_plane():
 @given(seed=st.integers(0, 10_000))
 def test_far_out_what_can_be_reached_is_not_called_out_of_reach_for_its_rounding(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
-    far = np.where(robot.slides, 5e4, 1.0)
+    far = np.where(robot.is_prismatic, 5e4, 1.0)
     lower, upper = far * robot.lower, far * robot.upper
     q = rng.uniform(lower, upper)
-    q = np.where(robot.slides, rng.choice([lower, upper]), q)
+    q = np.where(robot.is_prismatic, rng.choice([lower, upper]), q)
     assert reach_excess_m(robot, tool_position(robot, q), lower, upper) == 0.0
 
 
@@ -295,9 +295,11 @@ def test_many_positions_are_one_after_the_other(any_robot, rng):
 def test_no_tool_gets_farther_from_the_first_turn_than_the_arm_is_long(seed):
     """With all slides at zero, wherever what comes before the turn stands."""
     robot, rng = random_robot(seed), np.random.default_rng(seed)
-    turns = [frame for frame in robot.frames if frame.joint is not None and not robot.slides[index_of(robot, frame)]]
+    turns = [
+        frame for frame in robot.frames if frame.joint is not None and not robot.is_prismatic[index_of(robot, frame)]
+    ]
     carrying = [frame for frame in turns if carries_tool(robot, frame)]
-    q = np.where(robot.slides, 0.0, rng.uniform(-np.pi, np.pi, len(robot.joints)))
+    q = np.where(robot.is_prismatic, 0.0, rng.uniform(-np.pi, np.pi, len(robot.joints)))
     frames = reference.compute_frames(robot, q)
     p_tool = frames[robot.tool][:3, 3]
     if carrying:
@@ -323,7 +325,7 @@ def lead_point(robot, frames):
     parents, name, first = {each.name: each for each in robot.frames}, robot.tool, robot.tool
     while name != "world":
         frame = parents[name]
-        if frame.joint is not None and not robot.slides[index_of(robot, frame)]:
+        if frame.joint is not None and not robot.is_prismatic[index_of(robot, frame)]:
             first = name
         name = frame.parent
     return frames[first][:3, 3]

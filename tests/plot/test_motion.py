@@ -184,7 +184,7 @@ def test_errors_have_their_tolerance_and_orientation_if_asked_for(qiao, motion):
 def test_clearance_is_above_what_is_certain(motion):
     axes = plot_clearance(motion).axes[0]
     samples, certain = (line.get_ydata() for line in axes.lines[:2])
-    np.testing.assert_allclose(samples, 1e3 * motion.verification.gaps_m.min(axis=1))
+    np.testing.assert_allclose(samples, 1e3 * motion.grade.gaps_m.min(axis=1))
     assert certain.min() <= samples.min()
 
 

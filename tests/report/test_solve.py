@@ -49,7 +49,7 @@ def test_json_is_in_the_convention_asked_for(qiao, result):
 
 def test_json_of_a_failure_names_reason_hint_and_pairs(qiao, blocked):
     data = json.loads(json.dumps(solve_json(qiao, blocked), allow_nan=False))
-    assert (data["reached"], data["stop_reason"]) == (False, "self_collision")
+    assert (data["reached"], data["stop_reason"]) == (False, "collision")
     assert data["reason"] == blocked.reason
     assert data["hint"] == blocked.hint
     first = next(iter(blocked.blocking_pairs.items()))
@@ -58,8 +58,8 @@ def test_json_of_a_failure_names_reason_hint_and_pairs(qiao, blocked):
 
 def test_json_without_a_detector_has_nulls(qiao):
     data = solve_json(qiao, ikde.solve(qiao, TARGET, collision="none"))
-    assert (data["clearance_m"], data["closest_pair"], data["self_collision"]) == (None, None, None)
-    assert '"self_collision": null' in json.dumps(data)
+    assert (data["clearance_m"], data["closest_pair"], data["collision"]) == (None, None, None)
+    assert '"collision": null' in json.dumps(data)
 
 
 def test_without_a_detector_the_text_says_that_nothing_was_checked(qiao):

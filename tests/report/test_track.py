@@ -15,7 +15,7 @@ from tests.track.measured import make_measured, make_still
 
 STOP = TrackStop(
     sample=21,
-    reason=TrackStopReason.SELF_COLLISION,
+    reason=TrackStopReason.COLLISION,
     text="sample 21 (0.42 s): J4 and J6 overlap by 3 mm in the only step that was found",
     pair=("J4", "J6"),
 )
@@ -44,14 +44,14 @@ def test_a_stop_is_the_second_line(qiao, plan):
     lines = format_track(plan, motion).splitlines()
     assert lines[:2] == ["stopped after 20 of 25 points of wave [1]", STOP.text]
     data = track_json(plan, motion)
-    assert (data["reached"], data["stop"]["reason"], data["stop"]["pair"]) == (False, "self_collision", ("J4", "J6"))
+    assert (data["reached"], data["stop"]["reason"], data["stop"]["pair"]) == (False, "collision", ("J4", "J6"))
 
 
 def test_broken_limits_are_counted(qiao, plan):
     motion = make_measured(qiao, amplitude=2.6)
     text = format_track(plan, motion)
     assert text.startswith("followed 20 of 20 points of wave [1], against its limits: ")
-    assert f"collision {motion.verification.violations.collision} times" in text
+    assert f"collision {motion.grade.violations.collision} times" in text
     assert track_json(plan, motion)["accepted"] is False
 
 
@@ -61,7 +61,7 @@ def test_plain_data_is_json(qiao, plan):
         assert json.loads(json.dumps(data, allow_nan=False))["reached_points"] == 20
 
 
-def test_without_a_detector_self_collision_is_not_checked(qiao, plan):
+def test_without_a_detector_collision_is_not_checked(qiao, plan):
     motion = make_measured(qiao, detector="none")
     assert rows_of(motion)["self-collision"] == ("not checked", "")
     assert format_track(plan, motion).splitlines()[0].endswith(", 0.4 s, differential, self-collision not checked")
@@ -106,10 +106,10 @@ def test_what_was_asked_for_is_on_record(qiao, plan):
 
 def make_missing(motion):
     """The same, but two samples miss their tolerance."""
-    error = motion.verification.error_m.copy()
+    error = motion.grade.error_m.copy()
     error[[4, 7], 0] = 1e-3
-    graded = replace(motion.verification, error_m=error)
-    return replace(motion, trajectory=replace(motion.trajectory, verification=graded))
+    graded = replace(motion.grade, error_m=error)
+    return replace(motion, trajectory=replace(motion.trajectory, grade=graded))
 
 
 def test_a_point_that_is_missed_is_not_reached(qiao, plan):
@@ -149,7 +149,7 @@ def test_joints_without_ends_have_no_range_left(qiao, plan):
 
 def test_a_limited_distance_is_told(qiao, plan):
     motion = make_measured(qiao, max_distance_m=0.5, center="Oc")
-    farthest = motion.verification.distance_m.max()
+    farthest = motion.grade.distance_m.max()
     row = "largest distance of the tool from Oc, 21 beyond"
     assert rows_of(motion)[row] == (f"{1e3 * farthest:.2f} mm", "500 mm")
     assert track_json(plan, motion)["largest_distance_m"] == farthest
@@ -161,7 +161,7 @@ def test_a_limited_distance_is_told(qiao, plan):
 def test_what_is_not_asked_for_is_none(qiao, plan):
     motion = make_measured(qiao, orientation="axis")
     pose, free = (track_json(plan, asked) for asked in (motion, make_measured(qiao, orientation="free")))
-    figures = motion.verification.largest_orientation_error_rad, motion.trajectory.deviation_rad.max()
+    figures = motion.grade.largest_orientation_error_rad, motion.trajectory.deviation_rad.max()
     for key, figure in zip(("largest_orientation_error_rad", "largest_deviation_rad"), figures, strict=True):
         assert (pose[key], free[key]) == (figure, None)
     assert pose["largest_sideways_m_s"] < 1e-9

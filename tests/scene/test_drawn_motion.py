@@ -34,7 +34,7 @@ def test_a_short_motion_shows_each_sample_once(qiao):
 def test_a_collision_nearby_is_shown_instead(folded):
     chosen = choose_moments(folded, 3)
     assert any(folded.colliding[k] for k in chosen)
-    assert folded.verification.gaps_m.min() == folded.verification.gaps_m[chosen].min()
+    assert folded.grade.gaps_m.min() == folded.grade.gaps_m[chosen].min()
 
 
 def test_each_frame_is_the_robot_at_its_sample(qiao, motion):

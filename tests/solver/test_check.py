@@ -67,7 +67,7 @@ def test_clearance_is_the_distance_of_the_closest_spheres(qiao):
 
 
 @pytest.mark.parametrize(("name", "choice"), [("qiao2021", "none"), ("qiao2021_dh", None)])
-def test_without_a_detector_self_collision_is_not_checked(name, choice):
+def test_without_a_detector_collision_is_not_checked(name, choice):
     robot = ikde.load_robot(name)
     result = ikde.check(robot, robot.home, choice)
     assert (result.collision, result.clearance_m, result.pairs) == (None, None, ())

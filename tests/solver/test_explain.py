@@ -1,4 +1,4 @@
-"""Why there is no solution: the word is right, the figures are right, and the hint works."""
+"""Why there is no solution: the word is right, the metrics are right, and the hint works."""
 
 import re
 from dataclasses import replace
@@ -11,9 +11,9 @@ import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.collision_model import CollisionModel
 from ikde.model.reach import reach_excess_m
-from ikde.solver.engines.found import make_found
-from ikde.solver.figures import compute_figures
-from ikde.solver.search import Found, search
+from ikde.solver.engines.search_state import make_search_state
+from ikde.solver.metrics import compute_metrics
+from ikde.solver.search import SearchState, search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.touching import find_always_touching
 from tests.bare_robot import BARE
@@ -92,7 +92,7 @@ def test_a_tool_that_no_joint_tilts_is_told_by_how_much_it_stays_off(quill_m):
 def test_a_target_inside_the_platform_is_met_by_colliding_configurations_only(qiao, collision, hint):
     settings = QUICK.with_changes(de={"collision": collision})
     result = ikde.solve(qiao, INSIDE_THE_PLATFORM, settings, freeze=PARKED)
-    assert result.stop_reason == "self_collision"
+    assert result.stop_reason == "collision"
     assert not result.reached
     assert result.reason.startswith("only colliding solutions found")
     assert ("M", "LT") in result.blocking_pairs
@@ -107,7 +107,7 @@ def test_blocking_pairs_count_at_most_once_an_attempt(qiao):
     assert max(result.blocking_pairs.values()) <= result.rejected <= result.attempts
 
 
-def test_self_collision_names_frozen_joints_if_freeing_them_helps(qiao):
+def test_collision_names_frozen_joints_if_freeing_them_helps(qiao):
     result = ikde.solve(qiao, INSIDE_THE_PLATFORM, ikde.SolveSettings(restarts=6), freeze=PARKED)
     assert result.hint.startswith("free d_x, d_y, q_z")
     assert ikde.solve(qiao, INSIDE_THE_PLATFORM).reached
@@ -115,7 +115,7 @@ def test_self_collision_names_frozen_joints_if_freeing_them_helps(qiao):
 
 def test_a_detector_that_collides_everywhere_is_named_by_its_pairs(qiao):
     result = ikde.solve(qiao, INSIDE_THE_PLATFORM, QUICK, collision="single", freeze=PARKED)
-    assert result.stop_reason == "self_collision"
+    assert result.stop_reason == "collision"
     assert ("M", "LT") in result.blocking_pairs
     assert result.detector == "single"
 
@@ -123,7 +123,7 @@ def test_a_detector_that_collides_everywhere_is_named_by_its_pairs(qiao):
 def test_a_pair_that_always_touches_is_named_with_the_line_to_add(tmp_path):
     (tmp_path / "fat.yaml").write_text(BARE.replace("radius: 0.35", "radius: 0.9"))
     result = ikde.solve(ikde.load_robot(tmp_path / "fat.yaml"), ikde.Target((0.5, 0.5, 0.9)), QUICK)
-    assert (result.reached, result.stop_reason) == (False, "self_collision")
+    assert (result.reached, result.stop_reason) == (False, "collision")
     assert result.reason == (
         "platform - upper_arm touches in each of 1,000 random configurations; if that is meant, add to the robot file: "
         'adjacent: {pairs: {platform: {upper_arm: "why they may touch"}}}'
@@ -198,9 +198,9 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, subs
             "excess_m": nothing,
             "seconds": nothing,
             "engine": np.zeros(1, dtype=np.int64),
-            "figures": compute_figures(CollisionModel.of(qiao), targets, qiao.home[None]),
+            "metrics": compute_metrics(CollisionModel.of(qiao), targets, qiao.home[None]),
         }
-        return Found(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)
+        return SearchState(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)
 
     substitute(search, after_the_first(search, probe))
     result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, de={"generations": 3}))
@@ -212,10 +212,10 @@ def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, sub
     """Colliding solutions are counted on other streams; a free one among them is the answer."""
 
     def unlucky(problem, targets, **options):
-        found = make_found(problem, len(targets))
+        found = make_search_state(problem, len(targets))
         found.counts[:, [ATTEMPTS, COLLIDING]] = 3
-        figures = compute_figures(CollisionModel.of(qiao), targets, found.q)
-        found.figures.put(np.arange(len(targets)), figures)
+        metrics = compute_metrics(CollisionModel.of(qiao), targets, found.q)
+        found.metrics.put(np.arange(len(targets)), metrics)
         return found
 
     substitute(search, after_the_first(unlucky, search))
@@ -260,7 +260,7 @@ def test_what_is_proved_or_reached_does_not_run_out_of_time(qiao):
 def test_with_time_to_spare_the_reason_is_looked_for(qiao):
     timed = ikde.SolveSettings(restarts=6, timeout_s=1e6)
     result = ikde.solve(qiao, INSIDE_THE_PLATFORM, timed, freeze=PARKED)
-    assert result.stop_reason == "self_collision"
+    assert result.stop_reason == "collision"
     assert result.hint.startswith("free d_x, d_y, q_z")
 
 
@@ -269,7 +269,7 @@ def test_short_searches_share_what_is_left_of_the_time(qiao, substitute):
 
     def probe(problem, targets, spent_s, **options):
         spent.append(spent_s)
-        found = make_found(problem, len(targets))
+        found = make_search_state(problem, len(targets))
         found.seconds[:] = 2.0
         return found
 

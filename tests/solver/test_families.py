@@ -72,10 +72,10 @@ def test_a_result_tells_its_family_if_it_is_reached():
     alone, rows = ikde.solve(QIAO, target, seed=3), ikde.solve_many(QIAO, [target] * 5, seed=3)
     for result in (alone, *rows):
         assert result.reached
-        assert result.family == result.verification.family == ikde.family(QIAO, result.q)
+        assert result.family == result.grade.family == ikde.family(QIAO, result.q)
     missed = ikde.solve(QIAO, ikde.Target((50.0, 0.0, 1.0)))
     assert missed.family is None
-    assert missed.verification.family == ikde.family(QIAO, missed.q)
+    assert missed.grade.family == ikde.family(QIAO, missed.q)
     panda = ikde.load_robot("panda")
     assert ikde.solve(panda, ikde.Target((0.4, 0.1, 0.5))).family is None
 

@@ -11,11 +11,11 @@ from ikde.errors import VerificationError
 from ikde.kernels.arrays import COUNTS, REACHED
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Targets
-from ikde.solver.engines.found import make_found
-from ikde.solver.figures import AGREEMENT, compute_figures
+from ikde.solver.engines.search_state import make_search_state
 from ikde.solver.forward import forward
 from ikde.solver.grade import confirm, grade
-from ikde.solver.search import Found, search
+from ikde.solver.metrics import AGREEMENT, compute_metrics
+from ikde.solver.search import SearchState, search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify
 from tests.flat_settings import flat_settings
@@ -26,15 +26,15 @@ TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(3)]
 
 
 def lie_about(substitute, figure, by, only=None):
-    """Let the kernels' figures be off; `only`: for this target alone."""
+    """Let the kernels' metrics be off; `only`: for this target alone."""
 
     def lying(collision, targets, Q, settings, limits):
-        figures = compute_figures(collision, targets, Q, settings, limits)
+        metrics = compute_metrics(collision, targets, Q, settings, limits)
         points = [tuple(target.p_world_tool) for target in targets]
         guilty = np.array([only is None or point == tuple(only.p_world_tool) for point in points])
-        return replace(figures, **{figure: getattr(figures, figure) + np.where(guilty, by, 0.0)})
+        return replace(metrics, **{figure: getattr(metrics, figure) + np.where(guilty, by, 0.0)})
 
-    substitute(compute_figures, lying)
+    substitute(compute_metrics, lying)
 
 
 @pytest.mark.parametrize("by", [2e-11, -1e-3, np.nan, np.inf])
@@ -87,8 +87,8 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
         engine = np.zeros(len(targets), dtype=np.int64)
         score = np.zeros((len(targets), 2))
         some = {"score": score, "excess_m": nothing, "seconds": nothing, "engine": engine}
-        some["figures"] = compute_figures(CollisionModel.of(qiao), targets, q, QUICK)
-        return Found(q=q, counts=counts, pair_counts=pair_counts, **some)
+        some["metrics"] = compute_metrics(CollisionModel.of(qiao), targets, q, QUICK)
+        return SearchState(q=q, counts=counts, pair_counts=pair_counts, **some)
 
     substitute(search, boast)
     result = ikde.solve(qiao, TARGETS[0], flat_settings(QUICK, restarts=1, generations=3))
@@ -99,13 +99,15 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
 
 @pytest.mark.parametrize("verify_rows", ["all", "sample"])
 def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
-    """Its figures are true and its verdicts are not: those of plain numpy count as well."""
+    """Its metrics are true and its verdicts are not: those of plain numpy count as well."""
     problem, detector = problem_of(qiao, QUICK), CollisionModel.of(qiao).detector
-    outside = qiao.home + np.where(qiao.slides, 0.0, 9.0)
+    outside = qiao.home + np.where(qiao.is_prismatic, 0.0, 9.0)
     for q, asked in ((qiao.home, TARGETS[0]), (outside, ikde.Target(forward(qiao, outside)[qiao.tool][:3, 3]))):
         targets = Targets.of([asked])
-        figures = compute_figures(CollisionModel(robot=qiao, detector=detector), targets, q[None], QUICK)
-        found = replace(make_found(problem, 1), q=q[None], figures=replace(figures, accepted=np.ones(1, dtype=bool)))
+        metrics = compute_metrics(CollisionModel(robot=qiao, detector=detector), targets, q[None], QUICK)
+        found = replace(
+            make_search_state(problem, 1), q=q[None], metrics=replace(metrics, accepted=np.ones(1, dtype=bool))
+        )
         graded = grade(problem, targets, found, BulkOptions(explain=False, verify=verify_rows), seed=0, strict=False)
         assert graded.verified.all()
         assert not graded.reached.any()
@@ -113,7 +115,7 @@ def test_a_grader_that_accepts_too_much_is_overruled(qiao, verify_rows):
 
 def test_the_figures_are_of_exactly_the_returned_q(qiao):
     result = ikde.solve(qiao, TARGETS[0], QUICK)
-    assert result.verification == verify(qiao, TARGETS[0], result.q, settings=QUICK)
+    assert result.grade == verify(qiao, TARGETS[0], result.q, settings=QUICK)
 
 
 def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
@@ -128,7 +130,7 @@ def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
 
 def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no_bug(qiao):
     result = ikde.solve_many(qiao, TARGETS[:1], seed=7, bulk=BulkOptions(verify="none"))[0]
-    tolerance = np.nextafter(result.verification.position_error_m, 0.0)
+    tolerance = np.nextafter(result.grade.position_error_m, 0.0)
     strict = partial(verify, qiao, settings=replace(result.settings, position_tolerance_m=tolerance))
     confirmed = confirm(qiao, replace(result, verify=strict))
     assert (confirmed.reached, confirmed.verified, confirmed.stop_reason) == (False, True, "budget")
@@ -139,5 +141,5 @@ def test_of_a_sample_each_unreached_row_is_graded_and_explained(qiao):
     targets = [*TARGETS, ikde.Target((50.0, 0.0, 1.0))]
     rows = ikde.solve_many(qiao, targets, QUICK, bulk=BulkOptions())
     assert rows.verified.mask.tolist() == [False, True, True, False]  # the first is of the sample
-    assert list(rows.graded.explanations) == [3]
+    assert list(rows.outcomes.explanations) == [3]
     assert rows[3].hint

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
-from ikde.model.robot import FARTHEST
+from ikde.model.robot import MAX_MAGNITUDE
 from ikde.model.validate import check_robot
 from ikde.solver.joints import joints_outside, read_joints
 
@@ -108,7 +108,7 @@ def test_one_bit_beyond_a_limit_is_outside(any_robot):
 
 
 def test_the_ends_of_the_widest_ranges_that_load_are_joint_values(qiao):
-    joints = tuple(replace(joint, lower=-FARTHEST, upper=FARTHEST) for joint in qiao.joints)
+    joints = tuple(replace(joint, lower=-MAX_MAGNITUDE, upper=MAX_MAGNITUDE) for joint in qiao.joints)
     wide = check_robot(replace(qiao, joints=joints, pair_lists={}, detectors={}, default_detector="none", wheels=None))
     for q in (wide.lower, wide.upper):
         assert read_joints(wide, q).tolist() == q.tolist()

@@ -13,7 +13,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver.grade import confirm
 from ikde.solver.quick import Quick, find_quick
-from ikde.solver.rows import solve_rows
+from ikde.solver.results import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
 from tests.problems import problem_of
@@ -40,10 +40,10 @@ def test_quick_and_long_give_the_same_result(qiao, rng, kind):
         target = make_target(qiao, free_q(qiao, rng), kind)
         quick, long = solve_quick(qiao, target, 4, stream), solve_long(qiao, target, AUTO, 4, stream)
         assert quick.q.tobytes() == long.q.tobytes()
-        assert quick.verification == long.verification
+        assert quick.grade == long.grade
         told = [vars(result) for result in (quick, long)]
         assert told[0].keys() == told[1].keys()
-        own = {"q", "target", "solve_seconds", "compile_seconds", "verify", "verification", "verified"}
+        own = {"q", "target", "solve_seconds", "compile_seconds", "verify", "grade", "verified"}
         for name in told[0].keys() - own:
             assert told[0][name] == told[1][name], name
         assert (quick.target.p_world_tool == long.target.p_world_tool).all()
@@ -51,8 +51,8 @@ def test_quick_and_long_give_the_same_result(qiao, rng, kind):
 
 def test_a_quick_result_is_verified_once_plain_numpy_has_confirmed_it_and_not_before(qiao):
     result = solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0)
-    assert (result.reached, result.self_collision, result.verified) == (True, False, None)
-    assert result.verification.accepted
+    assert (result.reached, result.collision, result.verified) == (True, False, None)
+    assert result.grade.accepted
     assert result.verified is None
     confirmed = confirm(qiao, result)
     assert (confirmed.verified, result.verified) == (True, None)
@@ -69,9 +69,9 @@ def test_each_distinct_solution_is_verified_however_the_first_was_found(qiao, su
 
 def test_without_a_detector_a_quick_result_is_neither_free_nor_colliding(qiao):
     result = solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0, detector="none")
-    assert (result.reached, result.self_collision, result.clearance_m) == (True, None, None)
+    assert (result.reached, result.collision, result.clearance_m) == (True, None, None)
     assert result.reason == "within tolerance, inside the limits, self-collision not checked"
-    assert result.verification.self_collision is None
+    assert result.grade.collision is None
     assert result.detector == "none"
 
 

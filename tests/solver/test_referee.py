@@ -8,7 +8,7 @@ from ikde.kernels.arrays import ATTEMPTS, REACHED
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver import referee as module
-from ikde.solver.figures import compute_figures
+from ikde.solver.metrics import compute_metrics
 from ikde.solver.search import REFUSALS, search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify_many
@@ -59,14 +59,14 @@ def refuse(substitute, *rounds):
     left = [set(rows) for rows in rounds]
 
     def strict(collision, targets, Q, settings, limits):
-        figures = compute_figures(collision, targets, Q, settings, limits)
+        metrics = compute_metrics(collision, targets, Q, settings, limits)
         rows = left.pop(0) if left else set()
         for place, target in enumerate(targets):
             if round(10.0 * target.p_world_tool[1]) in rows:
-                figures.accepted[place] = False
-        return figures
+                metrics.accepted[place] = False
+        return metrics
 
-    substitute(compute_figures, strict)
+    substitute(compute_metrics, strict)
 
 
 TARGETS = [ikde.Target((0.8, 0.1 * k, 1.0)) for k in range(5)]
@@ -88,16 +88,16 @@ def test_what_is_always_refused_is_not_reached_and_the_next_engine_tries(qiao, s
     tried = []
 
     def strict(collision, targets, Q, settings, limits):
-        figures = compute_figures(collision, targets, Q, settings, limits)
-        figures.accepted[:] = False
+        metrics = compute_metrics(collision, targets, Q, settings, limits)
+        metrics.accepted[:] = False
         tried.append(len(Q))
-        return figures
+        return metrics
 
-    substitute(compute_figures, strict)
+    substitute(compute_metrics, strict)
     found = search(make(qiao, restarts=2), TARGETS[:1], seed=7, streams=[0])
     assert found.counts[0, REACHED] == 0
     assert found.counts[0, ATTEMPTS] > REFUSALS
-    assert np.isfinite(found.figures.position_error_m).all()
+    assert np.isfinite(found.metrics.position_error_m).all()
 
 
 def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(rng):

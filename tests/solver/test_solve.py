@@ -1,4 +1,4 @@
-"""`solve` and `solve_many`: targets are met, figures are true, and equal seeds give equal bits."""
+"""`solve` and `solve_many`: targets are met, metrics are true, and equal seeds give equal bits."""
 
 from dataclasses import replace
 
@@ -43,10 +43,10 @@ def test_a_method_is_a_set_of_defaults(qiao):
     assert implied.q.tobytes() == stated.q.tobytes()
 
 
-def test_a_robot_without_spheres_is_solved_and_self_collision_is_not_checked():
+def test_a_robot_without_spheres_is_solved_and_collision_is_not_checked():
     result = ikde.solve(ikde.load_robot("qiao2021_dh"), TARGET)
     assert result.reached
-    assert (result.detector, result.clearance_m, result.closest_pair, result.self_collision) == (
+    assert (result.detector, result.clearance_m, result.closest_pair, result.collision) == (
         "none",
         None,
         None,
@@ -151,7 +151,7 @@ def test_an_unreached_target_gives_the_best_found_and_a_reason(qiao):
     assert result.stop_reason != "reached"
     assert result.reason
     assert result.verified
-    assert result.verification == ikde.verify(qiao, TARGET, result.q, settings=CHEAP)
+    assert result.grade == ikde.verify(qiao, TARGET, result.q, settings=CHEAP)
     assert (result.attempts, result.position_error_m > 1e-5) == (1, True)
 
 

@@ -100,7 +100,7 @@ def test_only_all_three_are_accepted(qiao, reachable, inside, free):
     graded = ikde.verify(qiao, target, q)
     assert graded.within_tolerance is reachable
     assert (graded.outside_limits == ()) is inside
-    assert graded.self_collision is not free
+    assert graded.collision is not free
     assert graded.accepted is (reachable and inside and free)
 
 
@@ -117,13 +117,13 @@ def test_touching_at_the_safe_distance_collides(qiao):
     clearance = ikde.check(qiao, qiao.home).clearance_m
     judge = replace(qiao.detectors["improved"], safe_distance_m=clearance)
     graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, collision=judge)
-    assert graded.self_collision
+    assert graded.collision
     assert not graded.accepted
 
 
-def test_without_a_detector_self_collision_is_not_checked(qiao):
+def test_without_a_detector_collision_is_not_checked(qiao):
     graded = ikde.verify(qiao, here(qiao, qiao.home), qiao.home, collision="none")
-    assert (graded.clearance_m, graded.closest_pair, graded.self_collision) == (None, None, None)
+    assert (graded.clearance_m, graded.closest_pair, graded.collision) == (None, None, None)
     assert graded.accepted
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from ikde.track.certify import Certificate
 from ikde.track.path import ToolPath
 from ikde.track.trajectory import Trajectory
-from ikde.track.verify_track import TrackVerification, Violations
+from ikde.track.verify_track import TrackGrade, Violations
 
 NAMES = ("d_x", "d_y", "q_z", "q1", "q2")
 
@@ -28,7 +28,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
     )
     v, omega, wheels = np.full(steps, 1.5), np.full(steps, 5.0), np.tile([0.5, 2.5], (steps, 1))
     pairs = changes.pop("pairs", 1)
-    graded = TrackVerification(
+    graded = TrackGrade(
         error_m=np.full((len(q), 3), 1e-9),
         orientation_error_rad=np.zeros(len(q)),
         speeds=np.diff(q, axis=0) / dt_s,
@@ -56,7 +56,7 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         "stop": stop,
         "seconds": np.full(steps, 1e-4),
         "search_seconds": 0.25,
-        "verification": graded,
+        "grade": graded,
         "certificate": proof,
         "deviation_m": np.full(steps, 1e-5),
         "deviation_rad": np.full(steps, 1e-5),

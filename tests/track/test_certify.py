@@ -65,7 +65,7 @@ def test_it_holds_for_any_tree_and_beyond_its_ranges(seed, beyond):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     detector = CollisionModel.of(robot).detector
     q = walk(robot, rng, 6, 2.0)
-    q[:, robot.slides] += beyond * (robot.upper - robot.lower)[robot.slides]
+    q[:, robot.is_prismatic] += beyond * (robot.upper - robot.lower)[robot.is_prismatic]
     lower = bound_segments(CollisionModel(robot=robot, detector=detector), q)
     assert (lower <= sample_densely(robot, detector, q) + 1e-12).all()
 

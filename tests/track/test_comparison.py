@@ -71,7 +71,7 @@ def test_random_starts_meet_the_first_pose_and_differ(plan):
     for q in starts:
         graded = ikde.verify(plan.robot, plan.path.targets()[0], q)
         assert graded.position_error_m < 1e-8
-        assert not graded.self_collision
+        assert not graded.collision
 
 
 def test_without_starts_there_are_no_dead_ends(plan):

@@ -52,7 +52,7 @@ def test_what_may_touch_between_samples_is_cut_off(substitute):
     substitute(bound_pairs, lambda *_: bounds)
     cut = cut_at_doubt(rollout)
     assert (cut.last, len(cut.q), cut.stop.sample) == (63, 64, 64)
-    assert (cut.stop.reason, cut.stop.pair) == (TrackStopReason.SELF_COLLISION, pairs[6])
+    assert (cut.stop.reason, cut.stop.pair) == (TrackStopReason.COLLISION, pairs[6])
 
 
 @pytest.mark.parametrize("safe_m", [0.0, 0.01])
@@ -61,7 +61,7 @@ def test_more_is_kept_above_the_safe_distance_then(substitute, safe_m):
 
     def cut(rollout):
         margins.append((rollout.follower.track.margin - safe_m) / MARGIN_M)
-        stop = TrackStop(sample=4, reason=TrackStopReason.SELF_COLLISION, text="")
+        stop = TrackStop(sample=4, reason=TrackStopReason.COLLISION, text="")
         return rollout if len(margins) == 2 else replace(rollout, stop=stop)
 
     substitute(cut_at_doubt, cut)

@@ -82,7 +82,7 @@ def test_the_pair_that_would_touch():
     T = ikde.forward(robot(), q + np.outer(np.arange(200) * 0.02, np.eye(9)[4]))["tool"][:, :3, 3]
     stop = explain(np.diff(T, axis=0), q=q, frozen=frozen)
     pairs = CollisionModel.of(robot()).pairs
-    assert (stop.reason, stop.pair in pairs) == (TrackStopReason.SELF_COLLISION, True)
+    assert (stop.reason, stop.pair in pairs) == (TrackStopReason.COLLISION, True)
     assert "overlap" in stop.text
     gap = ikde.check(robot(), q + (stop.sample - 1) * 0.02 * np.eye(9)[4]).clearance_m
     assert 0.0 < gap < 0.02
@@ -165,7 +165,7 @@ LIFTED = {
     TrackStopReason.WHEEL_LIMIT: {"wheel_speed_rad_s": None},
     TrackStopReason.JOINT_LIMIT: {"ranges": False},
     TrackStopReason.DISTANCE_LIMIT: {"max_distance_m": None, "center": None},
-    TrackStopReason.SELF_COLLISION: {"collision": "none"},
+    TrackStopReason.COLLISION: {"collision": "none"},
 }
 CASES = [
     {"steps": [[0, 0.002, 0]] * 3 + [[0, 0.25, 0]]},

@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ikde.errors import InputError
-from ikde.track.expression import FUNCTIONS, FUNCTIONS_OF_MANY, LONGEST, parse_expression
+from ikde.track.expression import FUNCTIONS, FUNCTIONS_OF_MANY, MAX_LENGTH, parse_expression
 
 K = np.arange(0.0, 10.5, 0.5)
 PYTHON = {name: getattr(math, name) for name in ("sin", "cos", "tan", "sqrt", "pi")} | {
@@ -92,7 +92,7 @@ def test_a_branch_that_is_not_taken_may_have_no_value():
         ("9" * 400, "is too large a number"),
         ("9**9**9**9", "'9**9**9**9' is inf at k = 0; expected a finite number"),
         ("sqrt(2 - k)", "'sqrt(2 - k)' is nan at k = 2.5; expected a finite number"),
-        ("k" * (LONGEST + 1), "expected at most 1000 characters, got 1001"),
+        ("k" * (MAX_LENGTH + 1), "expected at most 1000 characters, got 1001"),
     ],
 )
 def test_what_is_not_allowed_is_named(text, words):

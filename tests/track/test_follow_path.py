@@ -187,7 +187,7 @@ def test_a_path_into_the_robot_itself_ends_before_contact(drive):
     first = int(np.argmax(np.linalg.norm(path.p_world_tool - load, axis=1) < radius))
     motion = follow_path(robot(), path, drive=drive, freeze=dict.fromkeys(BASE, 0.0))
     must_hold(motion)
-    assert (motion.stop.sample, motion.stop.reason) == (first, TrackStopReason.SELF_COLLISION)
+    assert (motion.stop.sample, motion.stop.reason) == (first, TrackStopReason.COLLISION)
     assert "LT" in motion.stop.pair
 
 

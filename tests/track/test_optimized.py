@@ -84,7 +84,7 @@ def test_a_collision_names_its_pair(qiao):
     detector = replace(follower.collision.detector, safe_distance_m=1.0)
     tight = replace(follower.plan, collision=CollisionModel.of(qiao, detector))
     _, _, stop = _evolve_samples(replace(follower, plan=tight), follower.plan.start)
-    assert stop.reason == "self_collision"
+    assert stop.reason == "collision"
     assert stop.pair in tight.collision.pairs
     assert stop.text.startswith("sample 1 (0.02 s): ")
 

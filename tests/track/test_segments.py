@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
-from ikde.files.entries import UnitsEntry
+from ikde.formats.entries import UnitsEntry
 from ikde.track.segments import make_segments
 from ikde.track.shapes import follow_segments
 from ikde.track.spec import CurveEntry

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from ikde.files.entries import Entry
+from ikde.formats.entries import Entry
 from ikde.track.spec import TRACK_METHODS, TrackSpec
 
 DOCUMENTATION = (Path(__file__).parents[2] / "docs" / "track.md").read_text(encoding="utf-8")
@@ -14,7 +14,7 @@ LEAST = {"robot": "qiao2021", "dt_s": 0.1, "path": {"waypoints": [{"position": [
 
 def entries(model=Entry):
     """Every part of a track file."""
-    own = [model] if model.__module__ in ("ikde.files.entries", "ikde.track.spec") else []
+    own = [model] if model.__module__ in ("ikde.formats.entries", "ikde.track.spec") else []
     return [*own, *(found for child in model.__subclasses__() for found in entries(child))]
 
 

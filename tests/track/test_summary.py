@@ -23,15 +23,15 @@ def test_it_meets_its_own_path(motion):
 
 
 def test_the_base_counts_by_its_arc(motion):
-    np.testing.assert_allclose(motion.verification.driven[:, :2], 0.2)
-    np.testing.assert_allclose(motion.verification.driven[:, 2], 0.3)
+    np.testing.assert_allclose(motion.grade.driven[:, :2], 0.2)
+    np.testing.assert_allclose(motion.grade.driven[:, 2], 0.3)
     assert motion.largest_step("prismatic") == pytest.approx(0.2 * DT_S)
     assert motion.wheel_limit_rad_s == pytest.approx((0.5 + 0.259 * np.pi / 2) / 0.1)
 
 
 def test_without_wheels_the_base_counts_by_its_arc_all_the_same(motion, unwheeled):
     bare = make_measured(unwheeled)
-    np.testing.assert_array_equal(bare.verification.driven, motion.verification.driven)
+    np.testing.assert_array_equal(bare.grade.driven, motion.grade.driven)
     assert bare.trajectory.wheel_speeds is None
     assert bare.wheel_limit_rad_s == np.inf
 
@@ -110,7 +110,7 @@ def test_a_joint_beyond_its_range_is_named_before_all(qiao, motion):
 def test_the_tools_distance_counts_where_it_is_limited(qiao, motion):
     assert motion.largest_distance_m is None
     near = make_measured(qiao, max_distance_m=5.0, center="Oc")
-    assert near.largest_distance_m == near.verification.distance_m.max() > 0.0
+    assert near.largest_distance_m == near.grade.distance_m.max() > 0.0
 
 
 def test_limits_that_are_off_have_no_worst(qiao):
@@ -131,12 +131,12 @@ def test_what_collides_is_named(qiao):
     free, folded = make_measured(qiao), make_measured(qiao, amplitude=2.6)
     assert not any(free.colliding)
     assert any(folded.colliding)
-    assert folded.verification.violations.collision == sum(map(bool, folded.colliding))
-    worst = np.argmin(folded.verification.gaps_m.min(axis=1))
+    assert folded.grade.violations.collision == sum(map(bool, folded.colliding))
+    worst = np.argmin(folded.grade.gaps_m.min(axis=1))
     assert set(folded.closest_pair) <= folded.colliding[worst]
 
 
 def test_without_a_detector_nothing_is_said_of_collisions(qiao):
     motion = make_measured(qiao, detector="none")
-    assert (motion.closest_pair, motion.certificate, motion.verification.violations.collision) == (None, None, None)
+    assert (motion.closest_pair, motion.certificate, motion.grade.violations.collision) == (None, None, None)
     assert not any(motion.colliding)

@@ -16,20 +16,20 @@ def test_a_whole_motion_is_reached():
 
 
 def test_it_introduces_itself_in_a_line():
-    stop = TrackStop(sample=3, reason=TrackStopReason.SELF_COLLISION, text="")
+    stop = TrackStop(sample=3, reason=TrackStopReason.COLLISION, text="")
     told = "continuation, differential, 2 of 4 points, stopped"
     assert repr(make_motion(reached=2, stop=stop)) == f"<Trajectory of made up: {told}>"
 
 
 def test_a_stop_says_where_and_why():
-    stop = TrackStop(sample=3, reason=TrackStopReason.SELF_COLLISION, text="(M, L2) touch", pair=("M", "L2"))
+    stop = TrackStop(sample=3, reason=TrackStopReason.COLLISION, text="(M, L2) touch", pair=("M", "L2"))
     motion = make_motion(reached=2, stop=stop)
     assert (motion.reached, motion.reached_points, len(motion.times_s)) == (False, 2, 3)
-    assert (str(motion.stop.reason), motion.stop.limit) == ("self_collision", None)
+    assert (str(motion.stop.reason), motion.stop.limit) == ("collision", None)
 
 
 def test_what_was_found_about_it_is_told_in_short():
-    motion, graded = make_motion(), make_motion().verification
+    motion, graded = make_motion(), make_motion().grade
     np.testing.assert_array_equal(motion.error_m, graded.error_m)
     np.testing.assert_array_equal(motion.orientation_error_rad, graded.orientation_error_rad)
     assert (motion.clearance_m.tolist(), motion.certified_clearance_m) == ([0.05] * 5, 0.04)

@@ -189,7 +189,7 @@ def test_a_range_is_kept_to_1e_9(qiao):
         assert judge(qiao, q, speed=None).violations.range == count
 
 
-def test_without_a_detector_self_collision_is_not_checked(qiao):
+def test_without_a_detector_collision_is_not_checked(qiao):
     q = make_q(qiao)
     q[2:5, 4] = 2.5
     found = judge(qiao, q, speed=None, detector="none")

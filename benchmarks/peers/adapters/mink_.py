@@ -32,7 +32,7 @@ class MinkProgram(Program):
         self.configuration = mink.Configuration(model)
         self.task = mink.FrameTask(robot.tool, "body", **manner.frame_costs)
         if manner.posture_cost:
-            self.posture = mink.PostureTask(model, cost=np.where(robot.slides, 0.0, manner.posture_cost))
+            self.posture = mink.PostureTask(model, cost=np.where(robot.is_prismatic, 0.0, manner.posture_cost))
         self.limits: list[mink.Limit] = [mink.ConfigurationLimit(model, gain=manner.range_gain)]
         if manner.speed is not None and manner.is_split:
             self.span = MinkSpan(manner.speed * manner.dt_s)

@@ -37,7 +37,7 @@ class PinkProgram(Program):
         self.collision = {"collision_model": geometry, "collision_data": geometry.createData()}
         self.task = FrameTask(robot.tool, **manner.frame_costs)
         if manner.posture_cost:
-            self.posture = PostureTask(cost=np.where(robot.slides, 0.0, manner.posture_cost))
+            self.posture = PostureTask(cost=np.where(robot.is_prismatic, 0.0, manner.posture_cost))
         limits: list[Limit] = [ConfigurationLimit(self.model, manner.range_gain)]
         if manner.speed is not None and manner.is_split:
             self.span = PinkSpan(manner.speed * manner.dt_s)

@@ -19,7 +19,7 @@ from protocol import Peer, Setup
 
 from ikde.model.collision_model import CollisionModel
 
-STEPS, LARGEST_STEP, LEAST_DAMPING, DAMPING = 60, 0.8, 1e-6, 0.1
+STEPS, MAX_STEP, MIN_DAMPING, DAMPING = 60, 0.8, 1e-6, 0.1
 SOURCE = Path(__file__).parent / "pinocchio_lm.cpp"
 
 
@@ -60,11 +60,11 @@ class InPython(Peer):
             if self.setup.keeps(error[:3], error[3:]):
                 return q
             J = pin.getFrameJacobian(model, data, tool, pin.LOCAL)[:rows]
-            damping = LEAST_DAMPING + DAMPING * (error @ error)
+            damping = MIN_DAMPING + DAMPING * (error @ error)
             step = J.T @ np.linalg.solve(J @ J.T + damping * identity, error)
             longest = np.abs(step).max()
-            if longest > LARGEST_STEP:
-                step *= LARGEST_STEP / longest
+            if longest > MAX_STEP:
+                step *= MAX_STEP / longest
             q = np.clip(q + step, self.lower, self.upper)
         return None
 
@@ -112,7 +112,7 @@ def pack(model: Any, tool: int, setup: Setup) -> tuple[np.ndarray, np.ndarray]:
     counts += [frame.parentJoint]
     parts += [np.ravel(frame.placement.rotation), frame.placement.translation, setup.lower, setup.upper]
     parts += [[setup.position_tolerance_m, setup.orientation_tolerance_rad, detector.safe_distance_m]]
-    parts += [[LEAST_DAMPING, DAMPING, LARGEST_STEP]]
+    parts += [[MIN_DAMPING, DAMPING, MAX_STEP]]
     counts += [STEPS]
     tree, groups = build_tree(robot), {}
     for sphere in expand_rows(robot, tree, detector.spheres):

@@ -15,7 +15,7 @@ from ikde.model.generate.lattice import Lattice
 BOXES = 4_000  # looked at for one test before it stays
 SAMPLES = 512
 MARGINS_M = (0.01, 0.1, 1.0)  # proofs hold up to such a safe distance; beyond the last nothing is proved
-LARGEST_JOINTS = 4  # between two bodies; beyond it a proof is hopeless
+MAX_JOINTS = 4  # between two bodies; beyond it a proof is hopeless
 
 
 def proof_margin(collision: CollisionModel) -> float:
@@ -70,7 +70,7 @@ def estimate_hits(robot: RobotArrays, tests: list[Test], lower: Floats, upper: F
 
 def _is_apart(robot: RobotArrays, test: Test, margin: float, lower: Floats, upper: Floats) -> bool:
     near, far, bodies = _chain(robot, test)
-    if bodies is None or len(bodies) > LARGEST_JOINTS:
+    if bodies is None or len(bodies) > MAX_JOINTS:
         return False
     joints = robot.bodies[bodies, COORDINATE]
     lower, upper, reach, seen = lower[joints], upper[joints], test.reach + margin, 0

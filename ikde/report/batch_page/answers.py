@@ -39,7 +39,7 @@ class ArmAnswers:
     """By column, [solves] each, NaN where there is none; with `solve_seconds`. Columns that the run does not keep are
     missing."""
     verdicts: Mapping[str, MaskedBools]
-    """`self_collision`, `verified` and what each grader sees, [solves] each, masked where nothing was checked."""
+    """`collision`, `verified` and what each grader sees, [solves] each, masked where nothing was checked."""
     stop_reasons: Mapping[str, int]
     closest_pairs: Mapping[tuple[str, str], int]
     """Of the reached solutions."""
@@ -76,7 +76,7 @@ class ArmAnswers:
     @property
     def collision_checked(self) -> bool | None:
         """Whether the arm's detector checked its solves for self-collision; None before there is one."""
-        return bool(self.verdicts["self_collision"].count()) if self.solves else None
+        return bool(self.verdicts["collision"].count()) if self.solves else None
 
     @property
     def verified(self) -> Rate:
@@ -189,7 +189,7 @@ class _Pile:
 
 
 def _verdicts(graders: tuple[str, ...]) -> list[str]:
-    return ["self_collision", "verified", *(f"{grader}_collides" for grader in graders)]
+    return ["collision", "verified", *(f"{grader}_collides" for grader in graders)]
 
 
 def _find_names(solutions: pa.Table) -> dict[int, str]:

@@ -6,7 +6,7 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import POSE, Ints
 from ikde.model.closed_form import find_ur_arm, pack_ur_arm
 from ikde.model.robot import Robot
-from ikde.solver.engines.engine import Question, make_ranges
+from ikde.solver.engines.engine import SearchInputs, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.problem import pack_searched
 
@@ -18,10 +18,10 @@ class Analytic:
     rows_per_call = 1024
     attempts_per_call = 256
 
-    def __init__(self, question: Question) -> None:
-        self._question, problem = question, question.problem
+    def __init__(self, inputs: SearchInputs) -> None:
+        self._inputs, problem = inputs, inputs.problem
         check_closed_form(problem.robot)
-        if (question.targets.kind != POSE).any():
+        if (inputs.targets.kind != POSE).any():
             raise InputError("the closed form needs a whole pose: a position and an orientation", ("method",))
         self._arm = find_ur_arm(problem.robot)
         self._kernels, self._models = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
@@ -29,7 +29,7 @@ class Analytic:
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
-        asked, arm = self._question, self._arm
+        asked, arm = self._inputs, self._arm
         if arm is None:
             return
         attempts = asked.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))

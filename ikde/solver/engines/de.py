@@ -4,7 +4,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Ints
 from ikde.kernels.evolution import solve_lanes
-from ikde.solver.engines.engine import Question
+from ikde.solver.engines.engine import SearchInputs
 from ikde.solver.problem import Problem, pack_search, pack_searched
 
 EVALUATIONS_PER_CALL = 20_000  # some 20 ms: searches that are shorter share a call, up to
@@ -17,14 +17,14 @@ class DifferentialEvolution:
     name = "de"
     attempts_per_call = 16
 
-    def __init__(self, question: Question) -> None:
-        self._question, problem = question, question.problem
+    def __init__(self, inputs: SearchInputs) -> None:
+        self._inputs, problem = inputs, inputs.problem
         self._models, self._search = pack_searched(problem.collision), pack_search(problem)
         self.rows_per_call = _lanes_per_call(problem)
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
-        asked = self._question
+        asked = self._inputs
         where, block = np.array([rows.start, rows.stop]), np.array([first, first + self.attempts_per_call])
         arrays = (*self._models, asked.targets, where, self._search)
         with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn

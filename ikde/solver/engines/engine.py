@@ -9,8 +9,8 @@ import numpy as np
 from ikde.kernels.arrays import REACHED, DescentArrays, Floats, Ints, TargetArrays
 from ikde.model.pack import pack_targets
 from ikde.model.target import Targets
-from ikde.solver.engines.found import Found
 from ikde.solver.engines.pool import rotation_length_m
+from ikde.solver.engines.search_state import SearchState
 from ikde.solver.problem import Problem, shrink
 
 Outputs = tuple[Any, ...]
@@ -18,7 +18,7 @@ Outputs = tuple[Any, ...]
 
 
 class Engine(Protocol):
-    """Makes attempts on the rows of a `Found`: each row's answer depends on its stream and the attempts only."""
+    """Makes attempts on the rows of a `SearchState`: each row's answer depends on its stream and the attempts only."""
 
     name: str
     rows_per_call: int
@@ -31,10 +31,12 @@ class Engine(Protocol):
         ...
 
 
-class Question:
+class SearchInputs:
     """Problem, targets and streams as the kernels take them, and the rows to be filled."""
 
-    def __init__(self, problem: Problem, targets: Targets, found: Found, *, seed: int, streams: Sequence[int]) -> None:
+    def __init__(
+        self, problem: Problem, targets: Targets, found: SearchState, *, seed: int, streams: Sequence[int]
+    ) -> None:
         self.problem, self.found = problem, found
         self.targets: TargetArrays = pack_targets(targets)
         self.seed: np.uint64 = np.uint64(seed)

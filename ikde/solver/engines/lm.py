@@ -8,7 +8,7 @@ from ikde.kernels.arrays import Ints, TargetArrays
 from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.engine import Outputs, Question, make_descent, make_ranges
+from ikde.solver.engines.engine import Outputs, SearchInputs, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.problem import Problem, pack_searched
 
@@ -36,17 +36,17 @@ class DampedLeastSquares:
     rows_per_call = 1024
     attempts_per_call = 256
 
-    def __init__(self, question: Question) -> None:
-        self._question, problem = question, question.problem
-        names = {kind: KINDS[kind] for kind in np.unique(question.targets.kind).tolist()}
-        self._one_by_one = len(question.streams) <= ONE_BY_ONE
+    def __init__(self, inputs: SearchInputs) -> None:
+        self._inputs, problem = inputs, inputs.problem
+        names = {kind: KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
+        self._one_by_one = len(inputs.streams) <= ONE_BY_ONE
         self._models = pack_searched(problem.collision)
         prepare = prepare_search if self._one_by_one else self._prepare_many
         self._searches = {kind: prepare(problem, name) for kind, name in names.items()}
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
-        asked = self._question
+        asked = self._inputs
         stop = np.minimum(last, first + self.attempts_per_call)
         for kind, search in self._searches.items():
             attempts = asked.attempts(rows, first, stop, kind)
@@ -60,7 +60,7 @@ class DampedLeastSquares:
 
     def _prepare_many(self, problem: Problem, kind: str) -> Callable[..., None]:
         """The same on many targets, side by side: `search(rows, attempts)`."""
-        asked, solve_targets = self._question, load_kernels(problem.collision, kind).solve_targets
+        asked, solve_targets = self._inputs, load_kernels(problem.collision, kind).solve_targets
         settings = (make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
 
         def search(rows: range, attempts: Ints) -> None:

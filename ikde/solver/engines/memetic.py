@@ -4,7 +4,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Ints, MemeticArrays
 from ikde.kernels.memetic import solve_memetic_lane
-from ikde.solver.engines.engine import Question, make_descent
+from ikde.solver.engines.engine import SearchInputs, make_descent
 from ikde.solver.problem import pack_search, pack_searched
 
 
@@ -15,15 +15,15 @@ class Memetic:
     rows_per_call = 1
     attempts_per_call = 1
 
-    def __init__(self, question: Question) -> None:
-        self._question, problem = question, question.problem
+    def __init__(self, inputs: SearchInputs) -> None:
+        self._inputs, problem = inputs, inputs.problem
         self._models = pack_searched(problem.collision)
         search = pack_search(problem)
         self._settings = (search, MemeticArrays(), make_descent(problem, "pose"))  # no step of it looks at a tolerance
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
-        asked = self._question
+        asked = self._inputs
         attempts = asked.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))
         with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
             for row, block in zip(rows, attempts, strict=True):

@@ -36,7 +36,7 @@ GRIDS = {
 }
 ROOMY_M = 2.0  # a base must have so much room in x and in y for it to be set freely
 FULL_TURN_RAD = 2.0 * np.pi - 0.01
-SHORTEST_M = 1e-3
+MIN_LENGTH_M = 1e-3
 
 
 def load_kernels(collision: CollisionModel, kind: str) -> Any:
@@ -148,7 +148,7 @@ def _keep_few(cells: Ints) -> Ints:
 @lru_cache(maxsize=64)
 def rotation_length_m(robot: Robot) -> float:
     """What a radian counts beside a metre, in m: a sixth of the stretched arm (calibrated; 0.2 to 1 m do as well)."""
-    return max(arm_length_m(robot) / 6.0, SHORTEST_M)
+    return max(arm_length_m(robot) / 6.0, MIN_LENGTH_M)
 
 
 def find_base(robot: Robot, lower: Floats, upper: Floats) -> Ints:

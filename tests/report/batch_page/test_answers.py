@@ -28,7 +28,7 @@ def test_numbers_are_those_of_the_table(answers, rows, name):
         assert arm.numbers[name].tolist() == [row[name] for row in of_arm(rows, arm)]
 
 
-@pytest.mark.parametrize("name", ["self_collision", "verified", "typical_collides", "improved_collides"])
+@pytest.mark.parametrize("name", ["collision", "verified", "typical_collides", "improved_collides"])
 def test_verdicts_are_those_of_the_table(answers, rows, name):
     for arm in answers.arms:
         assert arm.verdicts[name].tolist() == [row[name] for row in of_arm(rows, arm)]

@@ -3,9 +3,9 @@
 import numpy as np
 
 import ikde
-from ikde.solver.engines.engine import Question
-from ikde.solver.engines.found import make_found
+from ikde.solver.engines.engine import SearchInputs
 from ikde.solver.engines.pool import make_seeds
+from ikde.solver.engines.search_state import make_search_state
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
@@ -14,8 +14,8 @@ def make_question(robot, rng, kinds, *, settings=None, freeze=None, near=None, s
     """A question with a reachable target of each kind."""
     problem = problem_of(robot, settings, near=near, freeze=freeze)
     targets = ikde.Targets.of([make_target(robot, free_q(robot, rng), kind) for kind in kinds])
-    found = make_found(problem, len(targets))
-    return Question(problem, targets, found, seed=seed, streams=range(len(targets))), targets
+    found = make_search_state(problem, len(targets))
+    return SearchInputs(problem, targets, found, seed=seed, streams=range(len(targets))), targets
 
 
 def make_pool(robot, kind="pose", **options):

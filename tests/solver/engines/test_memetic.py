@@ -21,6 +21,6 @@ def test_a_clearance_with_a_horizontal_axis_is_found_and_with_a_vertical_one_its
     assert flat.reached
     assert flat.clearance_m > 0.03
     upright = ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0), axis_world_tool=(0, 0, -1)), brief, collision=wide)
-    assert upright.stop_reason == "self_collision"
+    assert upright.stop_reason == "collision"
     assert next(iter(upright.blocking_pairs)) == ("J4", "J6")
     assert "J4-J6" in upright.reason

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ikde.errors import InputError, nearest
-from ikde.files.entries import DetectorEntry, DetectorPartsEntry, UnitsEntry
+from ikde.formats.entries import DetectorEntry, DetectorPartsEntry, UnitsEntry
 from ikde.model.collision_model import CollisionModel, check_detector
-from ikde.model.robot import FARTHEST, NO_DETECTOR, Detector, Joint, Robot
+from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, Joint, Robot
 
 
 def read_collision(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> CollisionModel:
@@ -51,6 +51,6 @@ def to_si(robot: Robot, key: str, values: Mapping[str, float | None], units: Uni
             known = nearest(name, scale) or f"; it has {', '.join(scale)}"
             raise InputError(f"{robot.name} has no joint {name!r}{known}", (key, name))
         converted[name] = None if value is None else value * scale[name]
-        if value is not None and abs(converted[name]) > FARTHEST:
-            raise InputError(f"expected at most {FARTHEST:g} m or rad, got {converted[name]:g}", (key, name))
+        if value is not None and abs(converted[name]) > MAX_MAGNITUDE:
+            raise InputError(f"expected at most {MAX_MAGNITUDE:g} m or rad, got {converted[name]:g}", (key, name))
     return converted

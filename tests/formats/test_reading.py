@@ -8,7 +8,7 @@ import zlib
 import pytest
 
 from ikde.errors import FileError, InputError
-from ikde.files.reading import errors_of, max_bytes, read_bytes, read_json, read_text
+from ikde.formats.reading import errors_of, max_bytes, read_bytes, read_json, read_text
 
 
 def complaint(read, *arguments, **options):

@@ -5,12 +5,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ikde.kernels.arrays import COUNTS, Floats, Ints
-from ikde.solver.figures import Figures, make_figures
+from ikde.solver.metrics import Metrics, make_metrics
 from ikde.solver.problem import Problem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Found:
+class SearchState:
     """What the kernels found, a row a target."""
 
     q: Floats  # [T, N]
@@ -20,20 +20,20 @@ class Found:
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
     seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
     engine: Ints  # [T] which one answered: its place in `engine_table.NAMES`
-    figures: Figures  # of `q`, by the grader; what it refuses is not reached
+    metrics: Metrics  # of `q`, by the grader; what it refuses is not reached
 
-    def row(self, index: int) -> "Found":
+    def row(self, index: int) -> "SearchState":
         """One target's share."""
         rows = np.array([index])
         columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        figures = columns.pop("figures").take(rows)
-        return Found(figures=figures, **{name: column[rows] for name, column in columns.items()})
+        metrics = columns.pop("metrics").take(rows)
+        return SearchState(metrics=metrics, **{name: column[rows] for name, column in columns.items()})
 
 
-def make_found(problem: Problem, count: int) -> Found:
+def make_search_state(problem: Problem, count: int) -> SearchState:
     """Buffers for so many targets, of which nothing is found yet."""
     pairs = len(problem.collision.pairs)
-    return Found(
+    return SearchState(
         q=np.zeros((count, len(problem.robot.joints))),
         score=np.full((count, 2), np.inf),
         counts=np.zeros((count, COUNTS), dtype=np.int64),
@@ -41,5 +41,5 @@ def make_found(problem: Problem, count: int) -> Found:
         excess_m=np.zeros(count),
         seconds=np.zeros(count),
         engine=np.zeros(count, dtype=np.int64),
-        figures=make_figures(count),
+        metrics=make_metrics(count),
     )

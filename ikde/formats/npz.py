@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ikde.errors import FileError, quoted
-from ikde.files.reading import errors_of, expect_at_most, max_bytes
+from ikde.formats.reading import errors_of, expect_at_most, max_bytes
 
 ENDING = ".npy"
 PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)

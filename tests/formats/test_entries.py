@@ -5,7 +5,7 @@ import math
 import pytest
 
 from ikde.errors import InputError
-from ikde.files.entries import InlineTarget, UnitsEntry, chosen_orientation, only_key
+from ikde.formats.entries import InlineTarget, UnitsEntry, chosen_orientation, only_key
 
 
 def test_units_are_metres_and_radians():

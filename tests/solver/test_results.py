@@ -7,7 +7,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.solver.engine_table import NAMES
 from ikde.solver.result import STOP_REASONS
-from ikde.solver.rows import solve_rows
+from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify_many
 from tests.flat_settings import flat_settings
@@ -36,11 +36,11 @@ def test_a_row_is_the_solve_of_its_stream(qiao, problem):
 def test_columns_and_rows_tell_the_same(problem):
     rows = solve_rows(problem, TARGETS, seed=7)
     results, pairs = list(rows), problem.collision.pairs
-    for name in ("reached", "verified", "self_collision", "attempts", "evaluations", "rejected"):
+    for name in ("reached", "verified", "collision", "attempts", "evaluations", "rejected"):
         assert getattr(rows, name).tolist() == [getattr(result, name) for result in results]
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         assert getattr(rows, name).tolist() == [getattr(result, name) for result in results]
-        checked = [getattr(result.verification, name) for result in results]
+        checked = [getattr(result.grade, name) for result in results]
         assert getattr(rows, name) == pytest.approx(checked, abs=1e-11)
     assert [STOP_REASONS[k] for k in rows.stop_reasons] == [result.stop_reason for result in results]
     assert [NAMES[k] for k in rows.engines] == [result.method for result in results]
@@ -105,32 +105,32 @@ def test_a_row_that_is_looked_into_is_graded_whatever_is_asked(problem, substitu
     rows = solve_rows(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=7, bulk=BulkOptions(verify="none"))
     unreached = np.flatnonzero(~rows.reached).tolist()
     assert calls == [len(unreached)]
-    assert list(rows.graded.explanations) == unreached
+    assert list(rows.outcomes.explanations) == unreached
 
 
 def test_the_grade_of_plain_numpy_is_made_when_it_is_looked_at(qiao, problem):
     result = solve_rows(problem, TARGETS[:2], seed=7, first_stream=1, bulk=BulkOptions(verify="none", explain=False))[1]
-    assert result.verification is result.verification
+    assert result.grade is result.grade
     expected = ikde.verify(qiao, TARGETS[1], result.q, settings=QUICK)
-    assert result.verification.closest_pair == expected.closest_pair
-    assert result.verification.clearance_m == pytest.approx(expected.clearance_m, abs=1e-14)
+    assert result.grade.closest_pair == expected.closest_pair
+    assert result.grade.clearance_m == pytest.approx(expected.clearance_m, abs=1e-14)
 
 
-def test_self_collision_is_judged_by_the_safe_distance(qiao):
+def test_collision_is_judged_by_the_safe_distance(qiao):
     rows = solve_rows(problem_of(qiao, QUICK), TARGETS, seed=7)
-    assert (rows.self_collision == (rows.clearance_m <= 0.0)).all()
+    assert (rows.collision == (rows.clearance_m <= 0.0)).all()
     far = ikde.Detector(name="far", spheres="improved", pairs="formula_22", safe_distance_m=1.0)
     near = solve_rows(
         problem_of(qiao, SWIFT, collision=far), TARGETS, seed=7, bulk=BulkOptions(explain=False, verify="all")
     )
-    assert near.self_collision.tolist() == [True] * 6
+    assert near.collision.tolist() == [True] * 6
     assert not near.reached.any()
 
 
-def test_without_a_detector_self_collision_is_not_checked(qiao):
+def test_without_a_detector_collision_is_not_checked(qiao):
     problem = problem_of(qiao, QUICK, collision="none")
     rows = solve_rows(problem, TARGETS, seed=7)
-    assert rows.self_collision.tolist() == [result.self_collision for result in rows] == [None] * 6
+    assert rows.collision.tolist() == [result.collision for result in rows] == [None] * 6
     assert rows.reached.all()
     assert {result.reason.split(", ")[-1] for result in rows} == {"self-collision not checked"}
 
@@ -147,4 +147,4 @@ def test_without_probes_the_bound_still_proves_what_is_out_of_reach(problem):
     assert rows.row(0).stop_reason == "out_of_reach"
     assert rows.row(0).reason.startswith("out of reach: at least 43.")
     assert rows.row(1).stop_reason != "out_of_reach"
-    assert not rows.graded.explanations
+    assert not rows.outcomes.explanations

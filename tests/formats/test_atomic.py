@@ -6,7 +6,7 @@ import threading
 import pytest
 
 from ikde.errors import FileError
-from ikde.files.atomic import remove_temporaries, replace_all, temporary_path, write_together
+from ikde.formats.atomic import remove_temporaries, replace_all, temporary_path, write_together
 
 
 def test_a_file_is_written_and_written_over(tmp_path):

@@ -7,7 +7,7 @@ from ikde.errors import FileError, InputError
 
 
 @contextmanager
-def placed(*where: str | int) -> Iterator[None]:
+def prefix_errors(*where: str | int) -> Iterator[None]:
     """Put `where` before the path of every `InputError` of the block; a `FileError` knows its own file."""
     try:
         yield

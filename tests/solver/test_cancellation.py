@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.solver.cancellation import get_cancel_check, stoppable
 from ikde.solver.search import search
-from ikde.solver.stopping import get_brake, stoppable
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 
@@ -19,10 +19,10 @@ TARGET = ikde.Target((0.8, 0.5, 1.0))
 def test_a_brake_holds_where_it_was_taken_and_nowhere_else():
     stop = threading.Event()
     with stoppable(stop):
-        inside = get_brake()
+        inside = get_cancel_check()
         with stoppable(threading.Event()):
-            other = get_brake()
-    outside = get_brake()
+            other = get_cancel_check()
+    outside = get_cancel_check()
     inside()
     stop.set()
     other()

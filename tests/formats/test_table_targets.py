@@ -6,8 +6,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from ikde.errors import FileError, InputError
-from ikde.files.entries import ColumnsEntry, UnitsEntry
-from ikde.files.table_targets import read_targets
+from ikde.formats.entries import ColumnsEntry, UnitsEntry
+from ikde.formats.table_targets import read_targets
 
 P = np.array([[100.0, 200.0, 300.0], [-1.0, 0.5, 2.0]])
 TURN = np.array([[0.0, 0.0, 90.0], [10.0, 20.0, 30.0]])

@@ -18,12 +18,12 @@ def stoppable(stop: Event) -> Iterator[None]:
         _STOP.reset(token)
 
 
-def get_brake() -> Callable[[], None]:
+def get_cancel_check() -> Callable[[], None]:
     """What a search calls now and then, on whatever thread: it raises `KeyboardInterrupt` if it must stop."""
     stop = _STOP.get()
 
-    def brake() -> None:
+    def check_cancelled() -> None:
         if stop is not None and stop.is_set():
             raise KeyboardInterrupt
 
-    return brake
+    return check_cancelled

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from ikde.errors import InputError
-from ikde.files.names import Name, Text
+from ikde.formats.names import Name, Text
 from ikde.model.validate import NON_ADJACENT
 
 OrientationKind = Literal["axis", "rpy", "quat_wxyz"]

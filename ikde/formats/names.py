@@ -5,9 +5,9 @@ from typing import Annotated
 from pydantic import AfterValidator, Field, StringConstraints
 from pydantic_core import PydanticCustomError
 
-from ikde.model.names import LONGEST_NAME, find_fault
+from ikde.model.names import MAX_NAME_LENGTH, find_fault
 
-LONGEST_TEXT = 5000  # characters
+MAX_TEXT_LENGTH = 5000  # characters
 
 
 def _check(name: str) -> str:
@@ -17,5 +17,5 @@ def _check(name: str) -> str:
     return name
 
 
-Text = Annotated[str, StringConstraints(min_length=1, max_length=LONGEST_TEXT)]
-Name = Annotated[Text, AfterValidator(_check), Field(max_length=LONGEST_NAME)]
+Text = Annotated[str, StringConstraints(min_length=1, max_length=MAX_TEXT_LENGTH)]
+Name = Annotated[Text, AfterValidator(_check), Field(max_length=MAX_NAME_LENGTH)]

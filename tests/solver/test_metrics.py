@@ -1,4 +1,4 @@
-"""The kernels' figures in bulk: plain numpy confirms them, on every robot."""
+"""The kernels' metrics in bulk: plain numpy confirms them, on every robot."""
 
 from dataclasses import replace
 
@@ -8,11 +8,11 @@ import pytest
 import ikde
 from ikde.errors import VerificationError
 from ikde.model.collision_model import CollisionModel
-from ikde.solver.figures import (
+from ikde.solver.metrics import (
     AGREEMENT,
     compute_clearances,
     compute_disagreement,
-    compute_figures,
+    compute_metrics,
     judge_clearances,
     measure_scale,
 )
@@ -33,32 +33,32 @@ def targets_of_every_kind(robot, count):
 def test_kernels_and_plain_numpy_agree_on_every_robot(any_robot, rng):
     Q, targets = random_q(any_robot, rng, 60), targets_of_every_kind(any_robot, 60)
     for detector in [None, *any_robot.detectors.values()]:
-        figures = compute_figures(CollisionModel(robot=any_robot, detector=detector), targets, Q)
+        metrics = compute_metrics(CollisionModel(robot=any_robot, detector=detector), targets, Q)
         verdicts = verify_many(CollisionModel(robot=any_robot, detector=detector), targets, Q, SETTINGS)
-        assert np.all(compute_disagreement(targets, figures, verdicts) < 0.1 * AGREEMENT)
+        assert np.all(compute_disagreement(targets, metrics, verdicts) < 0.1 * AGREEMENT)
         if detector is None:
-            assert set(figures.closest_pair) == {-1}
+            assert set(metrics.closest_pair) == {-1}
         else:  # two pairs may be equally close, where one sphere belongs to both components
-            closest = np.take_along_axis(verdicts.gaps_m, figures.closest_pair[:, None], axis=1)[:, 0]
+            closest = np.take_along_axis(verdicts.gaps_m, metrics.closest_pair[:, None], axis=1)[:, 0]
             assert closest == pytest.approx(verdicts.clearance_m, abs=1e-12)
 
 
 def test_a_figure_that_is_not_a_number_never_agrees(qiao):
     targets, Q = targets_of_every_kind(qiao, 2), np.array([qiao.home, qiao.home])
-    figures = compute_figures(CollisionModel.of(qiao), targets, Q)
-    figures.clearance_m[1] = np.nan
+    metrics = compute_metrics(CollisionModel.of(qiao), targets, Q)
+    metrics.clearance_m[1] = np.nan
     verdicts = verify_many(CollisionModel.of(qiao), targets, Q, SETTINGS)
-    agree = compute_disagreement(targets, figures, verdicts) <= AGREEMENT
+    agree = compute_disagreement(targets, metrics, verdicts) <= AGREEMENT
     assert agree.tolist() == [True, False]
 
 
 def test_far_from_the_origin_agreement_is_relative(qiao):
     q = qiao.home
     target = [ikde.Target((5e4, 0.0, 0.0))]
-    figures = compute_figures(CollisionModel.of(qiao, "none"), target, q[None])
+    metrics = compute_metrics(CollisionModel.of(qiao, "none"), target, q[None])
     verdicts = verify_many(CollisionModel.of(qiao, "none"), target, q[None], SETTINGS)
-    absolute = abs(figures.position_error_m[0] - verdicts.position_error_m[0])
-    assert compute_disagreement(target, figures, verdicts)[0] == pytest.approx(absolute / 5e4)
+    absolute = abs(metrics.position_error_m[0] - verdicts.position_error_m[0])
+    assert compute_disagreement(target, metrics, verdicts)[0] == pytest.approx(absolute / 5e4)
 
 
 def stretch(robot, share):
@@ -77,11 +77,11 @@ def test_the_largest_robot_that_loads_is_graded_wherever_its_target_is(seed):
     robot, rng = stretch(random_robot(seed), 5e4), np.random.default_rng(seed)
     Q, targets = random_q(robot, rng, 60), targets_of_every_kind(random_robot(seed), 60)
     detector = CollisionModel.of(robot).detector
-    figures, verdicts = (
-        compute_figures(CollisionModel(robot=robot, detector=detector), targets, Q),
+    metrics, verdicts = (
+        compute_metrics(CollisionModel(robot=robot, detector=detector), targets, Q),
         verify_many(CollisionModel(robot=robot, detector=detector), targets, Q, SETTINGS),
     )
-    assert np.all(compute_disagreement(targets, figures, verdicts) <= 0.1 * AGREEMENT)
+    assert np.all(compute_disagreement(targets, metrics, verdicts) <= 0.1 * AGREEMENT)
     assert len(compute_clearances(CollisionModel(robot=robot, detector=detector), Q).clearance_m) == 60
 
 
@@ -107,6 +107,6 @@ def test_a_clearance_that_only_the_kernels_see_raises(qiao, substitute):
 
 def test_a_clearance_that_is_not_a_number_is_never_free(qiao):
     collision = CollisionModel.of(qiao)
-    figures = compute_figures(collision, targets_of_every_kind(qiao, 3), np.tile(qiao.home, (3, 1)))
-    figures.clearance_m[1] = np.nan
-    assert judge_clearances(figures, collision).tolist() == [False, True, False]
+    metrics = compute_metrics(collision, targets_of_every_kind(qiao, 3), np.tile(qiao.home, (3, 1)))
+    metrics.clearance_m[1] = np.nan
+    assert judge_clearances(metrics, collision).tolist() == [False, True, False]

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ikde.errors import FileError
-from ikde.files.npz import NpzTable, parse_npy
-from ikde.files.reading import max_bytes
+from ikde.formats.npz import NpzTable, parse_npy
+from ikde.formats.reading import max_bytes
 
 
 def npy(array):

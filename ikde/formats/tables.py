@@ -17,8 +17,8 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
 from ikde.errors import FileError, InputError, quoted
-from ikde.files.npz import NpzTable
-from ikde.files.reading import errors_of, expect_at_most, max_bytes, read_bytes
+from ikde.formats.npz import NpzTable
+from ikde.formats.reading import errors_of, expect_at_most, max_bytes, read_bytes
 
 Column = pa.ChunkedArray | np.ndarray
 """[T], from arrow or numpy; of an NPZ file also [T, 3] or [T, 4]."""

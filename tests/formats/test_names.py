@@ -3,7 +3,7 @@
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from ikde.files.names import Name
+from ikde.formats.names import Name
 
 
 @pytest.mark.parametrize("name", ["a", "x" * 100, "関節" * 50, "\\", '"; """', "../..", "a b", "é", "🦾", "[red]"])

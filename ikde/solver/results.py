@@ -9,29 +9,29 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
-from ikde.solver.engines.found import Found
+from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, count_blocking_pairs, reason_from_counts
-from ikde.solver.grade import Graded, grade
+from ikde.solver.grade import Outcomes, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, reached_reason
 from ikde.solver.search import search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, MaskedBools
 
-FIGURES = ("position_error_m", "orientation_error_rad", "clearance_m", "closest_pair", "accepted")
+METRICS = ("position_error_m", "orientation_error_rad", "clearance_m", "closest_pair", "accepted")
 EVERY_ROW = BulkOptions(verify="all")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Rows:
+class SolveResults:
     """Finished searches, a sequence of `SolveResult`: row k belongs to target k. Its columns are arrays."""
 
     problem: Problem
     targets: Targets
     seed: int
     first_stream: int
-    found: Found
-    graded: Graded
+    found: SearchState
+    outcomes: Outcomes
     compile_seconds: float
 
     @property
@@ -45,42 +45,42 @@ class Rows:
 
         The kernels' grader decides; where plain numpy graded as well (`verified`) both must accept.
         """
-        return self.graded.reached
+        return self.outcomes.reached
 
     @property
-    def self_collision(self) -> MaskedBools:
+    def collision(self) -> MaskedBools:
         """True where the clearance is not above the safe distance [T]; masked without a detector: not checked."""
-        return self.graded.self_collision
+        return self.outcomes.collision
 
     @property
     def verified(self) -> MaskedBools:
         """True where plain numpy agrees to 1e-11, False where it does not [T]; masked where it was not asked."""
-        return self.graded.verified
+        return self.outcomes.verified
 
     @property
     def stop_reasons(self) -> Ints:
         """Why each search ended [T]: index into `solver.result.STOP_REASONS`."""
-        return self.graded.stop_reasons
+        return self.outcomes.stop_reasons
 
     @property
     def position_error_m(self) -> Floats:
         """Distance of the tool from its target [T], m."""
-        return self.graded.figures.position_error_m
+        return self.outcomes.metrics.position_error_m
 
     @property
     def orientation_error_rad(self) -> Floats:
         """Rotation-vector norm between tool and target [T], rad."""
-        return self.graded.figures.orientation_error_rad
+        return self.outcomes.metrics.orientation_error_rad
 
     @property
     def clearance_m(self) -> Floats:
         """Smallest distance - R_i - R_j over the detector's pairs [T], m; inf without a pair."""
-        return self.graded.figures.clearance_m
+        return self.outcomes.metrics.clearance_m
 
     @property
     def closest_pair(self) -> Ints:
         """Index of the pair that the clearance lies between [T], into `problem.collision.pairs`; -1 without a pair."""
-        return self.graded.figures.closest_pair
+        return self.outcomes.metrics.closest_pair
 
     @property
     def attempts(self) -> Ints:
@@ -116,8 +116,8 @@ class Rows:
 
     def reason(self, index: int) -> str:
         """One line: what happened in this row."""
-        if index in self.graded.explanations:
-            return self.graded.explanations[index].reason
+        if index in self.outcomes.explanations:
+            return self.outcomes.explanations[index].reason
         stop = STOP_REASONS[self.stop_reasons[index]]
         if stop is StopReason.REACHED:
             return reached_reason(self.problem.collision)
@@ -127,8 +127,8 @@ class Rows:
 
     def explanation(self, index: int) -> Explanation:
         """Why, and what would help: of a row that was not looked into what its counts tell, made now."""
-        if index in self.graded.explanations:
-            return self.graded.explanations[index]
+        if index in self.outcomes.explanations:
+            return self.outcomes.explanations[index]
         return Explanation(
             stop_reason=STOP_REASONS[self.stop_reasons[index]],
             reason=self.reason(index),
@@ -138,13 +138,13 @@ class Rows:
 
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
-        story, figures, found = self.explanation(index), self.graded.figures, self.found
+        story, metrics, found = self.explanation(index), self.outcomes.metrics, self.found
         q = self.q[index].copy()
         q.setflags(write=False)
         return ResultMaker(self.problem).make(
             self.targets[index],
             q,
-            tuple(getattr(figures, name)[index].item() for name in FIGURES),
+            tuple(getattr(metrics, name)[index].item() for name in METRICS),
             found.counts[index].tolist(),
             seed=self.seed,
             stream=self.first_stream + index,
@@ -154,7 +154,7 @@ class Rows:
             reason=story.reason,
             hint=story.hint,
             blocking_pairs=story.blocking_pairs,
-            self_collision=_verdict(self.self_collision, index),
+            collision=_verdict(self.collision, index),
             verified=_verdict(self.verified, index),
             solve_seconds=float(found.seconds[index]),
             compile_seconds=self.compile_seconds,
@@ -177,7 +177,7 @@ def solve_rows(
     first_attempt: int = 0,
     strict: bool = False,
     spent_s: float = 0.0,
-) -> Rows:
+) -> SolveResults:
     """Solve targets, a lane each on all threads; target k searches the stream (seed, first_stream + k).
 
     Args:
@@ -197,13 +197,13 @@ def solve_rows(
     where = {"seed": seed, "streams": range(first_stream, first_stream + len(targets)), "first_attempt": first_attempt}
     with compile_clock() as clock:
         found = search(problem, targets, threads=bulk.threads, spent_s=spent_s, **where)
-        graded = grade(problem, targets, found, bulk, seed=seed, first_stream=first_stream, strict=strict)
-    return Rows(
+        outcomes = grade(problem, targets, found, bulk, seed=seed, first_stream=first_stream, strict=strict)
+    return SolveResults(
         problem=problem,
         targets=targets,
         seed=seed,
         first_stream=first_stream,
         found=found,
-        graded=graded,
+        outcomes=outcomes,
         compile_seconds=clock.seconds,
     )

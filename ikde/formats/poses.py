@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError
-from ikde.files.entries import OrientationEntry, OrientationKind, UnitsEntry, chosen_orientation
+from ikde.formats.entries import OrientationEntry, OrientationKind, UnitsEntry, chosen_orientation
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import rotation_from_quat_wxyz, rotation_from_rpy
 from ikde.model.target import Target, Targets

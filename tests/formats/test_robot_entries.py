@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from ikde.errors import InputError
-from ikde.files.entries import DetectorEntry, UnitsEntry
-from ikde.files.robot_entries import read_collision, to_si, with_ranges
+from ikde.formats.entries import DetectorEntry, UnitsEntry
+from ikde.formats.robot_entries import read_collision, to_si, with_ranges
 
 SI, MM_DEG = UnitsEntry(), UnitsEntry(length="mm", angle="deg")
 

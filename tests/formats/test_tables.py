@@ -6,8 +6,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from ikde.errors import FileError, InputError
-from ikde.files.reading import errors_of
-from ikde.files.tables import as_floats, as_names, open_table
+from ikde.formats.reading import errors_of
+from ikde.formats.tables import as_floats, as_names, open_table
 
 ROWS = "name,x,note\na,1.5,\nb,-2e3,ok\n"
 

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from ikde.errors import FileError, InputError, nearest, quoted
-from ikde.files.entries import ColumnsEntry, OrientationKind, UnitsEntry, chosen_orientation
-from ikde.files.placed import placed
-from ikde.files.poses import join_poses, make_orientation
-from ikde.files.tables import Column, Table, as_floats, as_names, open_table, row_error
+from ikde.formats.entries import ColumnsEntry, OrientationKind, UnitsEntry, chosen_orientation
+from ikde.formats.error_path import prefix_errors
+from ikde.formats.poses import join_poses, make_orientation
+from ikde.formats.tables import Column, Table, as_floats, as_names, open_table, row_error
 from ikde.kernels.arrays import Floats
-from ikde.model.target import FARTHEST, POSE, Targets
+from ikde.model.target import MAX_MAGNITUDE, POSE, Targets
 
 MAX_NUMBER = 1e9  # of a number that is no position: beyond, digits are lost
 MIN_LENGTH = 1e-12  # of an axis or a quaternion
@@ -52,7 +52,7 @@ def read_targets(path: Path, columns: ColumnsEntry, units: UnitsEntry) -> TableS
         InputError: for what the table does not hold; `where` is a path inside a `FileEntry`.
         FileError: for what is wrong inside the table, with its row and column.
     """
-    with placed("columns"):
+    with prefix_errors("columns"):
         kind = chosen_orientation(columns)
     keys = ["position", *([kind] if kind else []), *(["name"] if columns.name else [])]
     table = open_table(path)
@@ -60,7 +60,7 @@ def read_targets(path: Path, columns: ColumnsEntry, units: UnitsEntry) -> TableS
     data = table.read(list(dict.fromkeys(name for names in chosen.values() for name in names)))
     _check_lengths(path, data)
     return TableSource(
-        positions=_stack(path, chosen["position"], data, 3, FARTHEST / units.length_m) * units.length_m,
+        positions=_stack(path, chosen["position"], data, 3, MAX_MAGNITUDE / units.length_m) * units.length_m,
         kind=kind,
         orientations=_read_orientations(path, kind, chosen[kind], data, units) if kind else None,
         names=as_names(path, columns.name, data[columns.name]) if columns.name else None,

@@ -1,6 +1,6 @@
-"""The kernels' figures of many configurations, confirmed by plain numpy.
+"""The kernels' metrics of many configurations, confirmed by plain numpy.
 
-The kernels' bits are the same on every machine, which numpy's are not: so these are the figures that records hold.
+The kernels' bits are the same on every machine, which numpy's are not: so these are the metrics that records hold.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_gaps
 from ikde.solver.settings import SolveSettings
-from ikde.solver.verify import Bools, MaskedBools, Verdicts
+from ikde.solver.verify import Bools, Grades, MaskedBools
 
 Limits = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper, m or rad."""
@@ -29,7 +29,7 @@ LARGE = 0.01  # of the lengths that a pose is made of: beyond 100 m of them roun
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Figures:
+class Metrics:
     """What the kernels see of T configurations."""
 
     position_error_m: Floats  # [T]
@@ -38,14 +38,14 @@ class Figures:
     closest_pair: Ints  # [T] index into the detector's pairs; -1 without
     accepted: Bools  # [T] within both tolerances, inside all limits, and above the safe distance
 
-    def take(self, rows: Ints) -> "Figures":
-        """The figures of these rows."""
-        return Figures(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+    def take(self, rows: Ints) -> "Metrics":
+        """The metrics of these rows."""
+        return Metrics(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
-    def put(self, rows: Ints | slice, figures: "Figures") -> None:
-        """Replace the figures of these rows."""
+    def put(self, rows: Ints | slice, metrics: "Metrics") -> None:
+        """Replace the metrics of these rows."""
         for field in fields(self):
-            getattr(self, field.name)[rows] = getattr(figures, field.name)
+            getattr(self, field.name)[rows] = getattr(metrics, field.name)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -57,33 +57,33 @@ class Clearances:
     collides: MaskedBools  # [K]; masked without pairs
 
 
-def compute_figures(
+def compute_metrics(
     collision: CollisionModel,
     targets: Targets | Sequence[Target],
     Q: Floats,
     settings: SolveSettings | None = None,
     limits: Limits | None = None,
-) -> Figures:
-    """Figures of configurations `Q` [T, N] in the robot's own convention, a target each.
+) -> Metrics:
+    """Metrics of configurations `Q` [T, N] in the robot's own convention, a target each.
 
     Without `settings` there are no tolerances; `limits` in place of the robot's own.
     """
-    figures, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
+    metrics, pairs, accepted = np.empty((len(Q), 3)), np.empty(len(Q), dtype=np.int64), np.empty(len(Q), dtype=np.bool_)
     (numbers, whole), asked = pack_grader(collision, settings, limits), pack_targets(targets)
-    out = (np.ascontiguousarray(Q), figures, pairs, accepted)
+    out = (np.ascontiguousarray(Q), metrics, pairs, accepted)
     kernels.grade_many(numbers, whole, asked.kind, asked.T_world_tool, *out)
-    return Figures(
-        position_error_m=figures[:, kernels.POSITION_ERROR],
-        orientation_error_rad=figures[:, kernels.ORIENTATION_ERROR],
-        clearance_m=figures[:, kernels.CLEARANCE],
+    return Metrics(
+        position_error_m=metrics[:, kernels.POSITION_ERROR],
+        orientation_error_rad=metrics[:, kernels.ORIENTATION_ERROR],
+        clearance_m=metrics[:, kernels.CLEARANCE],
         closest_pair=pairs,
         accepted=accepted,
     )
 
 
-def make_figures(count: int) -> Figures:
-    """Figures of so many rows, none of which has been graded."""
-    return Figures(
+def make_metrics(count: int) -> Metrics:
+    """Metrics of so many rows, none of which has been graded."""
+    return Metrics(
         position_error_m=np.full(count, np.nan),
         orientation_error_rad=np.full(count, np.nan),
         clearance_m=np.full(count, np.nan),
@@ -106,36 +106,36 @@ def pack_grader(
 
 
 def compute_clearances(collision: CollisionModel, Q: Floats) -> Clearances:
-    """Clearances of configurations `Q` [K, N] in the robot's own convention: the kernels' figures, confirmed.
+    """Clearances of configurations `Q` [K, N] in the robot's own convention: the kernels' metrics, confirmed.
 
     Raises:
         VerificationError: if kernels and plain numpy disagree by more than 1e-11 m: a bug.
     """
-    figures = compute_figures(collision, Targets(np.zeros((len(Q), 3))), Q)
+    metrics = compute_metrics(collision, Targets(np.zeros((len(Q), 3))), Q)
     plain = compute_gaps(collision, Q).min(axis=1, initial=np.inf)
-    gaps = _difference(figures.clearance_m, plain)
+    gaps = _difference(metrics.clearance_m, plain)
     gap = float((gaps / measure_scale(collision.robot, np.zeros((len(Q), 3)), Q)).max(initial=0.0))
     if not gap <= AGREEMENT:
         raise VerificationError(f"kernels and plain numpy disagree by {gap:.3g} m on a clearance")
     return Clearances(
-        clearance_m=figures.clearance_m,
-        closest_pair=figures.closest_pair,
-        collides=judge_clearances(figures, collision),
+        clearance_m=metrics.clearance_m,
+        closest_pair=metrics.closest_pair,
+        collides=judge_clearances(metrics, collision),
     )
 
 
-def judge_clearances(figures: Figures, collision: CollisionModel) -> MaskedBools:
+def judge_clearances(metrics: Metrics, collision: CollisionModel) -> MaskedBools:
     """Whether configurations collide [T], by their clearance; masked where no pair was compared: not checked."""
-    collides = ~(figures.clearance_m > collision.limit_m)
-    return np.ma.masked_array(collides, mask=figures.closest_pair < 0)
+    collides = ~(metrics.clearance_m > collision.limit_m)
+    return np.ma.masked_array(collides, mask=metrics.closest_pair < 0)
 
 
-def compute_disagreement(targets: Targets | Sequence[Target], figures: Figures, verdicts: Verdicts) -> Floats:
-    """Largest gap [T] between the kernels' figures and plain numpy's, m or rad, relative to `measure_scale`."""
+def compute_disagreement(targets: Targets | Sequence[Target], metrics: Metrics, verdicts: Grades) -> Floats:
+    """Largest gap [T] between the kernels' metrics and plain numpy's, m or rad, relative to `measure_scale`."""
     gaps = [
-        _difference(figures.position_error_m, verdicts.position_error_m),
-        _difference(figures.orientation_error_rad, verdicts.orientation_error_rad),
-        _difference(figures.clearance_m, verdicts.clearance_m),
+        _difference(metrics.position_error_m, verdicts.position_error_m),
+        _difference(metrics.orientation_error_rad, verdicts.orientation_error_rad),
+        _difference(metrics.clearance_m, verdicts.clearance_m),
     ]
     return np.max(gaps, axis=0) / measure_scale(verdicts.collision.robot, Targets.of(targets).p_world_tool, verdicts.Q)
 
@@ -145,7 +145,7 @@ def measure_scale(robot: Robot, p_world_tool: Floats, Q: Floats) -> Floats:
 
     As the target `p_world_tool` [T, 3] is beyond 1 m, or a hundredth of the robot's lengths at `Q` [T, N] is.
     """
-    lengths = _sum_lengths(robot) + np.abs(Q) @ robot.slides
+    lengths = _sum_lengths(robot) + np.abs(Q) @ robot.is_prismatic
     return np.maximum(np.maximum(1.0, np.abs(p_world_tool).max(axis=1)), LARGE * lengths)
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
-from ikde.files.entries import OrientationEntry, UnitsEntry
-from ikde.files.poses import make_orientation, read_orientation, read_position
+from ikde.formats.entries import OrientationEntry, UnitsEntry
+from ikde.formats.poses import make_orientation, read_orientation, read_position
 
 MM_DEG = UnitsEntry(length="mm", angle="deg")
 
