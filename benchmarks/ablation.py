@@ -267,7 +267,7 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
     @numba.njit
     def single(kinds, T, few, numbers, whole, pool, pool_T, seed, q, score, counts, pairs):
         for k in range(few):
-            question = (kinds, T, k, numbers, whole, pool, pool_T)
+            question = (numbers, whole, pool, pool_T, kinds, T, k)
             solve_target(*question, seed, k, 0, 1000, q[k], score[k], counts[k], pairs[k])
 
     jobs: dict[str, Callable[[], Any]] = {"lanes us": solve_lanes, "singly us": solve_singly}

@@ -160,7 +160,7 @@ def make_loop(solve_target: Any) -> Callable[..., None]:
             score[:], counts[:] = np.inf, 0
             clock(1, now.ctypes.data)
             before = now[0] * 1e6 + now[1] * 1e-3
-            question = (kinds, T, k, numbers, whole, pool, pool_T)
+            question = (numbers, whole, pool, pool_T, kinds, T, k)
             solve_target(*question, seed, k, 0, 1000, q, score, counts, blocked)
             clock(1, now.ctypes.data)
             out_us[k] = now[0] * 1e6 + now[1] * 1e-3 - before

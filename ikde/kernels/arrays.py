@@ -31,6 +31,12 @@ class RobotArrays(NamedTuple):
 PARENT, COORDINATE, PRISMATIC, MOVES_TOOL = range(4)  # columns of `RobotArrays.bodies`
 
 
+class SafeDistance(NamedTuple):
+    """What is left of `CollisionArrays` where the rest is written into the code."""
+
+    safe_distance: float  # m
+
+
 class CollisionArrays(NamedTuple):
     """What is compared on a robot: S spheres of C components, one after the other, P pairs of components, W rows."""
 

@@ -6,12 +6,12 @@ five times as long as the search. The two `flatten_` functions lay named tuples 
 
 from collections.abc import Iterator
 from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ikde.kernels.arrays import CollisionArrays, DescentArrays, Floats, Indices, Ints, RobotArrays, SeedArrays
-from ikde.kernels.jit import kernel
+from ikde.kernels.jit import inline_view_kernel, kernel
 
 Value = Floats | Ints | Indices | float
 
@@ -30,12 +30,18 @@ def flatten_search(
     """What `unpack_search` takes; the pool, which is large, stays as it is."""
     q, T_world_tool, *others = seeds
     sizes = np.array([ranges.shape[1], len(seeds.grid)])
-    return *_flatten(*_list_models(robot, collision), sizes, ranges, *descent, *others), q, T_world_tool
+    numbers, whole = _flatten(collision.safe_distance, sizes, np.zeros(2, dtype=np.int64), ranges, *descent, *others)
+    models = _flatten(*_list_models(robot, collision))
+    whole[2:4] = len(numbers), len(whole)
+    numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
+    return _freeze(numbers), _freeze(whole), q, T_world_tool
 
 
 def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms) -> tuple[Floats, Ints]:
     """What `unpack_grader` takes."""
-    return _flatten(*_list_models(robot, collision), *terms)
+    joints = np.array([terms.limits.shape[1]])
+    numbers, whole = _flatten(*_list_models(robot, collision), *terms, joints)
+    return _freeze(numbers), _freeze(whole)
 
 
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
@@ -45,21 +51,25 @@ def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Val
 
 
 def _flatten(*values: Value) -> tuple[Floats, Ints]:
-    """All numbers and all whole numbers, each in the order of the values; read-only."""
+    """All numbers and all whole numbers, each in the order of the values."""
     arrays = [np.asarray(value) for value in values]
     assert all(array.dtype.kind in "fiu" for array in arrays)
     numbers = np.concatenate([array.ravel() for array in arrays if array.dtype.kind == "f"])
     whole = np.concatenate([array.ravel().astype(np.int64) for array in arrays if array.dtype.kind in "iu"])
-    for block in (numbers, whole):
-        block.setflags(write=False)
     return numbers, whole
 
 
-@kernel
-def unpack_models(numbers, whole):
-    """`RobotArrays` and `CollisionArrays` as views, and what follows them: numbers and whole numbers.
+def _freeze(block: Any) -> Any:
+    """Read-only, which numba takes for a type of its own."""
+    block.setflags(write=False)
+    return block
 
-    Views that are handed on are counted, so this is no `leaf_kernel`: numba would free what it never took.
+
+@inline_view_kernel
+def unpack_models(numbers, whole):
+    """`RobotArrays` and `CollisionArrays` as views.
+
+    Views that are handed on are counted: numba would free what an `inline_kernel` never took.
     """
     bodies, frames, components, pairs, rows, spheres = whole[0], whole[1], whole[2], whole[3], whole[4], whole[5]
     w, u = whole[6:], whole[6 + 4 * bodies :].view(np.uint64)
@@ -87,15 +97,18 @@ def unpack_models(numbers, whole):
         u[first_row:end].reshape((rows, 4)),
         numbers[offset : offset + spheres],
     )
-    return robot, collision, numbers[offset + spheres :], w[4 * bodies + end :]
+    return robot, collision
 
 
 @kernel
 def unpack_search(numbers, whole, q, T_world_tool):
-    """`RobotArrays`, `CollisionArrays`, ranges [3, N], `DescentArrays` and `SeedArrays`, as views."""
-    robot, collision, numbers, whole = unpack_models(numbers, whole)
+    """Ranges [3, N], `DescentArrays` and `SeedArrays`, as views.
+
+    Before them stands the safe distance, behind them both models, from numbers[whole[2]] and whole[whole[3]] on: not
+    every search unpacks those, which took it 2 us.
+    """
     joints, directions = whole[0], whole[1]
-    n, w, scale = numbers[3 * joints :], whole[2:], 2 * directions
+    n, w, scale = numbers[1 + 3 * joints :], whole[4 : whole[3]], 2 * directions
     descent = DescentArrays(n[0], n[1], n[2], n[3], n[4], n[5], w[0], w[1], n[6])
     seeds = SeedArrays(
         q,
@@ -107,12 +120,13 @@ def unpack_search(numbers, whole, q, T_world_tool):
         n[7 + scale],
         n[8 + scale],
     )
-    return robot, collision, numbers[: 3 * joints].reshape((3, joints)), descent, seeds
+    return numbers[1 : 1 + 3 * joints].reshape((3, joints)), descent, seeds
 
 
 @kernel
 def unpack_grader(numbers, whole):
     """`RobotArrays`, `CollisionArrays` and `Terms`, as views."""
-    robot, collision, n, _ = unpack_models(numbers, whole)
-    limits = n[: n.size - 2].reshape((2, n.size // 2 - 1))
-    return robot, collision, Terms(limits, n[n.size - 2], n[n.size - 1])
+    robot, collision = unpack_models(numbers, whole)
+    joints, end = whole[whole.size - 1], numbers.size - 2
+    limits = numbers[end - 2 * joints : end].reshape((2, joints))
+    return robot, collision, Terms(limits, numbers[end], numbers[end + 1])

@@ -41,6 +41,11 @@ def inline_kernel(function: F) -> F:
     return _compile(function, forceinline=True, _nrt=False)
 
 
+def inline_view_kernel(function: F) -> F:
+    """Like `inline_kernel`, for what gives back views of its arrays: references are counted (1.95 us for 2.07)."""
+    return _compile(function, forceinline=True)
+
+
 def _compile(function: F, **options: Any) -> F:
     """Machine code is kept for what stands in a file, and without a compiler there is none."""
     compiled: Any = numba.njit(error_model="numpy", **options)(function)

@@ -12,7 +12,7 @@ from ikde.kernels.flat_arguments import unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
-from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps
+from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used, use_models
 
 GO_ON, MET, GIVE_UP = range(3)
 
@@ -50,13 +50,13 @@ def record(descent, verdict, pair, position, orientation, q, out_q, out_score, o
 
 @kernel
 def solve_target(
-    kinds,
-    T_world_tool,
-    index,
     numbers,
     whole,
     pool,
     pool_T,
+    kinds,
+    T_world_tool,
+    index,
     seed,
     stream,
     first,
@@ -68,12 +68,13 @@ def solve_target(
 ):
     """Attempts number `first` .. `last` - 1 on one target, up to the first that is reached.
 
-    The target is row `index` of `TargetArrays`; numbers, whole, pool, pool_T are those of `unpack_search`. The outputs
+    First what stays, the block of `unpack_search`; then the target, row `index` of `TargetArrays`. The outputs
     are those of `attempt.finish_attempt`: out_q [N], out_score [2], out_counts [COUNTS], out_pairs [P], the pair found
     first in each collision.
     """
     target = TargetArrays(kinds, T_world_tool)
-    robot, collision, ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
+    robot, collision = unpack_used(numbers, whole)
+    ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
     q, state, buffers = np.empty(out_q.size), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, out_q.size)
     for attempt in range(first, last):
         seed_stream(seed, stream, attempt, state)
@@ -127,9 +128,10 @@ def solve_targets(
     out_pairs,
 ):
     """`solve_target` for rows[0] .. rows[1] - 1 at once: streams [T], attempts [rows, 2], outputs a row a target."""
+    tree, spheres = use_models(robot, collision)
     joints = out_q.shape[1]
     q, T, errors = np.empty(joints * LANES), np.empty(12 * LANES), np.empty(2 * LANES)
-    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
+    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(tree, spheres, joints)
     row, attempt, steps = (
         np.empty(LANES, dtype=np.int64),
         np.empty(LANES, dtype=np.int64),
@@ -152,7 +154,7 @@ def solve_targets(
                 for k in range(joints):
                     trial[k] = q[lane + k * LANES]
                 out_counts[index, EVALUATIONS] += steps[lane]
-                pair = find_collision(robot, collision, trial, buffers) if verdict == MET else -1
+                pair = find_collision(tree, spheres, trial, buffers) if verdict == MET else -1
                 outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
                 done = record(descent, verdict, pair, position, orientation, trial, *outputs)
                 attempt[lane] += 1
@@ -169,7 +171,7 @@ def solve_targets(
             load(lane, target, index, ranges, seeds, seed, streams[index], attempt[lane], state, trial, q, T)
         if busy == 0:
             return
-        take_steps(robot, target, row, ranges, descent, q, T, errors, trial, buffers)
+        take_steps(tree, target, row, ranges, descent, q, T, errors, trial, buffers)
 
 
 @kernel
@@ -178,7 +180,8 @@ def fill_pool(robot, collision, lower, upper, out_q):
 
     Returns how many were found before the draws were spent; the same whatever the seed of a solve.
     """
-    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(robot, collision, lower.size)
+    tree, spheres = use_models(robot, collision)
+    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(tree, spheres, lower.size)
     seed_stream(POOL_STREAM, 0, 0, state)
     found = 0
     for _ in range(POOL_DRAWS * out_q.shape[0]):
@@ -186,5 +189,5 @@ def fill_pool(robot, collision, lower, upper, out_q):
             break
         for k in range(lower.size):
             out_q[found, k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
-        found += find_collision(robot, collision, out_q[found], buffers) < 0
+        found += find_collision(tree, spheres, out_q[found], buffers) < 0
     return found

@@ -8,6 +8,7 @@ from ikde.kernels.arrays import BODY, COORDINATE, FIRST, LAST, PARENT, PRISMATIC
 from ikde.kernels.clearance import find_colliding_pair
 from ikde.kernels.damped import DescentWorkspace, make_descent_workspace
 from ikde.kernels.damped import take_step as take_damped_step
+from ikde.kernels.flat_arguments import unpack_models
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import sin_cos
 
@@ -21,6 +22,18 @@ class Buffers(NamedTuple):
     step: DescentWorkspace
     centres: Floats  # [3, S] m
     bounds: Floats  # [C, 3] m
+
+
+@kernel
+def use_models(robot, collision):
+    """What the functions below take of both models: all of it."""
+    return robot, collision
+
+
+@kernel
+def unpack_used(numbers, whole):
+    """The same out of the block of a search (`flatten_search`)."""
+    return unpack_models(numbers[whole[2] :], whole[whole[3] :])
 
 
 @kernel

@@ -4,11 +4,11 @@ The answer is that of the long way (`solver.results`), bit for bit; what this wa
 """
 
 import time
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
-from ikde.kernels.arrays import COLLIDING, COUNTS, REACHED, TargetArrays
+from ikde.kernels.arrays import COLLIDING, COUNTS, REACHED
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
@@ -34,10 +34,11 @@ class Quick:
         problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
-        self._search, self._grader = prepare_search(problem, kind), pack_grader(collision, settings)
+        self._search = prepare_search(problem, kind)
+        self._grade = partial(grade_one, *pack_grader(collision, settings))
         self._last = min(ENGINES[ENGINE].attempts_before_proof, int(settings.budget(ENGINE)))
         self._joints, self._pairs = len(collision.robot.joints), collision.pairs
-        self._no_score, self._results = np.full(2, np.inf), ResultMaker(problem)
+        self._no_score, self._results = np.full(2, np.inf), ResultMaker(problem, method=ENGINE)
         self._is_ready = False
 
     def solve(self, target: Target, seed: int, stream: int) -> SolveResult | None:
@@ -54,21 +55,22 @@ class Quick:
 
     def _try(self, target: Target, seed: int, stream: int) -> SolveResult | None:
         started = time.perf_counter()
-        targets = TargetArrays(self._kind, target.T_world_tool[None])
+        kind, T_world_tool = self._kind, target.T_world_tool[None]
         q, score = np.empty(self._joints), self._no_score.copy()
         counts, blocked = np.zeros(COUNTS, dtype=np.int64), np.zeros(len(self._pairs), dtype=np.int64)
-        self._search(targets, 0, np.uint64(seed), stream, 0, self._last, (q, score, counts, blocked))
+        self._search(kind, T_world_tool, 0, np.uint64(seed), stream, 0, self._last, q, score, counts, blocked)
         if not counts[REACHED]:
             return None
         seconds = time.perf_counter() - started
         q.setflags(write=False)
-        metrics = grade_one(*self._grader, *targets, q)
+        metrics = self._grade(kind, T_world_tool, q)
         if not metrics[-1]:
             return None
         told = counts.tolist()
-        blocking = {"blocking_pairs": count_blocking_pairs(self._pairs, blocked)} if told[COLLIDING] else {}
-        where = {"seed": seed, "stream": stream, "method": ENGINE, "solve_seconds": seconds}
-        return self._results.make(target, q, metrics, told, **where, **blocking)
+        if not told[COLLIDING]:
+            return self._results.make(target, q, metrics, told, seed, stream, seconds)
+        blocking = {"blocking_pairs": count_blocking_pairs(self._pairs, blocked)}
+        return self._results.make(target, q, metrics, told, seed, stream, seconds, blocking)
 
 
 @lru_cache(maxsize=64)

@@ -6,7 +6,7 @@ from enum import StrEnum
 from functools import cached_property, partial
 from typing import Any
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats
+from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.problem import Problem
@@ -102,9 +102,9 @@ class ResultMaker:
     All fields go in at once: a frozen dataclass sets its 26 one by one, which takes five times as long.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, **others: Any) -> None:
         collision, settings = problem.collision, problem.settings
-        self._pairs = collision.pairs
+        self._pairs = (*collision.pairs, None)  # the last, number -1, is none
         self._shared = {
             "reached": True,
             "stop_reason": StopReason.REACHED,
@@ -118,13 +118,23 @@ class ResultMaker:
             "blocking_pairs": {},
             "compile_seconds": 0.0,
             "verify": partial(verify, collision.robot, settings=settings, collision=collision),
+            **others,
         }
 
     def make(
-        self, target: Target, q: Floats, metrics: tuple[Any, ...], counts: Sequence[int], **others: Any
+        self,
+        target: Target,
+        q: Floats,
+        metrics: tuple[Any, ...],
+        counts: Sequence[int],
+        seed: int,
+        stream: int,
+        solve_seconds: float,
+        others: Mapping[str, Any] | None = None,
     ) -> SolveResult:
         """One result; `metrics` as `grade_one` gives them, `counts` [COUNTS] as an engine does, `others` by field."""
         position, orientation, clearance, pair, _ = metrics
+        _, attempts, evaluations, rejected, _ = counts
         result = object.__new__(SolveResult)
         result.__dict__.update(
             self._shared,
@@ -133,12 +143,16 @@ class ResultMaker:
             position_error_m=position,
             orientation_error_rad=orientation,
             clearance_m=clearance if pair >= 0 else None,
-            closest_pair=self._pairs[pair] if pair >= 0 else None,
-            attempts=counts[ATTEMPTS],
-            evaluations=counts[EVALUATIONS],
-            rejected=counts[COLLIDING],
-            **others,
+            closest_pair=self._pairs[pair],
+            attempts=attempts,
+            evaluations=evaluations,
+            rejected=rejected,
+            seed=seed,
+            stream=stream,
+            solve_seconds=solve_seconds,
         )
+        if others:
+            result.__dict__.update(others)
         return result
 
 

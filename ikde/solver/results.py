@@ -141,24 +141,20 @@ class SolveResults:
         story, metrics, found = self.explanation(index), self.outcomes.metrics, self.found
         q = self.q[index].copy()
         q.setflags(write=False)
-        return ResultMaker(self.problem).make(
-            self.targets[index],
-            q,
-            tuple(getattr(metrics, name)[index].item() for name in METRICS),
-            found.counts[index].tolist(),
-            seed=self.seed,
-            stream=self.first_stream + index,
-            method=NAMES[self.engines[index]],
-            reached=story.stop_reason is StopReason.REACHED,
-            stop_reason=story.stop_reason,
-            reason=story.reason,
-            hint=story.hint,
-            blocking_pairs=story.blocking_pairs,
-            collision=_verdict(self.collision, index),
-            verified=_verdict(self.verified, index),
-            solve_seconds=float(found.seconds[index]),
-            compile_seconds=self.compile_seconds,
-        )
+        own = {
+            "method": NAMES[self.engines[index]],
+            "reached": story.stop_reason is StopReason.REACHED,
+            "stop_reason": story.stop_reason,
+            "reason": story.reason,
+            "hint": story.hint,
+            "blocking_pairs": story.blocking_pairs,
+            "collision": _verdict(self.collision, index),
+            "verified": _verdict(self.verified, index),
+            "compile_seconds": self.compile_seconds,
+        }
+        seen = tuple(getattr(metrics, name)[index].item() for name in METRICS)
+        cost, stream, seconds = found.counts[index].tolist(), self.first_stream + index, float(found.seconds[index])
+        return ResultMaker(self.problem).make(self.targets[index], q, seen, cost, self.seed, stream, seconds, own)
 
 
 def _verdict(column: MaskedBools, index: int) -> bool | None:

@@ -7,6 +7,7 @@ import pytest
 
 from ikde.kernels.arrays import DescentArrays
 from ikde.kernels.flat_arguments import flatten_grader, flatten_search, unpack_grader, unpack_search
+from ikde.kernels.tables import unpack_used
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests.conftest import random_q
@@ -36,7 +37,10 @@ def test_the_search_comes_back(qiao, rng):
     for seeds in (pack_seeds(qiao, random_q(qiao, rng, 100), np.array([0, 1, 2])), no_seeds(qiao, 0.125)):
         for choice in (None, "none"):
             packed = (pack_robot(qiao), CollisionModel.of(qiao, choice).arrays, descent, seeds)
-            robot, collision, back, *others = unpack_search(*flatten_search(*packed[:2], ranges, *packed[2:]))
+            numbers, whole, *pool = flatten_search(*packed[:2], ranges, *packed[2:])
+            robot, collision = unpack_used(numbers, whole)
+            back, *others = unpack_search(numbers, whole, *pool)
+            assert numbers[0] == collision.safe_distance
             assert (back == ranges).all()
             for ours, theirs in zip(packed, (robot, collision, *others), strict=True):
                 assert_same(ours, theirs)
@@ -50,7 +54,8 @@ def test_what_is_unpacked_often_is_still_there(qiao):
     before = [sys.getrefcount(block) for block in (*search, *grader)]
     for _ in range(100):
         unpack_search(*search)
+        unpack_used(*search[:2])
         unpack_grader(*grader)
     assert [sys.getrefcount(block) for block in (*search, *grader)] == before
-    assert_same(models[0], unpack_search(*search)[0])
+    assert_same(models[0], unpack_used(*search[:2])[0])
     assert_same(models[1], unpack_grader(*grader)[1])

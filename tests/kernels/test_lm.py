@@ -102,7 +102,7 @@ def solve_singly(module, asked, rows=None, *, first=0, budgets=None, outputs=Non
         for row in range(len(asked.targets)) if rows is None else rows:
             if outputs[2][row, REACHED]:
                 continue
-            question = (*asked.packed, row, *flatten_search(*models, asked.ranges, asked.descent, asked.seeds))
+            question = (*flatten_search(*models, asked.ranges, asked.descent, asked.seeds), *asked.packed, row)
             lane = (np.uint64(9), int(asked.streams[row]), first, int(budgets[row]), *(array[row] for array in outputs))
             module.solve_target(*question, *lane)
     return outputs

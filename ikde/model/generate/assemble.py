@@ -16,9 +16,25 @@ from ikde.model.generate.proofs import drop_implied, drop_proved, proof_margin
 from ikde.model.pack import pack_robot
 
 SWAPPED = re.compile(r"^from ikde\.kernels\.tables import .*\n", re.MULTILINE)
-OWN_IMPORTS = ("from ikde.kernels.jit import leaf_kernel", "from ikde.kernels.trig import sin_cos")
-TABLE_IMPORT = "from ikde.kernels.tables import find_collision, make_buffers"
-NO_BUFFERS = '''@leaf_kernel
+OWN_IMPORTS = (
+    "from ikde.kernels.arrays import SafeDistance",
+    "from ikde.kernels.jit import leaf_kernel",
+    "from ikde.kernels.trig import sin_cos",
+)
+TABLE_IMPORT = "from ikde.kernels.tables import find_collision, make_buffers, unpack_used, use_models"
+NO_TABLES = '''@leaf_kernel
+def use_models(robot, collision):
+    """Straight-line code asks the models for the safe distance only: arrays cost more to hand on than most kernels."""
+    return 0, SafeDistance(collision.safe_distance)
+
+
+@leaf_kernel
+def unpack_used(numbers, whole):
+    """The same out of the block of a search."""
+    return 0, SafeDistance(numbers[0])
+
+
+@leaf_kernel
 def make_buffers(robot, collision, joints):
     """Straight-line code needs no buffers."""
     return 0
@@ -61,7 +77,7 @@ def _format_tests(arrays: RobotArrays, collision: CollisionModel) -> list[str]:
     tested = f"{len(every)} tests of rows and spheres, {implied} of them implied by others,"
     never = f"{proved} proved never to fail inside the joint limits, for a safe distance up to {margin:g} m"
     counts = f"{count_sphere_pairs(collision.arrays)} pairs of spheres; {tested}\n{never}; {len(tests)} left."
-    return [counts, NO_BUFFERS, format_find(arrays, tests, *limits), format_judge(arrays, tests)]
+    return [counts, NO_TABLES, format_find(arrays, tests, *limits), format_judge(arrays, tests)]
 
 
 def _split(source: Path) -> tuple[str, str]:

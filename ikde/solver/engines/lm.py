@@ -1,14 +1,15 @@
 """`lm`: damped least squares from collision-free seeds, by kernels written for the robot."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
-from ikde.kernels.arrays import Ints, TargetArrays
+from ikde.kernels.arrays import Ints
 from ikde.kernels.flat_arguments import flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.engine import Outputs, SearchInputs, make_descent, make_ranges
+from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.problem import Problem, pack_searched
 
@@ -16,17 +17,10 @@ ONE_BY_ONE = ENGINES["lm"].one_by_one
 
 
 def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
-    """Damped least squares on one target: `search(targets, row, seed, stream, begin, end, outputs)`."""
+    """Damped least squares on one target: `search(*targets, row, seed, stream, begin, end, *outputs)`."""
     models, seeds = pack_searched(problem.collision), make_seeds(problem, kind)
     block = flatten_search(*models, make_ranges(problem), make_descent(problem, kind), seeds)
-    solve_target = load_kernels(problem.collision, kind).solve_target
-
-    def search(
-        targets: TargetArrays, row: int, seed: np.uint64, stream: int, begin: int, end: int, outputs: Outputs
-    ) -> None:
-        solve_target(*targets, row, *block, seed, stream, begin, end, *outputs)
-
-    return search
+    return partial(load_kernels(problem.collision, kind).solve_target, *block)
 
 
 class DampedLeastSquares:
@@ -56,7 +50,7 @@ class DampedLeastSquares:
                     continue
                 for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
                     outputs = tuple(array[row] for array in asked.outputs)
-                    search(asked.targets, row, asked.seed, int(asked.streams[row]), begin, end, outputs)
+                    search(*asked.targets, row, asked.seed, int(asked.streams[row]), begin, end, *outputs)
 
     def _prepare_many(self, problem: Problem, kind: str) -> Callable[..., None]:
         """The same on many targets, side by side: `search(rows, attempts)`."""

@@ -26,7 +26,7 @@ from tests.three_joints import CROWDED, crowd
 
 ROOT = Path(__file__).parents[3]
 each_kind = pytest.mark.parametrize("kind", KINDS)
-OWN = ["make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes"]
+OWN = ["use_models", "unpack_used", "make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes"]
 
 
 @cache

@@ -10,7 +10,7 @@ from ikde.kernels.arrays import DescentArrays
 from ikde.kernels.tables import LANES
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble
-from ikde.model.generate.assemble import NO_BUFFERS
+from ikde.model.generate.assemble import NO_TABLES
 from ikde.model.generate.collision import list_tests
 from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps, order_pairs
 from ikde.model.generate.proofs import drop_implied, drop_proved
@@ -50,7 +50,7 @@ def make_checks(robot, detector, margin=MARGIN):
     if np.isfinite(margin):
         tests = drop_proved(arrays, tests, margin, robot.lower, robot.upper)
     text = format_find(arrays, tests, robot.lower, robot.upper) + format_judge(arrays, tests)
-    return run_text(f"{NO_BUFFERS}\n{text}")
+    return run_text(f"{NO_TABLES}\n{text}")
 
 
 @cache
