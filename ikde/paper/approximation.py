@@ -7,10 +7,8 @@ from typing import Any
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import approximation_volume_m3
-from ikde.paper.inputs import Inputs
-from ikde.paper.pictures import draw_robot
-from ikde.paper.published import APPROXIMATIONS, meant
-from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, judge, make_table
+from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
+from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge, make_table
 from ikde.report.numbers import fixed
 from ikde.report.page import Cell, Column, Gallery, Section, Table, Text
 

@@ -14,8 +14,7 @@ from ikde.kernels.paper import judge_surfaces
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Budget, Inputs
-from ikde.paper.published import APPROXIMATIONS, PAIR_LISTS
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Budget, Inputs
 from ikde.paper.section import Computed, make_collision
 from ikde.paper.surface import (
     M_STEPS,

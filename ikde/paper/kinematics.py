@@ -9,8 +9,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Inputs
-from ikde.paper.published import meant
+from ikde.paper.inputs import Inputs, meant
 from ikde.paper.section import Computed, Misprint, make_table
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_frames

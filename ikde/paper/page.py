@@ -5,11 +5,10 @@ from dataclasses import asdict, replace
 from ikde.paper.approximation import Approximation
 from ikde.paper.inputs import Inputs
 from ikde.paper.kinematics import Kinematics, largest_error_mm
-from ikde.paper.results import Results
+from ikde.paper.results import TOPICS, Results
 from ikde.paper.section import Computed
 from ikde.paper.situations import Situations
 from ikde.paper.solutions import Solutions
-from ikde.paper.topics import TOPICS
 from ikde.report.numbers import fixed
 from ikde.report.page import Code, Facts, Number, Numbers, Page, Section, Text
 

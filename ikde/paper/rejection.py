@@ -13,9 +13,8 @@ from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.paper.detection import check_centres_many, compare_pairs
-from ikde.paper.inputs import Inputs
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import SEED, Setup, Solutions, collides, solve_plainly
-from ikde.paper.published import APPROXIMATIONS, PAIR_LISTS
 from ikde.paper.section import Computed, make_collision
 from ikde.paper.timing import quartiles
 from ikde.report.numbers import with_interval

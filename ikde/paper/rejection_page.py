@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from itertools import product
 
-from ikde.paper.inputs import Inputs
-from ikde.paper.published import APPROXIMATIONS
+from ikde.paper.inputs import APPROXIMATIONS, Inputs
 from ikde.paper.rejection import Gain, GainOrder, ListRate, PrintedRate, Rejection, RejectionRate, TargetRates
 from ikde.paper.section import format_spread, make_table, name_pairs
 from ikde.plot.charts import Bars, plot_bars

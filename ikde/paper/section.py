@@ -1,7 +1,7 @@
 """What the sections of the report share: their three parts, printed values beside ours, and what a detector sees."""
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Generic, TypeVar
 
@@ -10,8 +10,12 @@ import numpy as np
 from ikde.batch.statistics import Spread
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
+from ikde.model.target import Target
+from ikde.plot.images import to_png
+from ikde.plot.pose import plot_pose
 from ikde.report.numbers import significant
-from ikde.report.page import Cell, Column, Table
+from ikde.report.page import Cell, Column, Figure, Table
+from ikde.scene.drawn_pose import draw_pose
 from ikde.solver.check import check
 
 Value = TypeVar("Value")
@@ -108,3 +112,12 @@ def make_table(
         caption=caption,
         note=note,
     )
+
+
+def draw_robot(
+    collision: CollisionModel, q: Sequence[float], *, caption: str, target_mm: Sequence[float] | None = None
+) -> Figure:
+    """The robot at `q` as a detector sees it: arm red, platform blue, colliding components black; small for a page."""
+    target = None if target_mm is None else Target(np.array(target_mm) * 1e-3)
+    pose = draw_pose(collision, np.array(q), target=target)
+    return Figure(image=to_png(plot_pose(pose, size_in=(6.4, 5.7)), dpi=84), alt=caption, caption=caption)

@@ -11,9 +11,8 @@ import numpy as np
 from ikde.batch.statistics import Rate
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Inputs
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import Setup, collides, solve_plainly
-from ikde.paper.published import APPROXIMATIONS, PAIR_LISTS
 from ikde.paper.rejection import (
     READINGS,
     PrintedRate,

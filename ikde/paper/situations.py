@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Inputs
-from ikde.paper.pictures import draw_robot
-from ikde.paper.published import APPROXIMATIONS, meant
-from ikde.paper.section import Computed, Misprint, PrintedMeant, PrintedOurs, make_collision, make_table
+from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
+from ikde.paper.section import Computed, Misprint, PrintedMeant, PrintedOurs, draw_robot, make_collision, make_table
 from ikde.paper.sweeps import FINE_STEPS, SECONDS, Sweep, find_onset, read_sweeps
 from ikde.plot.charts import Event, Line, plot_lines
 from ikde.plot.images import to_svg

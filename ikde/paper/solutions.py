@@ -12,16 +12,15 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.paper.inputs import Inputs
-from ikde.paper.pictures import draw_robot
+from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
 from ikde.paper.plain_search import limit_base
-from ikde.paper.published import APPROXIMATIONS, meant
 from ikde.paper.section import (
     Computed,
     Misprint,
     PrintedMeantOurs,
     PrintedOurs,
     Verdict,
+    draw_robot,
     judge,
     make_table,
 )

@@ -13,7 +13,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
-from ikde.paper.published import meant
+from ikde.paper.inputs import meant
 from ikde.paper.section import make_collision
 from ikde.solver.plain import compute_gaps
 

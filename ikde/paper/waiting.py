@@ -7,9 +7,8 @@ import numpy as np
 from ikde.batch.statistics import Spread
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
-from ikde.paper.inputs import Inputs
+from ikde.paper.inputs import APPROXIMATIONS, Inputs
 from ikde.paper.plain_search import SEED, Setup, make_setup_problem
-from ikde.paper.published import APPROXIMATIONS
 from ikde.paper.rejection import READINGS, describe_setup, spread_of
 from ikde.paper.section import Computed, format_spread, make_collision, make_table
 from ikde.report.page import Column, Section, Text

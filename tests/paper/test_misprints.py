@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
+from ikde.paper.inputs import load_misprints, load_published, meant
 from ikde.paper.misprints import compute_misprints, show_misprints
-from ikde.paper.published import load_misprints, load_published, meant
 from ikde.report.page import Table, Text
 from tests.paper.conftest import is_plain
 

@@ -1,10 +1,13 @@
-"""What the sections share: parts of the record, verdicts, and cells."""
+"""What the sections share: parts of the record, verdicts, cells, and pictures of the robot."""
 
 import pytest
 
 import ikde
 from ikde.batch.statistics import Spread
-from ikde.paper.section import format_spread, judge, make_table, name_pairs
+from ikde.model.collision_model import CollisionModel
+from ikde.paper import section
+from ikde.paper.section import draw_robot, format_spread, judge, make_collision, make_table, name_pairs
+from ikde.plot.pose import plot_pose
 from ikde.report.page import Column
 
 
@@ -26,3 +29,12 @@ def test_spreads_and_pairs_in_words():
     assert format_spread(Spread(1.5, 5.64, 94.0)) == "1.50 / 5.64 / 94.0"
     assert name_pairs([["G", "L1"], ["G", "L2"]]) == "(G, L1), (G, L2)"
     assert name_pairs([]) == "–"
+
+
+def test_a_picture_is_a_small_png_with_its_caption(qiao, substitute):
+    substitute(section.plot_pose, plot_pose)
+    for collision in (CollisionModel.of(qiao, "improved"), make_collision(qiao, "typical", "load_arm")):
+        figure = draw_robot(collision, qiao.home.tolist(), caption="home", target_mm=(800, 500, 1000))
+        assert figure.image.startswith(b"\x89PNG")
+        assert len(figure.image) < 200_000
+        assert (figure.caption, figure.alt) == ("home", "home")
