@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ikde.kernels.arrays import CollisionArrays, Floats, RobotArrays
+from ikde.kernels.arrays import Floats
 from ikde.kernels.paper import place_by_key_points, place_by_transformation
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
@@ -44,8 +44,7 @@ class PrintedRatio:
     from_average: float
     from_mean: float
     from_median: float
-    see: str
-    """The place in the list of misprints."""
+    see: str  # the place in the list of misprints
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,8 +54,7 @@ class ColumnTimes:
     name: str
     median_s: float
     quartiles_s: list[float]
-    rows_s: list[float]
-    """Medians, a moment each."""
+    rows_s: list[float]  # medians, a moment each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,8 +81,7 @@ class Timing(Computed):
 
     columns: list[TableColumn]
     printed_rows_s: list[list[float]]
-    printed_s: dict[str, dict[str, float]]
-    """Average (printed), mean and median (of the rows), by column."""
+    printed_s: dict[str, dict[str, float]]  # average (printed), mean and median (of the rows), by column
     printed_ratios: list[PrintedRatio]
     placed: dict[str, dict[str, int]]
     q: list[list[float]]
@@ -94,7 +91,7 @@ class Timing(Computed):
 def compute_timing(inputs: Inputs) -> Timing:
     """Table 3's columns as printed and ours, at ten moments of the published motion, and what they say of ratios."""
     robot, table, rounds = inputs.robot, inputs.published["table_3"], inputs.budget.timing_rounds
-    placements = [make_placement(robot, column) for column in table["columns"]]
+    placements = [Placement(robot, column) for column in table["columns"]]
     moments = read_motion(table["motion"], len(table["rows_s"]))
     printed = summarise_printed(table)
     return Timing(
@@ -170,18 +167,18 @@ def clock(run: Callable[[], object]) -> float:
     return 1e-9 * (time.perf_counter_ns() - begin)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Placement:
-    """One column of Table 3, ready to run."""
+    """One column of Table 3, ready to run; every component takes part, since the detectors' pairs name them all."""
 
-    column: TableColumn
-    robot: RobotArrays
-    collision: CollisionArrays
-    directions: Floats  # [K, 3]; none for centres
-    T_world_body: Floats
-    T_world_frame: Floats
-    centres: Floats  # [3, S]
-    points: Floats  # [S, K, 3]
+    def __init__(self, robot: Robot, column: TableColumn) -> None:
+        self.column = column
+        self.robot = pack_robot(robot)
+        self.collision = CollisionModel.of(robot, column["approximation"]).arrays
+        self.directions = surface_directions() if column["points"] == "surface" else np.empty((0, 3))
+        self.T_world_body = np.empty((self.robot.bodies.shape[0], 3, 4))
+        self.T_world_frame = np.zeros((self.robot.frame_body.size, 3, 4))
+        self.centres = np.empty((3, self.collision.radius.size))
+        self.points = np.empty((self.collision.radius.size, len(self.directions), 3))
 
     def run(self, q: Floats, moves: bool, times: int) -> None:
         """Place everything `times` times, at the poses of `q` [N] if it `moves`, else where the last run left them."""
@@ -196,23 +193,6 @@ class Placement:
         self.run(q, True, 1)
         times = LOOP[self.column["points"]]
         return clock(lambda: self.run(q, moves, times)) / times
-
-
-def make_placement(robot: Robot, column: TableColumn) -> Placement:
-    """Pack a column's approximation; every component takes part, since the detectors' pairs name them all."""
-    arrays = pack_robot(robot)
-    collision = CollisionModel.of(robot, column["approximation"]).arrays
-    directions = surface_directions() if column["points"] == "surface" else np.empty((0, 3))
-    return Placement(
-        column=column,
-        robot=arrays,
-        collision=collision,
-        directions=directions,
-        T_world_body=np.empty((arrays.bodies.shape[0], 3, 4)),
-        T_world_frame=np.zeros((arrays.frame_body.size, 3, 4)),
-        centres=np.empty((3, collision.radius.size)),
-        points=np.empty((collision.radius.size, len(directions), 3)),
-    )
 
 
 def _measure(placements: Sequence[Placement], moments: Floats, scope: str, rounds: int) -> ScopeTimes:

@@ -1,19 +1,16 @@
 """What a user waits for: attempts and time until the first solution that the detector accepts."""
 
-from dataclasses import asdict, dataclass, field
-
-import numpy as np
+from dataclasses import dataclass
+from itertools import product
 
 from ikde.batch.statistics import Spread
-from ikde.model.collision_model import CollisionModel
-from ikde.model.target import Target
 from ikde.paper.inputs import APPROXIMATIONS, Inputs
-from ikde.paper.plain_search import SEED, Setup, make_setup_problem
+from ikde.paper.plain_search import SEED, Setup, gather, make_setup_problem
 from ikde.paper.rejection import READINGS, describe_setup, spread_of
 from ikde.paper.section import Computed, format_spread, make_collision, make_table
 from ikde.report.page import Column, Section, Text
 from ikde.solver.distinct import UNEXPLAINED
-from ikde.solver.results import SolveResults, solve_rows
+from ikde.solver.results import solve_rows
 
 WAITS_IN_TURN = 50
 
@@ -52,51 +49,34 @@ class Waiting(Computed):
     measured: dict[str, list[CellTimes]]
 
 
-@dataclass(frozen=True, slots=True)
-class _Wait:
-    """A cell as it is solved; cells take turns, so that a slow minute of the machine hits all of them."""
-
-    cell: WaitCell
-    target: Target
-    collision: CollisionModel
-    rows: list[SolveResults] = field(default_factory=list)
-
-    @property
-    def outcome(self) -> CellOutcome:
-        reached = np.concatenate([rows.reached for rows in self.rows])
-        attempts = np.concatenate([rows.attempts for rows in self.rows])
-        return CellOutcome(
-            **asdict(self.cell), solves=len(reached), reached=int(reached.sum()), attempts=spread_of(attempts)
-        )
-
-    @property
-    def times(self) -> CellTimes:
-        seconds = np.concatenate([rows.found.seconds for rows in self.rows])
-        return CellTimes(**asdict(self.cell), ms=spread_of(1e3 * seconds))
-
-
 def compute_waiting(inputs: Inputs) -> Waiting:
     """The search of Table 4's setting, started again until its solution is free, each solve with its own stream."""
     setup, robot = Setup(settings=Setup().settings.with_changes(restarts=1000)), inputs.robot
-    waits = [
-        _Wait(
-            WaitCell(target=name, reading=reading, spheres=spheres, pairs=pairing[spheres]),
-            target,
-            make_collision(robot, spheres, pairing[spheres]),
-        )
-        for name, target in inputs.targets.items()
-        for reading, pairing in READINGS.items()
-        for spheres in APPROXIMATIONS
+    cells = [
+        {"target": target, "reading": reading, "spheres": spheres, "pairs": READINGS[reading][spheres]}
+        for target, reading, spheres in product(inputs.targets, READINGS, APPROXIMATIONS)
     ]
-    problems = [make_setup_problem(robot, setup, wait.collision.detector) for wait in waits]
+    searches = [
+        make_setup_problem(robot, setup, make_collision(robot, c["spheres"], c["pairs"]).detector) for c in cells
+    ]
+    parts = []  # cells take turns, so that a slow minute of the machine hits all of them
     for begin in range(0, inputs.budget.waits, WAITS_IN_TURN):
         count = min(WAITS_IN_TURN, inputs.budget.waits - begin)
-        for wait, problem in zip(waits, problems, strict=True):
-            wait.rows.append(solve_rows(problem, [wait.target] * count, UNEXPLAINED, seed=SEED, first_stream=begin))
+        for cell, search in zip(cells, searches, strict=True):
+            targets = [inputs.targets[cell["target"]]] * count
+            parts.append(solve_rows(search, targets, UNEXPLAINED, seed=SEED, first_stream=begin))
             inputs.progress.advance(count)
+    solved = [gather(parts[k :: len(cells)]) for k in range(len(cells))]
     return Waiting(
-        rows=[wait.outcome for wait in waits],
-        measured={"rows": [wait.times for wait in waits]},
+        rows=[
+            CellOutcome(**cell, solves=found.solves, reached=len(found.Q), attempts=spread_of(found.attempts))
+            for cell, found in zip(cells, solved, strict=True)
+        ],
+        measured={
+            "rows": [
+                CellTimes(**cell, ms=spread_of(1e3 * found.seconds)) for cell, found in zip(cells, solved, strict=True)
+            ]
+        },
         settings=describe_setup(setup),
     )
 

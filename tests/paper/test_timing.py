@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ikde.paper.timing import compute_timing, make_placement, read_motion, show_timing
+from ikde.paper.timing import Placement, compute_timing, read_motion, show_timing
 from ikde.report.page import Table, Text
 from tests import reference
 from tests.paper.conftest import is_plain
@@ -45,7 +45,7 @@ def test_the_motion_starts_and_ends_as_published(published):
 def test_what_is_timed_places_the_spheres(qiao, published, rng):
     q = rng.uniform(qiao.lower, qiao.upper)
     for column in published["table_3"]["columns"]:
-        placement = make_placement(qiao, column)
+        placement = Placement(qiao, column)
         placement.run(q, True, 1)
         spheres = reference.list_spheres(qiao, qiao.detectors[column["approximation"]], q)
         centres = np.array([centre for _, centre, _ in spheres])
