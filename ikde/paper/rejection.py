@@ -1,6 +1,5 @@
 """Table 4: how many solutions of a plain search each detector rejects; what of it is spheres, and what is pairs."""
 
-import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
@@ -16,7 +15,7 @@ from ikde.paper.detection import check_centres_many, compare_pairs
 from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import SEED, Setup, Solutions, collides, solve_plainly
 from ikde.paper.section import Computed, make_collision
-from ikde.paper.timing import quartiles
+from ikde.paper.timing import clock, quartiles
 from ikde.report.numbers import with_interval
 
 READINGS: dict[str, dict[str, str]] = {
@@ -35,10 +34,8 @@ class RejectionRate:
 
     CN: int
     SN: int
-    rejected_pct: float | None
-    """None of nothing."""
-    interval_pct: list[float]
-    """95 %."""
+    rejected_pct: float | None  # None of nothing
+    interval_pct: list[float]  # 95 %
 
     @property
     def text(self) -> str:
@@ -312,12 +309,9 @@ def _time_solves(inputs: Inputs, name: str, solutions: Solutions) -> SolveTimes:
 
 
 def _time_verdicts(collision: CollisionModel, Q: Floats, rounds: int) -> VerdictTime:
-    seconds = []
-    for _ in range(rounds + 1):  # the first compiles, or warms up
-        started = time.perf_counter()
-        check_centres_many(collision, Q)
-        seconds.append((time.perf_counter() - started) / len(Q))
-    median, spread = quartiles(1e6 * np.array(seconds[1:]))
+    check_centres_many(collision, Q)  # compiles, or warms up
+    seconds = [clock(lambda: check_centres_many(collision, Q)) / len(Q) for _ in range(rounds)]
+    median, spread = quartiles(1e6 * np.array(seconds))
     return VerdictTime(median=median, quartiles=spread, rounds=rounds)
 
 

@@ -1,7 +1,7 @@
 """Table 5 and Figure 8: the published solutions graded again, and solutions of our own."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from itertools import count
 from typing import Any
 
@@ -48,24 +48,16 @@ class NamedVerdict(Verdict):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Graded:
-    """A solution, its errors and what both detectors say."""
+class Solution:
+    """A solution of a target, its errors and what both detectors say."""
 
-    q: list[float]
-    """In the robot's own convention, m and rad."""
-    error_mm: list[float]
-    """Along each axis."""
+    q: list[float]  # in the robot's own convention, m and rad
+    error_mm: list[float]  # along each axis
     largest_error_mm: float
     detectors: dict[str, NamedVerdict]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Solution(Graded):
-    """A solution of a target, its joints as Table 5 prints them."""
-
     target: str
     row: str
-    printed_q: list[float]
+    printed_q: list[float]  # as Table 5 prints its joints
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,32 +131,29 @@ def _grade_row(robot: Robot, row: Mapping[str, Any], target_mm: list[float]) -> 
     q = read_row(robot, row["q"])
     graded = _grade(robot, q, target_mm)
     printed = "free with both" if row["row"].startswith("s") else "typical collides"
-    typical, improved = (graded.detectors[name].collides for name in APPROXIMATIONS)
+    typical, improved = (graded["detectors"][name].collides for name in APPROXIMATIONS)
     agrees = not (typical or improved) if printed == "free with both" else typical
     return PublishedSolution(
         target=row["target"],
         row=row["row"],
         printed_q=row["q"],
-        ME_mm=PrintedMeantOurs(printed=row["ME_mm"], meant=meant(row)["ME_mm"], ours=graded.largest_error_mm),
+        ME_mm=PrintedMeantOurs(printed=row["ME_mm"], meant=meant(row)["ME_mm"], ours=graded["largest_error_mm"]),
         label=Label(printed=printed, ours=describe_verdict(typical, improved), agrees=agrees),
         misprint=row.get("misprint"),
         outside_limits=list(joints_outside(robot, q)),
-        **_fields(graded),
+        **graded,
     )
 
 
-def _grade(robot: Robot, q: Floats, target_mm: list[float]) -> Graded:
+def _grade(robot: Robot, q: Floats, target_mm: list[float]) -> dict[str, Any]:
+    """The first fields of a `Solution`."""
     errors = np.abs(1e3 * forward(robot, q)["tool"][:3, 3] - target_mm)
-    return Graded(
-        q=q.tolist(),
-        error_mm=errors.tolist(),
-        largest_error_mm=float(errors.max()),
-        detectors={name: _judge(robot, q, name) for name in APPROXIMATIONS},
-    )
-
-
-def _fields(graded: Graded) -> dict[str, Any]:
-    return {field.name: getattr(graded, field.name) for field in fields(graded)}
+    return {
+        "q": q.tolist(),
+        "error_mm": errors.tolist(),
+        "largest_error_mm": float(errors.max()),
+        "detectors": {name: _judge(robot, q, name) for name in APPROXIMATIONS},
+    }
 
 
 def _judge(robot: Robot, q: Floats, detector: str) -> NamedVerdict:
@@ -204,7 +193,7 @@ def _describe(robot: Robot, place: tuple[str, str], target_mm: list[float], resu
         detector=result.detector,
         stream=result.stream,
         attempts=result.attempts,
-        **_fields(_grade(robot, result.q, target_mm)),
+        **_grade(robot, result.q, target_mm),
     )
 
 

@@ -66,17 +66,13 @@ def compute_waiting(inputs: Inputs) -> Waiting:
             targets = [inputs.targets[cell["target"]]] * count
             parts.append(solve_rows(search, targets, UNEXPLAINED, seed=SEED, first_stream=begin))
             inputs.progress.advance(count)
-    solved = [gather(parts[k :: len(cells)]) for k in range(len(cells))]
+    solved = [(cell, gather(parts[k :: len(cells)])) for k, cell in enumerate(cells)]
     return Waiting(
         rows=[
             CellOutcome(**cell, solves=found.solves, reached=len(found.Q), attempts=spread_of(found.attempts))
-            for cell, found in zip(cells, solved, strict=True)
+            for cell, found in solved
         ],
-        measured={
-            "rows": [
-                CellTimes(**cell, ms=spread_of(1e3 * found.seconds)) for cell, found in zip(cells, solved, strict=True)
-            ]
-        },
+        measured={"rows": [CellTimes(**cell, ms=spread_of(1e3 * found.seconds)) for cell, found in solved]},
         settings=describe_setup(setup),
     )
 
