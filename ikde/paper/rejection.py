@@ -192,11 +192,7 @@ def compute_rejection(inputs: Inputs) -> Rejection:
             for name, found in solutions.items()
         ],
         measured=[_time_solves(inputs, name, found) for name, found in solutions.items()],
-        settings={
-            "lists": {"dropped": dropped, "added": added},
-            "readings": READINGS,
-            **describe_setup(setup),
-        },
+        settings={"lists": {"dropped": dropped, "added": added}, "readings": READINGS, **describe_setup(setup)},
     )
 
 
@@ -258,10 +254,7 @@ def _pair_verdicts(reading: str, rejected: Grades) -> PairedVerdicts:
 
 def _split_gain(rejected: Grades) -> GainSplit:
     start, end = rejected["typical", "non_adjacent"], rejected["improved", "formula_22_printed"]
-    between = {
-        "spheres": rejected["improved", "non_adjacent"],
-        "pairs": rejected["typical", "formula_22_printed"],
-    }
+    between = {"spheres": rejected["improved", "non_adjacent"], "pairs": rejected["typical", "formula_22_printed"]}
     return GainSplit(
         total=paired_gain(start, end),
         orders=[

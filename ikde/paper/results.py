@@ -74,8 +74,7 @@ class Results:
     """Everything that the report shows."""
 
     made: Made
-    sections: dict[str, Any]
-    """`Computed` by topic, in the order of the report."""
+    sections: dict[str, Any]  # `Computed` by topic, in the order of the report
 
     def as_json(self) -> dict[str, Any]:
         """Plain data as it comes back from a JSON file."""

@@ -28,8 +28,7 @@ Misprint = dict[str, Any] | None
 class Computed:
     """A section as it is computed: all fields but `measured` (times) and `settings` are the same bits in every run."""
 
-    settings: dict[str, Any]
-    """How it was made, for the record."""
+    settings: dict[str, Any]  # how it was made, for the record
 
     def as_json(self) -> dict[str, Any]:
         """Plain data in three parts, as it comes back from a JSON file."""
@@ -67,8 +66,7 @@ class Verdict:
 
     collides: bool
     clearance_mm: float
-    pair: list[str]
-    """The closest."""
+    pair: list[str]  # the closest
     colliding_pairs: list[list[str]]
 
 
@@ -100,10 +98,7 @@ def format_spread(values: Spread) -> str:
 
 
 def make_table(
-    rows: Iterable[Row],
-    *columns: tuple[Column, Callable[[Row], str | Cell]],
-    caption: str,
-    note: str = "",
+    rows: Iterable[Row], *columns: tuple[Column, Callable[[Row], str | Cell]], caption: str, note: str = ""
 ) -> Table:
     """A table of columns, each beside what it shows of a row."""
     return Table(

@@ -13,14 +13,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import Setup, collides, solve_plainly
-from ikde.paper.rejection import (
-    READINGS,
-    PrintedRate,
-    RejectionRate,
-    describe_setup,
-    rate_fields,
-    read_print,
-)
+from ikde.paper.rejection import READINGS, PrintedRate, RejectionRate, describe_setup, rate_fields, read_print
 from ikde.paper.section import Computed, make_collision, make_table
 from ikde.paper.surface import M_STEPS, N_STEPS, Rule, check_surface_many
 from ikde.plot.charts import Estimate, plot_forest
@@ -63,8 +56,7 @@ class Distance:
     group: str
     value: str
     reading: str
-    farthest_points: float | None
-    """None where a target has no solutions."""
+    farthest_points: float | None  # None where a target has no solutions
 
     @property
     def change(self) -> str:
@@ -137,11 +129,7 @@ def compute_sensitivity(inputs: Inputs) -> Sensitivity:
             for row in ranked[:CLOSEST]
         ],
         printed=printed,
-        settings={
-            "solves": inputs.budget.variation_solves,
-            "readings": READINGS,
-            **describe_setup(Setup()),
-        },
+        settings={"solves": inputs.budget.variation_solves, "readings": READINGS, **describe_setup(Setup())},
     )
 
 
@@ -219,10 +207,7 @@ def _make_closest(data: Sensitivity) -> Table:
         data.closest,
         (Column("change", align="left"), lambda row: row.change),
         (Column("pairs", align="left"), lambda row: row.reading),
-        (
-            Column("farthest of four rates from the print", "points", mark="ours"),
-            _format_distance,
-        ),
+        (Column("farthest of four rates from the print", "points", mark="ours"), _format_distance),
         caption="The settings that come closest to the print",
         note=f"A rate's interval is up to ±{fixed(_widest(data), 1)} points wide, and all rows share their random "
         "streams: settings that differ by less cannot be told apart.",

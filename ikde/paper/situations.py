@@ -26,8 +26,7 @@ class Contact:
     """Of the true shapes, in the paper's simulator."""
 
     t_s: float
-    angle_at_s: float
-    """When the motion passes the printed angle."""
+    angle_at_s: float  # when the motion passes the printed angle
     angle_deg: PrintedMeant[float]
     misprint: Misprint
 
@@ -51,11 +50,9 @@ class Detected(Detection):
     onset_deg: float
     onset_s: float
     pair: list[str]
-    clearance_mm: dict[str, float]
-    """A fine step before, at the detected moment, and at the simulator's contact."""
+    clearance_mm: dict[str, float]  # a fine step before, at the detected moment, and at the simulator's contact
     early_s: float
-    early_deg: PrintedOurs[float]
-    """Positive if the detector speaks before the simulator's contact: the motion that it gives away."""
+    early_deg: PrintedOurs[float]  # motion given away; positive if the detector speaks before the simulator's contact
     q_detected: list[float]
     q_contact: list[float]
 

@@ -14,16 +14,7 @@ from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
 from ikde.paper.plain_search import limit_base
-from ikde.paper.section import (
-    Computed,
-    Misprint,
-    PrintedMeantOurs,
-    PrintedOurs,
-    Verdict,
-    draw_robot,
-    judge,
-    make_table,
-)
+from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge, make_table
 from ikde.report.numbers import fixed
 from ikde.report.page import Cell, Column, Figure, Gallery, Mark, Section, Table, Text
 from ikde.solver.check import check

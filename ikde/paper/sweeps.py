@@ -28,11 +28,9 @@ class Sweep:
     pairs: str
     start_deg: Floats  # [6]
     end_deg: Floats  # [6]
-    joint: int
-    """Which of the arm's joints is printed."""
+    joint: int  # which of the arm's joints is printed
     fine_step_deg: float
-    detected_deg: dict[str, float]
-    """Printed, by detector."""
+    detected_deg: dict[str, float]  # printed, by detector
 
     def angle(self, t_s: float) -> float:
         """The printed joint's angle in deg at a time."""
