@@ -7,8 +7,9 @@ from typing import Any
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import approximation_volume_m3
+from ikde.paper.columns import label, make_table, mark_off, ours, published
 from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
-from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge, make_table
+from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge
 from ikde.report.numbers import fixed
 from ikde.report.page import Cell, Column, Gallery, Section, Table, Text
 
@@ -162,34 +163,33 @@ def _introduce(data: Approximation) -> Text:
 def _make_volumes(data: Approximation, name: str) -> Table:
     return make_table(
         ((row, row.volume(name)) for row in data.components),
-        (Column("part", align="left"), lambda row: f"{row[0].component}, {row[0].part}"),
-        (Column("its volume", "mm³", mark="published"), lambda row: f"{row[0].original_mm3:.4e}"),
-        (Column("spheres (R in mm)", align="left"), lambda row: row[1].spheres),
-        (Column("printed", "mm³", group=SPHERES, mark="published"), lambda row: f"{row[1].volume_mm3.printed:.4e}"),
-        (Column("ours", "mm³", group=SPHERES, mark="ours"), lambda row: f"{row[1].volume_mm3.ours:.4e}"),
-        (Column("printed", "%", group="degree", mark="published"), lambda row: _format_degree(row[1])),
-        (Column("ours", "%", group="degree", mark="ours"), lambda row: fixed(row[1].degree_pct.ours, 2)),
-        (Column("count and radii are", align="left"), lambda row: ", ".join(row[1].provenance)),
+        label("part", lambda row: f"{row[0].component}, {row[0].part}"),
+        published("its volume", "mm³", lambda row: f"{row[0].original_mm3:.4e}"),
+        label("spheres (R in mm)", lambda row: row[1].spheres),
+        published("printed", "mm³", lambda row: f"{row[1].volume_mm3.printed:.4e}", SPHERES),
+        ours("ours", "mm³", lambda row: f"{row[1].volume_mm3.ours:.4e}", SPHERES),
+        published("printed", "%", lambda row: _format_degree(row[1]), "degree"),
+        ours("ours", "%", lambda row: fixed(row[1].degree_pct.ours, 2), "degree"),
+        label("count and radii are", lambda row: ", ".join(row[1].provenance)),
         caption=f"Table 2: the {name} approximation",
         note="A degree marked ≠ is a misprint: the printed volumes themselves give ours.",
     )
 
 
 def _format_degree(volume: Volume) -> str | Cell:
-    degree = fixed(volume.degree_pct.printed, 2)
-    return Cell(degree, "off") if volume.misprint else degree
+    return mark_off(fixed(volume.degree_pct.printed, 2), not volume.misprint)
 
 
 def _make_home(data: Approximation) -> Table:
     single, *several = ("collides" if row.collides else "is free" for row in data.home)
     return make_table(
         data.home,
-        (Column("approximation", align="left"), lambda row: row.detector),
+        label("approximation", lambda row: row.detector),
         (Column("spheres"), lambda row: str(data.sphere_counts[row.detector])),
-        (Column("printed", align="left", mark="published"), lambda row: row.printed),
-        (Column("ours", align="left", mark="ours"), lambda row: row.ours),
-        (Column("clearance", "mm", mark="ours"), lambda row: fixed(row.clearance_mm, 2)),
-        (Column("closest pair", align="left"), lambda row: " – ".join(row.pair)),
+        label("printed", lambda row: row.printed, mark="published"),
+        label("ours", lambda row: row.ours, mark="ours"),
+        ours("clearance", "mm", lambda row: fixed(row.clearance_mm, 2)),
+        label("closest pair", lambda row: " – ".join(row.pair)),
         (Column("colliding pairs"), lambda row: str(len(row.colliding_pairs))),
         caption="Section 5.3.1: the home configuration",
         note=f"With one sphere a component home {single}, with several {' and '.join(several)}.",

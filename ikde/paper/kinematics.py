@@ -9,8 +9,9 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
 from ikde.model.robot import Robot
+from ikde.paper.columns import label, make_table, mark_off, ours, published
 from ikde.paper.inputs import Inputs, meant
-from ikde.paper.section import Computed, Misprint, make_table
+from ikde.paper.section import Computed, Misprint
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_frames
 from ikde.report.numbers import fixed, significant, vector
@@ -135,13 +136,11 @@ def _introduce(data: Kinematics) -> Text:
 def _make_table(points: list[Point]) -> Table:
     return make_table(
         points,
-        (Column("point", align="left"), lambda point: point.names["classical"]),
-        (Column("frame", align="left"), lambda point: point.names["key_point"]),
-        (Column("printed x, y, z", "mm", mark="published"), lambda point: vector(point.printed_mm, 1)),
-        *(
-            (Column(f"{name}: x, y, z", "mm", mark="ours"), lambda point, key=key: vector(point.ours_mm[key], 2))
-            for key, name in SHOWN_MODELS.items()
-        ),
+        label("point", lambda point: point.names["classical"]),
+        label("frame", lambda point: point.names["key_point"]),
+        published("printed x, y, z", "mm", lambda point: vector(point.printed_mm, 1)),
+        ours(f"{SHOWN_MODELS['key_point']}: x, y, z", "mm", lambda point: vector(point.ours_mm["key_point"], 2)),
+        ours(f"{SHOWN_MODELS['classical']}: x, y, z", "mm", lambda point: vector(point.ours_mm["classical"], 2)),
         (Column("largest difference", "mm"), _format_difference),
         caption="Formula 23: frames of the arm in the world",
         note="A point marked ≠ is a misprint: " + "; ".join(_explain(p) for p in points if p.misprint) + ".",
@@ -149,8 +148,7 @@ def _make_table(points: list[Point]) -> Table:
 
 
 def _format_difference(point: Point) -> str | Cell:
-    difference = fixed(max(point.difference_mm.values()), 3)
-    return Cell(difference, "off") if point.misprint else difference
+    return mark_off(fixed(max(point.difference_mm.values()), 3), not point.misprint)
 
 
 def _explain(point: Point) -> str:

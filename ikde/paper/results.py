@@ -90,12 +90,7 @@ def count_solves(inputs: Inputs) -> int:
 
 
 def compute_paper(inputs: Inputs, only: Sequence[str] = tuple(TOPICS)) -> Results:
-    """Compute the report's sections.
-
-    Args:
-        inputs: robots and published figures, how much of everything, and what is called with progress.
-        only: names of the sections to compute.
-    """
+    """Compute the report's sections, or `only` some of them by name."""
     started, begin = datetime.now(UTC), time.perf_counter()
     sections, seconds = {}, {}
     with compile_clock() as compiling:
@@ -140,12 +135,7 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def check_paper(recorded: Mapping[str, Any], inputs: Inputs) -> list[str]:
-    """Compute the exact parts of a record again; returns a line for each difference.
-
-    Args:
-        recorded: what `read_results` gave.
-        inputs: robots and published figures, with the budget on record.
-    """
+    """A line for each difference, with what is exact of a record computed again; `inputs` have the record's budget."""
     again = compute_paper(inputs, recorded["made"]["only"]).as_json()
     return list_differences(_drop_times(recorded["sections"]), _drop_times(again["sections"]))
 

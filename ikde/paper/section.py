@@ -14,12 +14,11 @@ from ikde.model.target import Target
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_pose
 from ikde.report.numbers import significant
-from ikde.report.page import Cell, Column, Figure, Table
+from ikde.report.page import Figure
 from ikde.scene.drawn_pose import draw_pose
 from ikde.solver.check import check
 
 Value = TypeVar("Value")
-Row = TypeVar("Row")
 Misprint = dict[str, Any] | None
 """What a printed entry should say, by its keys, and `see`: the place in the list of misprints; None if it is right."""
 
@@ -97,16 +96,9 @@ def format_spread(values: Spread) -> str:
     return " / ".join(map(significant, (values.median, values.p95, values.max)))
 
 
-def make_table(
-    rows: Iterable[Row], *columns: tuple[Column, Callable[[Row], str | Cell]], caption: str, note: str = ""
-) -> Table:
-    """A table of columns, each beside what it shows of a row."""
-    return Table(
-        columns=tuple(column for column, _ in columns),
-        rows=tuple(tuple(show(row) for _, show in columns) for row in rows),
-        caption=caption,
-        note=note,
-    )
+def format_range(show: Callable[[float], str], middle: float, low: float, high: float) -> str:
+    """`73.0 (63.6 to 80.7)`."""
+    return f"{show(middle)} ({show(low)} to {show(high)})"
 
 
 def draw_robot(

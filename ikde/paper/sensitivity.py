@@ -11,10 +11,11 @@ import numpy as np
 from ikde.batch.statistics import Rate
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
+from ikde.paper.columns import Shown, label, make_table, ours
 from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import Setup, collides, solve_plainly
 from ikde.paper.rejection import READINGS, PrintedRate, RejectionRate, describe_setup, rate_fields, read_print
-from ikde.paper.section import Computed, make_collision, make_table
+from ikde.paper.section import Computed, make_collision
 from ikde.paper.surface import M_STEPS, N_STEPS, Rule, check_surface_many
 from ikde.plot.charts import Estimate, plot_forest
 from ikde.plot.images import to_svg
@@ -84,35 +85,32 @@ def list_variations() -> list[Variation]:
     """What the search leaves open, around the stated setting."""
     stated = Setup()
 
-    def vary(group: str, values: Mapping[str, dict[str, Any]]) -> list[Variation]:
-        changed = {value: stated.settings.with_changes(**changes) for value, changes in values.items()}
-        return [Variation(group=group, value=v, setup=replace(stated, settings=s)) for v, s in changed.items()]
+    def search(**changes: Any) -> Setup:
+        return replace(stated, settings=stated.settings.with_changes(**changes))
 
-    def vary_de(group: str, values: Mapping[str, dict[str, Any]]) -> list[Variation]:
-        return vary(group, {value: {"de": changes} for value, changes in values.items()})
+    def de(**changes: Any) -> Setup:
+        return search(de=changes)
 
-    bases = (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
-    limits = {
-        "key-point convention": "key_point",
-        "half a turn either way": "half_turn",
-        "a turn either way": "full_turn",
+    varied = {
+        "as stated": {"the setting of Table 4 above": stated},
+        "base range": {
+            f"±{1e3 * b:g} mm": replace(stated, base_half_width_m=b) for b in (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
+        },
+        "start population": {
+            **{f"middle {100 * s:g} % of each range": de(start_share=s) for s in (0.5, 0.25, 0.1)},
+            **{f"NP = {n}": de(population=n) for n in (20, 100, 200)},
+        },
+        "joint limits": {
+            "key-point convention": replace(stated, limits="key_point"),
+            "half a turn either way": replace(stated, limits="half_turn"),
+            "a turn either way": replace(stated, limits="full_turn"),
+        },
+        "out of range": {b: de(bounds=b) for b in ("clip", "parent", "midpoint", "none")},
+        "mutation": {s: de(strategy=s) for s in ("rand/1", "rand-to-best/1", "current-to-best/1")},
+        "update": {"at the end of the generation": de(update="generation")},
+        "tolerance": {f"{1e3 * t:g} mm": search(position_tolerance_m=t) for t in (1e-5, 1e-3)},
     }
-    return [
-        Variation(group="as stated", value="the setting of Table 4 above", setup=stated),
-        *(
-            Variation(group="base range", value=f"±{1e3 * b:g} mm", setup=replace(stated, base_half_width_m=b))
-            for b in bases
-        ),
-        *vary_de(
-            "start population", {f"middle {100 * s:g} % of each range": {"start_share": s} for s in (0.5, 0.25, 0.1)}
-        ),
-        *vary_de("start population", {f"NP = {n}": {"population": n} for n in (20, 100, 200)}),
-        *(Variation(group="joint limits", value=v, setup=replace(stated, limits=k)) for v, k in limits.items()),
-        *vary_de("out of range", {b: {"bounds": b} for b in ("clip", "parent", "midpoint", "none")}),
-        *vary_de("mutation", {s: {"strategy": s} for s in ("rand/1", "rand-to-best/1", "current-to-best/1")}),
-        *vary_de("update", {"at the end of the generation": {"update": "generation"}}),
-        *vary("tolerance", {f"{1e3 * t:g} mm": {"position_tolerance_m": t} for t in (1e-5, 1e-3)}),
-    ]
+    return [Variation(group=group, value=v, setup=s) for group, setups in varied.items() for v, s in setups.items()]
 
 
 def compute_sensitivity(inputs: Inputs) -> Sensitivity:
@@ -205,9 +203,9 @@ def _introduce(data: Sensitivity) -> Text:
 def _make_closest(data: Sensitivity) -> Table:
     return make_table(
         data.closest,
-        (Column("change", align="left"), lambda row: row.change),
-        (Column("pairs", align="left"), lambda row: row.reading),
-        (Column("farthest of four rates from the print", "points", mark="ours"), _format_distance),
+        label("change", lambda row: row.change),
+        label("pairs", lambda row: row.reading),
+        ours("farthest of four rates from the print", "points", _format_distance),
         caption="The settings that come closest to the print",
         note=f"A rate's interval is up to ±{fixed(_widest(data), 1)} points wide, and all rows share their random "
         "streams: settings that differ by less cannot be told apart.",
@@ -229,25 +227,20 @@ def _make_rates(data: Sensitivity, reading: str) -> Table:
     rows = [row for row in data.rows if row.reading == reading]
     return make_table(
         rows,
-        (Column("change", align="left"), lambda row: row.change),
+        label("change", lambda row: row.change),
         (Column("solved"), lambda row: f"{sum(cell.SN for cell in row.cells[::2]):,}"),
-        *(
-            (
-                Column(
-                    f"{cell.spheres}, print {fixed(_printed(data, cell), 0)}",
-                    "%",
-                    group=f"target {cell.target}",
-                    mark="ours",
-                ),
-                lambda row, k=k: row.cells[k].text,
-            )
-            for k, cell in enumerate(rows[0].cells)
-        ),
+        *(_show_cell(data, k) for k in range(len(rows[0].cells))),
         (Column("farthest", "points"), _format_distance),
         caption=f"Rejected solutions, {READING_NAMES[reading]}",
         note=f"Rates with Wilson's 95 % interval; {2 * data.settings['solves']:,} solves a row, of both targets; "
         "farthest: the largest of four distances from the print.",
     )
+
+
+def _show_cell(data: Sensitivity, k: int) -> Shown[VariedRates]:
+    head = data.rows[0].cells[k]
+    title = f"{head.spheres}, print {fixed(_printed(data, head), 0)}"
+    return ours(title, "%", lambda row: row.cells[k].text, f"target {head.target}")
 
 
 def _printed(data: Sensitivity, cell: CellRate) -> float:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ikde.model.robot import Robot
+from ikde.paper.columns import label, make_table, mark_off, ours, published
 from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
-from ikde.paper.section import Computed, Misprint, PrintedMeant, PrintedOurs, draw_robot, make_collision, make_table
+from ikde.paper.section import Computed, Misprint, PrintedMeant, PrintedOurs, draw_robot, make_collision
 from ikde.paper.sweeps import FINE_STEPS, SECONDS, Sweep, find_onset, read_sweeps
 from ikde.plot.charts import Event, Line, plot_lines
 from ikde.plot.images import to_svg
@@ -206,23 +207,17 @@ def _introduce(data: Situations) -> Text:
 def _make_table(situations: list[Situation]) -> Table:
     return make_table(
         ((situation, detection) for situation in situations for detection in situation.detectors),
-        (Column("situation", align="left"), lambda row: f"{row[0].situation}, {row[0].varies}"),
-        (Column("detector", align="left"), lambda row: row[1].detector),
-        (Column("printed", "deg", group="detected", mark="published"), lambda row: fixed(row[1].printed_deg, 2)),
-        (Column("ours", "deg", group="detected", mark="ours"), lambda row: _format_angle(row[1])),
-        (Column("onset", "deg", mark="ours"), _if_detected(lambda found: fixed(found.onset_deg, 3))),
-        (Column("deciding pair", align="left", mark="ours"), _if_detected(lambda found: " – ".join(found.pair))),
-        (
-            Column("printed", "deg", group="contact in V-REP", mark="published"),
-            lambda row: _format_contact(row[0].simulator.angle_deg),
-        ),
+        label("situation", lambda row: f"{row[0].situation}, {row[0].varies}"),
+        label("detector", lambda row: row[1].detector),
+        published("printed", "deg", lambda row: fixed(row[1].printed_deg, 2), "detected"),
+        ours("ours", "deg", lambda row: _format_angle(row[1]), "detected"),
+        ours("onset", "deg", _if_detected(lambda found: fixed(found.onset_deg, 3))),
+        label("deciding pair", _if_detected(lambda found: " – ".join(found.pair)), mark="ours"),
+        published("printed", "deg", lambda row: _format_contact(row[0].simulator.angle_deg), "contact in V-REP"),
         (Column("meant", "deg", group="contact in V-REP"), lambda row: fixed(row[0].simulator.angle_deg.meant, 1)),
-        (Column("at", "s", group="contact in V-REP", mark="published"), lambda row: fixed(row[0].simulator.t_s, 2)),
+        published("at", "s", lambda row: fixed(row[0].simulator.t_s, 2), "contact in V-REP"),
         (Column("by the print", "deg", group="early"), _if_detected(lambda found: fixed(found.early_deg.printed, 2))),
-        (
-            Column("by ours", "deg", group="early", mark="ours"),
-            _if_detected(lambda found: fixed(found.early_deg.ours, 2)),
-        ),
+        ours("by ours", "deg", _if_detected(lambda found: fixed(found.early_deg.ours, 2)), "early"),
         caption="Section 5.4: detection against contact",
         note="A contact marked ≠ does not fit its own time on the uniform motion; “early by” takes the angle meant. "
         f"Ours is from the onset, the print's from its grid. {_explain(situations)}",
@@ -237,13 +232,11 @@ def _if_detected(show: Callable[[Detected], str]) -> Callable[[tuple[Situation, 
 def _format_angle(detection: Detection) -> str | Cell:
     if detection.detected_deg is None:
         return Cell("never", "off")
-    detected = fixed(detection.detected_deg, 2)
-    return detected if detection.agrees else Cell(detected, "off")
+    return mark_off(fixed(detection.detected_deg, 2), detection.agrees)
 
 
 def _format_contact(angle_deg: PrintedMeant[float]) -> str | Cell:
-    printed = fixed(angle_deg.printed, 1)
-    return printed if angle_deg.printed == angle_deg.meant else Cell(printed, "off")
+    return mark_off(fixed(angle_deg.printed, 1), angle_deg.printed == angle_deg.meant)
 
 
 def _explain(situations: list[Situation]) -> str:

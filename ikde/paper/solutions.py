@@ -12,11 +12,12 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.paper.columns import label, make_table, mark_off, ours, published
 from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
 from ikde.paper.plain_search import limit_base
-from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge, make_table
+from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge
 from ikde.report.numbers import fixed
-from ikde.report.page import Cell, Column, Figure, Gallery, Mark, Section, Table, Text
+from ikde.report.page import Column, Figure, Gallery, Mark, Section, Table, Text
 from ikde.solver.check import check
 from ikde.solver.distinct import solve_distinct
 from ikde.solver.forward import forward
@@ -219,27 +220,19 @@ def _introduce(rows: list[PublishedSolution]) -> Text:
 def _make_published(rows: list[PublishedSolution]) -> Table:
     return make_table(
         rows,
-        (Column("target", align="left"), lambda row: row.target),
-        (Column("row", align="left"), lambda row: row.row),
-        (
-            Column("printed", "mm", group="ME", mark="published"),
-            lambda row: _mark(fixed(row.ME_mm.printed, 4), row.shows_printed_error),
+        label("target", lambda row: row.target),
+        label("row", lambda row: row.row),
+        published(
+            "printed", "mm", lambda row: mark_off(fixed(row.ME_mm.printed, 4), row.shows_printed_error), group="ME"
         ),
-        (Column("ours", "mm", group="ME", mark="ours"), lambda row: fixed(row.ME_mm.ours, 4)),
-        (Column("error in x, y, z", "mm", mark="ours"), _errors),
-        (
-            Column("printed", align="left", group="label", mark="published"),
-            lambda row: _mark(row.label.printed, row.label.agrees),
-        ),
-        (Column("ours", align="left", group="label", mark="ours"), lambda row: row.label.ours),
+        ours("ours", "mm", lambda row: fixed(row.ME_mm.ours, 4), "ME"),
+        ours("error in x, y, z", "mm", _errors),
+        label("printed", lambda row: mark_off(row.label.printed, row.label.agrees), group="label", mark="published"),
+        label("ours", lambda row: row.label.ours, group="label", mark="ours"),
         *_clearances(),
         caption="Table 5: the printed solutions, graded again",
         note=" ".join(_explain(row, row.misprint) for row in rows if row.misprint),
     )
-
-
-def _mark(text: str, agrees: bool) -> str | Cell:
-    return text if agrees else Cell(text, "off")
 
 
 def _explain(row: Solution, misprint: Mapping[str, Any]) -> str:
@@ -262,13 +255,13 @@ def _make_ours(data: Solutions) -> Table:
     settings = data.settings
     return make_table(
         data.ours,
-        (Column("target", align="left"), lambda row: row.target),
-        (Column("row", align="left"), lambda row: row.row),
-        (Column("ME", "mm", mark="ours"), lambda row: fixed(row.largest_error_mm, 4)),
-        (Column("error in x, y, z", "mm", mark="ours"), _errors),
+        label("target", lambda row: row.target),
+        label("row", lambda row: row.row),
+        ours("ME", "mm", lambda row: fixed(row.largest_error_mm, 4)),
+        ours("error in x, y, z", "mm", _errors),
         *_clearances(),
-        (Column("attempts", mark="ours"), lambda row: str(row.attempts)),
-        (Column("stream", mark="ours"), lambda row: str(row.stream)),
+        ours("attempts", "", lambda row: str(row.attempts)),
+        ours("stream", "", lambda row: str(row.stream)),
         caption=f"Solutions of ours, method {settings['method']}, {settings['position_tolerance_mm']:g} mm, base "
         f"within ±{settings['base_range_mm']:g} mm, seed {settings['seed']}",
         note=f"s rows: {settings['free']}. f rows: {settings['colliding']}.",
@@ -278,8 +271,8 @@ def _make_ours(data: Solutions) -> Table:
 def _make_joints(rows: Sequence[Solution], caption: str, mark: Mark) -> Table:
     return make_table(
         rows,
-        (Column("target", align="left"), lambda row: row.target),
-        (Column("row", align="left"), lambda row: row.row),
+        label("target", lambda row: row.target),
+        label("row", lambda row: row.row),
         *(
             (
                 Column(name, "mm" if name in ("d_x", "d_y") else "rad", mark=mark),

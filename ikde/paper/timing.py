@@ -16,8 +16,9 @@ from ikde.kernels.paper import place_by_key_points, place_by_transformation
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
+from ikde.paper.columns import label, make_table, ours, published
 from ikde.paper.inputs import APPROXIMATIONS, Inputs
-from ikde.paper.section import Computed, make_table
+from ikde.paper.section import Computed, format_range
 from ikde.paper.surface import M_STEPS, N_STEPS, surface_directions
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Column, Section, Table, Text
@@ -261,15 +262,15 @@ def _make_times(data: Timing) -> Table:
     placing, kinematics = (measured[scope].columns for scope in ("placing", "kinematics"))
     return make_table(
         zip(data.columns, placing, kinematics, strict=True),
-        (Column("column", align="left"), lambda row: row[0]["name"]),
-        (Column("spheres", align="left"), lambda row: row[0]["approximation"]),
-        (Column("what", align="left"), lambda row: POINTS[row[0]["points"]]),
-        (Column("by", align="left"), lambda row: METHODS[row[0]["method"]]),
-        (Column("printed average", "ms", mark="published"), lambda row: _milliseconds(averages[row[0]["name"]])),
-        (Column("median", "µs", group="placing alone", mark="ours"), lambda row: significant(1e6 * row[1].median_s)),
-        (Column("quartiles", "µs", group="placing alone", mark="ours"), lambda row: _quartiles(row[1])),
-        (Column("median", "µs", group="with kinematics", mark="ours"), lambda row: significant(1e6 * row[2].median_s)),
-        (Column("quartiles", "µs", group="with kinematics", mark="ours"), lambda row: _quartiles(row[2])),
+        label("column", lambda row: row[0]["name"]),
+        label("spheres", lambda row: row[0]["approximation"]),
+        label("what", lambda row: POINTS[row[0]["points"]]),
+        label("by", lambda row: METHODS[row[0]["method"]]),
+        published("printed average", "ms", lambda row: _milliseconds(averages[row[0]["name"]])),
+        ours("median", "µs", lambda row: significant(1e6 * row[1].median_s), "placing alone"),
+        ours("quartiles", "µs", lambda row: _quartiles(row[1]), "placing alone"),
+        ours("median", "µs", lambda row: significant(1e6 * row[2].median_s), "with kinematics"),
+        ours("quartiles", "µs", lambda row: _quartiles(row[2]), "with kinematics"),
         caption="Table 3: one placement of all spheres",
         note=f"Placing alone: {scopes['placing']}. With kinematics: {scopes['kinematics']}.",
     )
@@ -284,28 +285,21 @@ def _make_ratios(data: Timing) -> Table:
     placing, kinematics = (data.measured[scope].ratios for scope in ("placing", "kinematics"))
     return make_table(
         zip(data.printed_ratios, placing, kinematics, strict=True),
-        (Column("what", align="left"), lambda row: POINTS[row[0].points]),
-        (Column("spheres", align="left"), lambda row: row[0].approximation),
-        (Column("columns", align="left"), lambda row: " / ".join(row[0].columns)),
-        (Column("in the text", "%", group="printed", mark="published"), lambda row: fixed(100 * row[0].stated, 0)),
-        (
-            Column("from its averages", "%", group="printed", mark="published"),
-            lambda row: fixed(100 * row[0].from_average, 1),
-        ),
-        (
-            Column("from its rows' medians", "%", group="printed", mark="published"),
-            lambda row: fixed(100 * row[0].from_median, 1),
-        ),
-        (Column("placing alone", "%", group="ours", mark="ours"), lambda row: _format_ratio(row[1])),
-        (Column("with kinematics", "%", group="ours", mark="ours"), lambda row: _format_ratio(row[2])),
+        label("what", lambda row: POINTS[row[0].points]),
+        label("spheres", lambda row: row[0].approximation),
+        label("columns", lambda row: " / ".join(row[0].columns)),
+        published("in the text", "%", lambda row: fixed(100 * row[0].stated, 0), "printed"),
+        published("from its averages", "%", lambda row: fixed(100 * row[0].from_average, 1), "printed"),
+        published("from its rows' medians", "%", lambda row: fixed(100 * row[0].from_median, 1), "printed"),
+        ours("placing alone", "%", lambda row: _format_ratio(row[1]), "ours"),
+        ours("with kinematics", "%", lambda row: _format_ratio(row[2]), "ours"),
         caption="Time by key points as a share of the time by spatial transformation",
         note=_say_stated(data),
     )
 
 
 def _format_ratio(ratio: Ratio) -> str:
-    low, high = ratio.quartiles
-    return f"{fixed(100 * ratio.median, 1)} ({fixed(100 * low, 1)} to {fixed(100 * high, 1)})"
+    return format_range(lambda share: fixed(100 * share, 1), ratio.median, *ratio.quartiles)
 
 
 def _conclude(data: Timing) -> Text:

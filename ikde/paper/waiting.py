@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from itertools import product
 
 from ikde.batch.statistics import Spread
+from ikde.paper.columns import label, make_table, ours
 from ikde.paper.inputs import APPROXIMATIONS, Inputs
 from ikde.paper.plain_search import SEED, Setup, gather, make_setup_problem
 from ikde.paper.rejection import READINGS, describe_setup, spread_of
-from ikde.paper.section import Computed, format_spread, make_collision, make_table
-from ikde.report.page import Column, Section, Text
+from ikde.paper.section import Computed, format_spread, make_collision
+from ikde.report.page import Section, Text
 from ikde.solver.distinct import UNEXPLAINED
 from ikde.solver.results import solve_rows
 
@@ -90,12 +91,12 @@ def show_waiting(data: Waiting, _: Inputs) -> Section:
             ),
             make_table(
                 zip(data.rows, data.measured["rows"], strict=True),
-                (Column("target", align="left"), lambda row: row[0].target),
-                (Column("pairs", align="left"), lambda row: row[0].pairs.replace("_", " ")),
-                (Column("detector", align="left"), lambda row: row[0].spheres),
-                (Column("reached", mark="ours"), lambda row: f"{row[0].reached:,} of {row[0].solves:,}"),
-                (Column("attempts: median / p95 / max", mark="ours"), lambda row: _format_attempts(row[0].attempts)),
-                (Column("time: median / p95 / max", "ms", mark="ours"), lambda row: format_spread(row[1].ms)),
+                label("target", lambda row: row[0].target),
+                label("pairs", lambda row: row[0].pairs.replace("_", " ")),
+                label("detector", lambda row: row[0].spheres),
+                ours("reached", "", lambda row: f"{row[0].reached:,} of {row[0].solves:,}"),
+                ours("attempts: median / p95 / max", "", lambda row: _format_attempts(row[0].attempts)),
+                ours("time: median / p95 / max", "ms", lambda row: format_spread(row[1].ms)),
                 caption="To the first collision-free solution",
                 note="Wall time of a solve while all cores are busy with others.",
             ),

@@ -1,4 +1,4 @@
-"""What the sections share: parts of the record, verdicts, cells, and pictures of the robot."""
+"""What the sections share: parts of the record, verdicts, and pictures of the robot."""
 
 import pytest
 
@@ -6,9 +6,8 @@ import ikde
 from ikde.batch.statistics import Spread
 from ikde.model.collision_model import CollisionModel
 from ikde.paper import section
-from ikde.paper.section import draw_robot, format_spread, judge, make_collision, make_table, name_pairs
+from ikde.paper.section import draw_robot, format_spread, judge, make_collision, name_pairs
 from ikde.plot.pose import plot_pose
-from ikde.report.page import Column
 
 
 def test_a_verdict_is_that_of_check(qiao):
@@ -17,12 +16,6 @@ def test_a_verdict_is_that_of_check(qiao):
     assert verdict.clearance_mm == pytest.approx(1e3 * seen.clearance_m)
     assert verdict.pair == [seen.pairs[0].a, seen.pairs[0].b]
     assert verdict.colliding_pairs == [[pair.a, pair.b] for pair in seen.pairs if pair.collides]
-
-
-def test_a_table_has_a_cell_for_each_row_and_column():
-    table = make_table([1, 2], (Column("one"), str), (Column("twice"), lambda k: str(2 * k)), caption="c", note="n")
-    assert [column.title for column in table.columns] == ["one", "twice"]
-    assert (table.rows, table.caption, table.note) == ((("1", "2"), ("2", "4")), "c", "n")
 
 
 def test_spreads_and_pairs_in_words():
