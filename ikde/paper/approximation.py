@@ -75,40 +75,32 @@ class Approximation(Computed):
 
 def compute_approximation(inputs: Inputs) -> Approximation:
     """Table 2's volumes and degrees as printed and ours, and which detectors are free at home."""
-    robot, published = inputs.robot, inputs.published["table_2"]
+    robot, home, published = inputs.robot, inputs.robot.home, inputs.published["table_2"]
     volumes = {name: approximation_volume_m3(robot, name) for name in DETECTORS}
     return Approximation(
-        components=[_compute_component(robot, volumes, name, entry) for name, entry in published.items()],
-        home=[
-            Home(
-                detector=name,
-                printed="collides" if name == "single" else "free",
-                **asdict(judge(robot, robot.home, name)),
+        components=[
+            Component(
+                component=name,
+                part=entry["part"],
+                original_mm3=entry["original_mm3"],
+                **{key: _compare(robot, (key, name), entry, 1e9 * volumes[key][name]) for key in APPROXIMATIONS},
             )
+            for name, entry in published.items()
+        ],
+        home=[
+            Home(detector=name, printed="collides" if name == "single" else "free", **asdict(judge(robot, home, name)))
             for name in DETECTORS
         ],
         sphere_counts={name: sum(row.count for row in robot.approximations[name]) for name in DETECTORS},
         total_volume_mm3={name: 1e9 * sum(volumes[name].values()) for name in DETECTORS},
-        settings={"source": "[Qiao2021, Table 2 and section 5.3.1]", "figure": {"q": robot.home.tolist()}},
+        settings={"source": "[Qiao2021, Table 2 and section 5.3.1]", "figure": {"q": home.tolist()}},
     )
 
 
-def _compute_component(
-    robot: Robot, volumes: Mapping[str, Mapping[str, float]], name: str, entry: Mapping[str, Any]
-) -> Component:
-    original = entry["original_mm3"]
-    typical, improved = (
-        _compare(robot, (key, name), (original, 1e9 * volumes[key][name]), entry[key]) for key in APPROXIMATIONS
-    )
-    return Component(component=name, part=entry["part"], original_mm3=original, typical=typical, improved=improved)
-
-
-def _compare(
-    robot: Robot, place: tuple[str, str], volumes_mm3: tuple[float, float], printed: Mapping[str, Any]
-) -> Volume:
-    """One cell: an approximation of a component, volumes of the part and of its spheres."""
-    original, volume = volumes_mm3
-    degree, right = 100.0 * original / volume, meant(printed)["degree_pct"]
+def _compare(robot: Robot, place: tuple[str, str], entry: Mapping[str, Any], volume: float) -> Volume:
+    """One cell: an approximation of a component, the component's print, and the volume of its spheres in mm^3."""
+    printed = entry[place[0]]
+    degree, right = 100.0 * entry["original_mm3"] / volume, meant(printed)["degree_pct"]
     is_near = abs(degree - right) < 0.0051 + HALF_DIGIT * right
     return Volume(
         spheres=describe_spheres(robot, *place),
@@ -131,9 +123,6 @@ def find_provenance(robot: Robot, approximation: str, component: str) -> list[st
     rows = robot.approximations[approximation]
     named = {("spheres", approximation, index) for index, row in enumerate(rows) if row.component == component}
     return sorted({source.kind for path, source in robot.provenance.items() if path[:3] in named})
-
-
-# ---- the section
 
 
 def show_approximation(data: Approximation, inputs: Inputs) -> Section:

@@ -197,9 +197,6 @@ def count_sphere_pairs(collision: CollisionModel) -> int:
     return sum(sizes[a] * sizes[b] for a, b in collision.pairs)
 
 
-# ---- verdicts that differ
-
-
 def compare_pairs(robot: Robot, one: str, other: str) -> tuple[list[list[str]], list[list[str]]]:
     """Pairs that only list `one` compares, and those that only the `other` does."""
     here, there = ({frozenset(pair): list(pair) for pair in robot.pair_lists[name]} for name in (one, other))
@@ -227,8 +224,7 @@ def _compare_surface(robot: Robot, Q: Floats) -> Iterator[SurfaceDifference]:
         collision = CollisionModel.of(robot, name)
         centres = check_centres_many(collision, Q)
         for rule, grid in SURFACE:
-            rows, (m_steps, n_steps) = np.vstack([robot.home, Q]), grid
-            home, *others = check_surface_many(robot, rows, collision, rule=rule, m_steps=m_steps, n_steps=n_steps)
+            home, *others = check_surface_many(robot, np.vstack([robot.home, Q]), collision, rule=rule, grid=grid)
             surface = np.array(others)
             yield SurfaceDifference(
                 approximation=name,
@@ -242,9 +238,6 @@ def _compare_surface(robot: Robot, Q: Floats) -> Iterator[SurfaceDifference]:
                 only_centres_collide=int((centres & ~surface).sum()),
                 configurations=len(Q),
             )
-
-
-# ---- times
 
 
 def _time_centres(collision: CollisionModel, Q: Floats, budget: Budget) -> KernelTimes:

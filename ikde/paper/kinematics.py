@@ -63,7 +63,15 @@ def compute_kinematics(inputs: Inputs) -> Kinematics:
     frames = {model: forward(robot, q, convention="classical") for model, robot in robots.items()}
     return Kinematics(
         points=[_compute_point(point, frames) for point in formula["points"]],
-        figures=[_describe_figure(model, robot, q, formula) for model, robot in robots.items()],
+        figures=[
+            Drawn(
+                model=model,
+                robot=robot.name,
+                q=from_convention(robot, q, "classical").tolist(),
+                frames=["Ob", *(point[model] for point in formula["points"]), robot.tool],
+            )
+            for model, robot in robots.items()
+        ],
         models_differ_mm=_compare_models(formula, frames),
         settings={
             "source": "[Qiao2021, Formula 23]",
@@ -92,22 +100,10 @@ def _compute_point(point: Mapping[str, Any], frames: Frames) -> Point:
     )
 
 
-def _describe_figure(model: str, robot: Robot, q: Floats, formula: Mapping[str, Any]) -> Drawn:
-    return Drawn(
-        model=model,
-        robot=robot.name,
-        q=from_convention(robot, q, "classical").tolist(),
-        frames=["Ob", *(point[model] for point in formula["points"]), robot.tool],
-    )
-
-
 def _compare_models(formula: Mapping[str, Any], frames: Frames) -> float:
     """Largest distance between the same point of both models."""
     a, b = ([frames[model][point[model]][:3, 3] for point in formula["points"]] for model in MODELS)
     return float(1e3 * np.linalg.norm(np.subtract(a, b), axis=1).max())
-
-
-# ---- the section
 
 
 def show_kinematics(data: Kinematics, inputs: Inputs) -> Section:

@@ -47,9 +47,6 @@ def compute_misprints(inputs: Inputs) -> Misprints:
     )
 
 
-# ---- the section
-
-
 def show_misprints(data: Misprints, _: Inputs) -> Section:
     """Misprints, puzzles and calibrated numbers, each with its evidence."""
     return Section(

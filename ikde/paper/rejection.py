@@ -9,7 +9,6 @@ import numpy as np
 
 from ikde.batch.statistics import Z_95, Rate, Spread, compute_spread
 from ikde.kernels.arrays import Floats
-from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.paper.detection import check_centres_many, compare_pairs
 from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
@@ -283,25 +282,20 @@ def _make_gain(share: float, variance: float) -> Gain:
 
 
 def _time_solves(inputs: Inputs, name: str, solutions: Solutions) -> SolveTimes:
-    robot, printed = inputs.robot, inputs.published["table_4"][name]
+    printed = inputs.published["table_4"][name]
     return SolveTimes(
         target=name,
         search_ms=spread_of(1e3 * solutions.seconds),
         evaluations=spread_of(solutions.evaluations),
         detection=[
-            DetectionTime(
-                spheres=spheres,
-                printed_AT_s=printed[spheres]["AT_s"],
-                verdict_us=_time_verdicts(
-                    make_collision(robot, spheres, "formula_22"), solutions.Q, inputs.budget.timing_rounds
-                ),
-            )
-            for spheres in APPROXIMATIONS
+            DetectionTime(spheres=s, printed_AT_s=printed[s]["AT_s"], verdict_us=_time_verdicts(inputs, s, solutions.Q))
+            for s in APPROXIMATIONS
         ],
     )
 
 
-def _time_verdicts(collision: CollisionModel, Q: Floats, rounds: int) -> VerdictTime:
+def _time_verdicts(inputs: Inputs, spheres: str, Q: Floats) -> VerdictTime:
+    collision, rounds = make_collision(inputs.robot, spheres, "formula_22"), inputs.budget.timing_rounds
     check_centres_many(collision, Q)  # compiles, or warms up
     seconds = [clock(lambda: check_centres_many(collision, Q)) / len(Q) for _ in range(rounds)]
     median, spread = quartiles(1e6 * np.array(seconds))

@@ -153,8 +153,7 @@ def _reject_by_centres(robot: Robot, pairing: Mapping[str, str], spheres: str, Q
 
 
 def _reject_by_surface(robot: Robot, rule: Rule, grid: tuple[int, int], spheres: str, Q: Floats) -> np.ndarray:
-    collision, (m_steps, n_steps) = make_collision(robot, spheres, "formula_22"), grid
-    return check_surface_many(robot, Q, collision, rule=rule, m_steps=m_steps, n_steps=n_steps)
+    return check_surface_many(robot, Q, make_collision(robot, spheres, "formula_22"), rule=rule, grid=grid)
 
 
 def _rate(
@@ -170,9 +169,6 @@ def _rate(
     return VariedRates(
         group=group, value=value, reading=reading, cells=cells, farthest_points=worst if is_known else None
     )
-
-
-# ---- the section
 
 
 def show_sensitivity(data: Sensitivity, _: Inputs) -> Section:

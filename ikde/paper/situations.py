@@ -176,9 +176,6 @@ def _compute_detection(robot: Robot, sweep: Sweep, simulator: Mapping[str, Any],
     )
 
 
-# ---- the section
-
-
 def show_situations(data: Situations, inputs: Inputs) -> Section:
     """Clearance over time for both detectors, their detections, and the simulator's contact after them."""
     situations = data.situations

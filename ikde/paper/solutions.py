@@ -189,9 +189,6 @@ def _describe(robot: Robot, place: tuple[str, str], target_mm: list[float], resu
     )
 
 
-# ---- the section
-
-
 def show_solutions(data: Solutions, inputs: Inputs) -> Section:
     """Every printed row with its error and verdicts, rows of our own, and free beside colliding ones drawn."""
     return Section(

@@ -21,7 +21,9 @@ from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, read_configuration
 
 Rule = Literal["eq. 18", "eq. 20"]
-M_STEPS, N_STEPS = 36, 18
+Grid = tuple[int, int]
+GRID: Grid = (36, 18)
+M_STEPS, N_STEPS = GRID
 
 
 def surface_directions(m_steps: int = M_STEPS, n_steps: int = N_STEPS) -> Floats:
@@ -91,19 +93,14 @@ def check_surface(
 
 
 def check_surface_many(
-    robot: Robot,
-    Q: Floats,
-    collision: CollisionChoice = None,
-    *,
-    rule: Rule = "eq. 20",
-    m_steps: int = M_STEPS,
-    n_steps: int = N_STEPS,
+    robot: Robot, Q: Floats, collision: CollisionChoice = None, *, rule: Rule = "eq. 20", grid: Grid = GRID
 ) -> NDArray[np.bool_]:
     """Whether each row of `Q` [K, N] collides, in the robot's own convention: `check_surface`'s verdicts [K], fast.
 
-    Most points are passed over: they are farther from the other sphere's surface than a collision allows.
+    Most points of the `grid`, steps of m and n, are passed over: they are farther from the other sphere's surface than
+    a collision allows.
     """
-    model, directions, covering_angle, limit = _read_judgement(robot, collision, rule, m_steps, n_steps)
+    model, directions, covering_angle, limit = _read_judgement(robot, collision, rule, *grid)
     Q, collides = np.ascontiguousarray(Q, dtype=float), np.empty(len(Q), dtype=bool)
     judge_surfaces(pack_robot(robot), model.arrays, directions, covering_angle, limit, Q, collides)
     return collides

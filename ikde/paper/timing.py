@@ -122,9 +122,6 @@ def read_motion(motion: Mapping[str, Any], moments: int) -> Floats:
     return np.radians(np.hstack([np.tile(np.asarray(motion["base"], dtype=float), (moments, 1)), arm]))
 
 
-# ---- what is printed
-
-
 def summarise_printed(table: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     """The printed average of each column, and the mean and the median of its ten printed rows."""
     names, rows = [column["name"] for column in table["columns"]], np.array(table["rows_s"])
@@ -156,9 +153,6 @@ def _find_columns(columns: Sequence[TableColumn], points: str, approximation: st
 def _count_points(robot: Robot, approximation: str) -> dict[str, int]:
     spheres = sum(row.count for row in robot.approximations[approximation])
     return {"centres": spheres, "surface": spheres * M_STEPS * N_STEPS}
-
-
-# ---- what is measured
 
 
 def clock(run: Callable[[], object]) -> float:
@@ -226,9 +220,6 @@ def _compare(columns: Sequence[TableColumn], times: Floats, points: str, approxi
     slow, fast = _find_columns(columns, points, approximation)
     median, spread = quartiles(times[:, :, fast] / times[:, :, slow])
     return Ratio(points=points, approximation=approximation, median=median, quartiles=spread)
-
-
-# ---- the section
 
 
 def show_timing(data: Timing, _: Inputs) -> Section:

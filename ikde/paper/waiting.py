@@ -78,9 +78,6 @@ def compute_waiting(inputs: Inputs) -> Waiting:
     )
 
 
-# ---- the section
-
-
 def show_waiting(data: Waiting, _: Inputs) -> Section:
     """Attempts and time to the first solution that a detector accepts."""
     return Section(

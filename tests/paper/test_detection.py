@@ -81,4 +81,4 @@ class TestPuzzles:
     def test_eq_20_with_steps_of_10_deg_rejects_everything_and_with_1_deg_not_home(self, qiao):
         Q = np.vstack([qiao.home, draw_configurations(qiao, 1000)])
         assert check_surface_many(qiao, Q, "typical").all()
-        assert not check_surface_many(qiao, Q[:1], "typical", m_steps=360, n_steps=180).any()
+        assert not check_surface_many(qiao, Q[:1], "typical", grid=(360, 180)).any()
