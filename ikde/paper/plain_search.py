@@ -21,6 +21,7 @@ from ikde.solver.settings import DeSettings, SolveSettings
 SEED = 2021
 CHUNK = 1000  # solves at a time: a progress bar moves, Ctrl-C is heard
 Limits = Literal["classical", "key_point", "half_turn", "full_turn"]
+"""Those of [Qiao2022], counted as Table 5 counts its joints or as the key-point model; or a turn to either side."""
 
 STATED = SolveSettings(
     method="de",
@@ -37,15 +38,12 @@ class Setup:
     settings: SolveSettings = STATED
     base_half_width_m: float = 0.06  # Table 5's d_x and d_y lie within +-61 mm
     limits: Limits = "classical"
-    """The joint limits of [Qiao2022], counted as Table 5 counts its joints, or as the key-point model does; or none
-    but half a turn, or a whole one, to either side."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Solutions:
     """Solves of one target from random streams of their own, and those that met it."""
 
-    solves: int
     Q: Floats  # [S, N] the S that met the target, in the robot's own convention
     order: Ints  # [S] which solve each was
     seconds: Floats  # [solves]
@@ -96,7 +94,6 @@ def gather(parts: Sequence[SolveResults]) -> Solutions:
     """Solves one after the other as one sample."""
     reached = np.concatenate([rows.reached for rows in parts])
     return Solutions(
-        solves=len(reached),
         Q=np.concatenate([rows.q for rows in parts])[reached],
         order=np.flatnonzero(reached),
         seconds=np.concatenate([rows.found.seconds for rows in parts]),

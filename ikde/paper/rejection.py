@@ -183,10 +183,7 @@ def compute_rejection(inputs: Inputs) -> Rejection:
                 position_mm=inputs.published["targets_mm"][name],
                 printed=read_print(table[name]),
                 printed_gain=_unpaired_gain(*(Rate(row["CN"], row["SN"]) for row in table[name].values())),
-                samples=[
-                    _grade_sample(robot, found.first(solves), solves)
-                    for solves in sorted({min(PAPERS_SAMPLE, count), count})
-                ],
+                samples=[_grade_sample(robot, found.first(n), n) for n in sorted({min(PAPERS_SAMPLE, count), count})],
             )
             for name, found in solutions.items()
         ],
@@ -232,8 +229,7 @@ def _grade_sample(robot: Robot, Q: Floats, solves: int) -> Sample:
         solves=solves,
         solved=len(Q),
         rates=[
-            ListRate(spheres=key[0], pairs=key[1], **rate_fields(Rate(int(verdicts.sum()), len(Q))))
-            for key, verdicts in rejected.items()
+            ListRate(spheres=s, pairs=p, **rate_fields(Rate(int(v.sum()), len(Q)))) for (s, p), v in rejected.items()
         ],
         paired=[_pair_verdicts(name, rejected) for name in READINGS],
         gain=_split_gain(rejected),

@@ -124,9 +124,8 @@ def read_results(folder: Path) -> dict[str, Any]:
         raise FileError(path, "not a record of this version's `ikde bench paper`") from None
     for name, size in budget.items():
         if type(size) is not int or size < 1:
-            raise FileError(
-                path, f"expected a whole number of at least 1, got {quoted(size)}", ("made", "budget", name)
-            )
+            wrong = f"expected a whole number of at least 1, got {quoted(size)}"
+            raise FileError(path, wrong, ("made", "budget", name))
     parts = {("sections", name): section for name, section in sections.items()} if isinstance(sections, dict) else {}
     for where, value in {("sections",): sections, **parts}.items():
         if not isinstance(value, dict):

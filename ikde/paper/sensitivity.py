@@ -197,26 +197,22 @@ def _introduce(data: Sensitivity) -> Text:
 
 
 def _make_closest(data: Sensitivity) -> Table:
+    closest = {(row.change, row.reading) for row in data.closest}
+    intervals = [cell.interval_pct for row in data.rows if (row.change, row.reading) in closest for cell in row.cells]
+    widest = max(0.5 * (high - low) for low, high in intervals)
     return make_table(
         data.closest,
         label("change", lambda row: row.change),
         label("pairs", lambda row: row.reading),
         ours("farthest of four rates from the print", "points", _format_distance),
         caption="The settings that come closest to the print",
-        note=f"A rate's interval is up to ±{fixed(_widest(data), 1)} points wide, and all rows share their random "
+        note=f"A rate's interval is up to ±{fixed(widest, 1)} points wide, and all rows share their random "
         "streams: settings that differ by less cannot be told apart.",
     )
 
 
 def _format_distance(row: Distance) -> str:
     return "–" if row.farthest_points is None else fixed(row.farthest_points, 1)
-
-
-def _widest(data: Sensitivity) -> float:
-    """Half the widest interval of the closest settings' rates."""
-    closest = {(row.change, row.reading) for row in data.closest}
-    rows = [row for row in data.rows if (row.change, row.reading) in closest]
-    return max(0.5 * (cell.interval_pct[1] - cell.interval_pct[0]) for row in rows for cell in row.cells)
 
 
 def _make_rates(data: Sensitivity, reading: str) -> Table:

@@ -1,6 +1,6 @@
 """Table 5 and Figure 8: the published solutions graded again, and solutions of our own."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import count
 from typing import Any
@@ -12,7 +12,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.paper.columns import label, make_table, mark_off, ours, published
+from ikde.paper.columns import Shown, label, make_table, mark_off, ours, published
 from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
 from ikde.paper.plain_search import limit_base
 from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge
@@ -156,9 +156,9 @@ def _judge(robot: Robot, q: Floats, detector: str) -> NamedVerdict:
 
 def describe_verdict(typical: bool, improved: bool) -> str:
     """What two verdicts say, in the words of Table 5's labels."""
-    if not typical and not improved:
-        return "free with both"
-    return "both collide" if typical and improved else "typical collides" if typical else "improved collides"
+    if typical == improved:
+        return "both collide" if typical else "free with both"
+    return "typical collides" if typical else "improved collides"
 
 
 def _solve_target(robot: Robot, name: str, target_mm: list[float]) -> list[OwnSolution]:
@@ -219,14 +219,12 @@ def _make_published(rows: list[PublishedSolution]) -> Table:
         rows,
         label("target", lambda row: row.target),
         label("row", lambda row: row.row),
-        published(
-            "printed", "mm", lambda row: mark_off(fixed(row.ME_mm.printed, 4), row.shows_printed_error), group="ME"
-        ),
+        published("printed", "mm", lambda row: mark_off(fixed(row.ME_mm.printed, 4), row.shows_printed_error), "ME"),
         ours("ours", "mm", lambda row: fixed(row.ME_mm.ours, 4), "ME"),
         ours("error in x, y, z", "mm", _errors),
-        label("printed", lambda row: mark_off(row.label.printed, row.label.agrees), group="label", mark="published"),
-        label("ours", lambda row: row.label.ours, group="label", mark="ours"),
-        *_clearances(),
+        label("printed", lambda row: mark_off(row.label.printed, row.label.agrees), "label", "published"),
+        label("ours", lambda row: row.label.ours, "label", "ours"),
+        *map(_show_clearance, APPROXIMATIONS),
         caption="Table 5: the printed solutions, graded again",
         note=" ".join(_explain(row, row.misprint) for row in rows if row.misprint),
     )
@@ -242,10 +240,8 @@ def _errors(row: Solution) -> str:
     return ", ".join(fixed(error, 4) for error in row.error_mm)
 
 
-def _clearances() -> Iterator[tuple[Column, Callable[[Solution], str]]]:
-    for name in APPROXIMATIONS:
-        column = Column(name, "mm", group="clearance", mark="ours")
-        yield column, lambda row, name=name: fixed(row.detectors[name].clearance_mm, 2)
+def _show_clearance(detector: str) -> Shown[Solution]:
+    return ours(detector, "mm", lambda row: fixed(row.detectors[detector].clearance_mm, 2), "clearance")
 
 
 def _make_ours(data: Solutions) -> Table:
@@ -256,7 +252,7 @@ def _make_ours(data: Solutions) -> Table:
         label("row", lambda row: row.row),
         ours("ME", "mm", lambda row: fixed(row.largest_error_mm, 4)),
         ours("error in x, y, z", "mm", _errors),
-        *_clearances(),
+        *map(_show_clearance, APPROXIMATIONS),
         ours("attempts", "", lambda row: str(row.attempts)),
         ours("stream", "", lambda row: str(row.stream)),
         caption=f"Solutions of ours, method {settings['method']}, {settings['position_tolerance_mm']:g} mm, base "
@@ -270,16 +266,15 @@ def _make_joints(rows: Sequence[Solution], caption: str, mark: Mark) -> Table:
         rows,
         label("target", lambda row: row.target),
         label("row", lambda row: row.row),
-        *(
-            (
-                Column(name, "mm" if name in ("d_x", "d_y") else "rad", mark=mark),
-                lambda row, k=k: fixed(row.printed_q[k], 4),
-            )
-            for k, name in enumerate(JOINTS)
-        ),
+        *(_show_joint(k, mark) for k in range(len(JOINTS))),
         caption=caption,
         note="Counted as in the classical model.",
     )
+
+
+def _show_joint(k: int, mark: Mark) -> Shown[Solution]:
+    column = Column(JOINTS[k], "mm" if k < 2 else "rad", mark=mark)
+    return column, lambda row: fixed(row.printed_q[k], 4)
 
 
 def _draw(data: Solutions, robot: Robot) -> Gallery:

@@ -274,6 +274,7 @@ def _quartiles(column: ColumnTimes) -> str:
 def _make_ratios(data: Timing) -> Table:
     """What the text says, what its table gives, and ours: time by key points over time by transformation."""
     placing, kinematics = (data.measured[scope].ratios for scope in ("placing", "kinematics"))
+    stated = {row.points: fixed(100 * row.stated, 0) for row in data.printed_ratios}  # sentences that read differently
     return make_table(
         zip(data.printed_ratios, placing, kinematics, strict=True),
         label("what", lambda row: POINTS[row[0].points]),
@@ -285,7 +286,8 @@ def _make_ratios(data: Timing) -> Table:
         ours("placing alone", "%", lambda row: _format_ratio(row[1]), "ours"),
         ours("with kinematics", "%", lambda row: _format_ratio(row[2]), "ours"),
         caption="Time by key points as a share of the time by spatial transformation",
-        note=_say_stated(data),
+        note=f"Section 5.3.2: about {stated['surface']} % of the time for surface points, and shorter by "
+        f"{stated['centres']} % for centres; see [misprints](#misprints).",
     )
 
 
@@ -302,15 +304,6 @@ def _conclude(data: Timing) -> Text:
         span = " to ".join(fixed(value, 0) for value in sorted(medians))
         said.append(f"{name} by key points take {span} % of the time by transformation ({gain} it)")
     return Text(f"With kinematics included, {'; '.join(said)}.")
-
-
-def _say_stated(data: Timing) -> str:
-    """The two sentences of section 5.3.2, which read differently."""
-    stated = {row.points: fixed(100 * row.stated, 0) for row in data.printed_ratios}
-    return (
-        f"Section 5.3.2: about {stated['surface']} % of the time for surface points, and shorter by "
-        f"{stated['centres']} % for centres; see [misprints](#misprints)."
-    )
 
 
 def _make_printed_rows(data: Timing) -> Table:

@@ -70,7 +70,7 @@ def compute_waiting(inputs: Inputs) -> Waiting:
     solved = [(cell, gather(parts[k :: len(cells)])) for k, cell in enumerate(cells)]
     return Waiting(
         rows=[
-            CellOutcome(**cell, solves=found.solves, reached=len(found.Q), attempts=spread_of(found.attempts))
+            CellOutcome(**cell, solves=len(found.seconds), reached=len(found.Q), attempts=spread_of(found.attempts))
             for cell, found in solved
         ],
         measured={"rows": [CellTimes(**cell, ms=spread_of(1e3 * found.seconds)) for cell, found in solved]},

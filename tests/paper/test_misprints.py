@@ -51,7 +51,7 @@ def test_an_entry_as_meant_keeps_what_is_right():
 def test_every_calibrated_number_is_named(inputs):
     section = compute_misprints(inputs)
     assert is_plain(section)
-    numbers = {choice.number for choice in section.calibrated}
+    numbers = {entry["number"] for entry in section.calibrated}
     assert {"frames.load_centre", "frames.platform_rear", "joints.d_x.upper", "adjacent"} <= numbers
     assert section.provenance_counts["calibrated"] == len(section.calibrated)
     assert {entry["kind"] for entry in section.misprints} == {"misprint"}
