@@ -151,9 +151,7 @@ def compute_detection(inputs: Inputs) -> Detection:
             )
             for (name, pairs), collision in models.items()
         ],
-        lists_differ=[
-            _compare_lists(robot, verdicts, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS[1:]
-        ],
+        lists_differ=[_compare_lists(robot, verdicts, *key) for key in product(APPROXIMATIONS, PAIR_LISTS[1:])],
         surface_differs=list(_compare_surface(robot, few)),
         measured=Measured(
             lists=[

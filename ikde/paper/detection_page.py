@@ -30,10 +30,8 @@ def _introduce(data: Detection) -> Text:
     settings, measured = data.settings, data.measured
     slowest = max(1e6 * row.median_s for row in measured.lists)
     plain = [row.every_point.median_s for row in measured.surface]
-    blind, seeing = ([row for row in data.surface_differs if row.rule == rule] for rule in ("eq. 18", "eq. 20"))
-    extra = (
-        (f"with {_name_grid(row)} points a sphere", row.only_surface_collides, row.approximation) for row in seeing
-    )
+    blind, sees = ([row for row in data.surface_differs if row.rule == rule] for rule in ("eq. 18", "eq. 20"))
+    extra = ((f"with {_name_grid(row)} points a sphere", row.only_surface_collides, row.approximation) for row in sees)
     changed = ((LIST_NAMES[row.pairs], row.changed, row.approximation) for row in data.lists_differ)
     return Text(
         f"Over {settings['verdicts']:,} random configurations, {settings['configurations']} (the same for all, "

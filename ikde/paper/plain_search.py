@@ -68,9 +68,7 @@ def apply_setup(robot: Robot, setup: Setup) -> Robot:
 
 def limit_base(robot: Robot, reach_m: float) -> Robot:
     """The robot with its prismatic joints within +-`reach_m`: no range is printed, the solutions lie within 61 mm."""
-    kept = [
-        replace(joint, lower=-reach_m, upper=reach_m) if joint.kind == "prismatic" else joint for joint in robot.joints
-    ]
+    kept = [replace(j, lower=-reach_m, upper=reach_m) if j.kind == "prismatic" else j for j in robot.joints]
     return replace(robot, joints=tuple(kept))
 
 

@@ -208,16 +208,17 @@ def describe_setup(setup: Setup) -> dict[str, Any]:
 def read_print(printed: Mapping[str, Any]) -> dict[str, PrintedRate]:
     """A target's printed cells by detector, with their rates."""
     return {
-        spheres: PrintedRate(SR=row["SR"], AT_s=row["AT_s"], **rate_fields(Rate(row["CN"], row["SN"])))
+        spheres: PrintedRate(SR=row["SR"], AT_s=row["AT_s"], **rate_fields(row["CN"], row["SN"]))
         for spheres, row in printed.items()
     }
 
 
-def rate_fields(rate: Rate) -> dict[str, Any]:
+def rate_fields(CN: int, SN: int) -> dict[str, Any]:
     """Fields of a `RejectionRate`."""
+    rate = Rate(CN, SN)
     return {
-        "CN": rate.count,
-        "SN": rate.total,
+        "CN": CN,
+        "SN": SN,
         "rejected_pct": 100 * rate.share if rate.total else None,
         "interval_pct": [100 * bound for bound in rate.interval],
     }
@@ -228,9 +229,7 @@ def _grade_sample(robot: Robot, Q: Floats, solves: int) -> Sample:
     return Sample(
         solves=solves,
         solved=len(Q),
-        rates=[
-            ListRate(spheres=s, pairs=p, **rate_fields(Rate(int(v.sum()), len(Q)))) for (s, p), v in rejected.items()
-        ],
+        rates=[ListRate(spheres=s, pairs=p, **rate_fields(int(v.sum()), len(Q))) for (s, p), v in rejected.items()],
         paired=[_pair_verdicts(name, rejected) for name in READINGS],
         gain=_split_gain(rejected),
     )

@@ -5,7 +5,7 @@ from functools import partial
 from itertools import product
 
 from ikde.paper.columns import label, make_table, ours, published
-from ikde.paper.inputs import APPROXIMATIONS, Inputs
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.rejection import Gain, GainOrder, ListRate, PrintedRate, Rejection, RejectionRate, TargetRates
 from ikde.paper.section import format_range, format_spread, name_pairs
 from ikde.plot.charts import Bars, plot_bars
@@ -126,17 +126,12 @@ def _draw(data: Rejection) -> Figure:
 
 
 def _make_lists(data: Rejection) -> Table:
-    rows = [
-        (target.target, target.samples[-1], pairs)
-        for target in data.targets
-        for pairs in dict.fromkeys(rate.pairs for rate in target.samples[-1].rates)
-    ]
     return make_table(
-        rows,
-        label("target", lambda row: row[0]),
-        label("pairs that both compare", lambda row: row[2].replace("_", " ")),
-        ours("rejected, typical", "%", lambda row: row[1].rate("typical", row[2]).text),
-        ours("rejected, improved", "%", lambda row: row[1].rate("improved", row[2]).text),
+        product(data.targets, PAIR_LISTS),
+        label("target", lambda row: row[0].target),
+        label("pairs that both compare", lambda row: row[1].replace("_", " ")),
+        ours("rejected, typical", "%", lambda row: row[0].samples[-1].rate("typical", row[1]).text),
+        ours("rejected, improved", "%", lambda row: row[0].samples[-1].rate("improved", row[1]).text),
         caption="The same solutions over every list of pairs",
         note="With Wilson's 95 % interval.",
     )

@@ -8,7 +8,6 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ikde.batch.statistics import Rate
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
 from ikde.paper.columns import Shown, label, make_table, ours
@@ -24,6 +23,7 @@ from ikde.report.numbers import fixed
 from ikde.report.page import Column, Figure, Gallery, Section, Table, Text
 
 GRIDS = ((M_STEPS, N_STEPS), (10 * M_STEPS, 10 * N_STEPS))  # of surface points: ours, and a far finer one
+BASES_M = (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
 CLOSEST = 5
 Printed = Mapping[str, Mapping[str, PrintedRate]]  # by target and detector
 Reject = Callable[[str, Floats], np.ndarray]  # (detector, Q) -> which are rejected
@@ -93,9 +93,7 @@ def list_variations() -> list[Variation]:
 
     varied = {
         "as stated": {"the setting of Table 4 above": stated},
-        "base range": {
-            f"±{1e3 * b:g} mm": replace(stated, base_half_width_m=b) for b in (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
-        },
+        "base range": {f"±{1e3 * b:g} mm": replace(stated, base_half_width_m=b) for b in BASES_M},
         "start population": {
             **{f"middle {100 * s:g} % of each range": de(start_share=s) for s in (0.5, 0.25, 0.1)},
             **{f"NP = {n}": de(population=n) for n in (20, 100, 200)},
@@ -117,9 +115,8 @@ def compute_sensitivity(inputs: Inputs) -> Sensitivity:
     """Rates of both readings for every variation, and how far each is from the print."""
     printed = {name: read_print(inputs.published["table_4"][name]) for name in inputs.targets}
     rows = [_rate(printed, *row) for row in _list_rows(inputs)]
-    ranked = sorted(
-        (row for row in rows if row.farthest_points is not None), key=lambda row: row.farthest_points or 0.0
-    )
+    known = (row for row in rows if row.farthest_points is not None)
+    ranked = sorted(known, key=lambda row: row.farthest_points or 0.0)
     return Sensitivity(
         rows=rows,
         closest=[
@@ -162,13 +159,10 @@ def _rate(
     cells = []
     for name, spheres in product(Q, APPROXIMATIONS):
         rejected = reject(spheres, Q[name])
-        rate = rate_fields(Rate(int(rejected.sum()), len(rejected)))
-        cells.append(CellRate(target=name, spheres=spheres, **rate))
+        cells.append(CellRate(target=name, spheres=spheres, **rate_fields(int(rejected.sum()), len(rejected))))
     worst = max(abs(cell.percent - printed[cell.target][cell.spheres].percent) for cell in cells)
-    is_known = all(cell.SN for cell in cells)
-    return VariedRates(
-        group=group, value=value, reading=reading, cells=cells, farthest_points=worst if is_known else None
-    )
+    farthest = worst if all(cell.SN for cell in cells) else None
+    return VariedRates(group=group, value=value, reading=reading, cells=cells, farthest_points=farthest)
 
 
 def show_sensitivity(data: Sensitivity, _: Inputs) -> Section:

@@ -141,9 +141,7 @@ def _compute_curve(robot: Robot, sweep: Sweep, t_s: np.ndarray) -> Curve:
     return Curve(
         t_s=t_s.tolist(),
         angle_deg=[sweep.angle(t) for t in t_s],
-        clearance_mm={
-            name: (1e3 * compute_clearances(model, Q).clearance_m).tolist() for name, model in models.items()
-        },
+        clearance_mm={name: (1e3 * compute_clearances(m, Q).clearance_m).tolist() for name, m in models.items()},
     )
 
 
@@ -152,6 +150,7 @@ def _compute_detection(robot: Robot, sweep: Sweep, simulator: Mapping[str, Any],
     if found is None:
         return Detection(detector=detector, printed_deg=printed, agrees=False, detected_deg=None)
     contact_s, contact_deg = simulator["t_s"], meant(simulator)["angle_deg"]
+    early_s = contact_s - found.onset_s
     Q = sweep.configurations(np.array([found.detected_s - 1.0 / FINE_STEPS, found.detected_s, contact_s]))
     collision = make_collision(robot, detector, sweep.pairs)
     clearances = compute_clearances(collision, Q)
@@ -167,10 +166,8 @@ def _compute_detection(robot: Robot, sweep: Sweep, simulator: Mapping[str, Any],
         onset_s=found.onset_s,
         pair=list(collision.pairs[clearances.closest_pair[1]]),
         clearance_mm={"step_before": before, "detected": at, "contact": contact},
-        early_s=contact_s - found.onset_s,
-        early_deg=PrintedOurs(
-            printed=float(np.sign(speed)) * (contact_deg - printed), ours=abs(speed) * (contact_s - found.onset_s)
-        ),
+        early_s=early_s,
+        early_deg=PrintedOurs(printed=float(np.sign(speed)) * (contact_deg - printed), ours=abs(speed) * early_s),
         q_detected=Q[1].tolist(),
         q_contact=Q[2].tolist(),
     )
