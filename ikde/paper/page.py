@@ -40,11 +40,10 @@ def _headline(
     """How much of the print comes out."""
     volumes, rows = approximation.volumes, solutions.published
     detections, met = situations.detections, sum(row.shows_printed_error for row in rows)
+    error = fixed(largest_error_mm(kinematics), 3)
     return Numbers(
         (
-            Number(
-                f"{fixed(largest_error_mm(kinematics), 3)} mm", "largest error of Formula 23", "misprints put right"
-            ),
+            Number(f"{error} mm", "largest error of Formula 23", "misprints put right"),
             Number(f"{sum(v.agrees for v in volumes)} of {len(volumes)}", "volumes of Table 2 to five digits"),
             Number(f"{met} of {len(rows)}", "errors of Table 5 to four digits"),
             Number(f"{sum(d.agrees for d in detections)} of {len(detections)}", "detection angles of section 5.4"),

@@ -243,13 +243,8 @@ def _draw(data: Sensitivity) -> Gallery:
             for row in rows
             if (cell := row.cells[k]).SN
         ]
-        name = f"target {head.target}, {head.spheres}"
         figure = plot_forest(estimates, x=Axis(label="rejected", unit="%"), published=_printed(data, head))
-        figures.append(
-            Figure(
-                image=to_svg(figure),
-                alt=f"Rejected share for {name} under every variation, with the printed rate",
-                caption=f"{name}, unequal pairs.",
-            )
-        )
+        name = f"target {head.target}, {head.spheres}"
+        alt = f"Rejected share for {name} under every variation, with the printed rate"
+        figures.append(Figure(image=to_svg(figure), alt=alt, caption=f"{name}, unequal pairs."))
     return Gallery(tuple(figures))
