@@ -157,9 +157,8 @@ def _draw(drawn: list[Drawn], robots: Mapping[str, Robot]) -> Gallery:
     for entry in drawn:
         name = SHOWN_MODELS[entry.model]
         pose = draw_frames(robots[entry.model], np.array(entry.q), entry.frames, title=name)
-        image, caption = (
-            to_png(plot_frames(pose), dpi=90),
-            f"Figure 6: {name}; x red dotted, y green solid, z blue dashed.",
+        caption = f"Figure 6: {name}; x red dotted, y green solid, z blue dashed."
+        figures.append(
+            Figure(image=to_png(plot_frames(pose), dpi=90), alt=f"Frames of the arm: {name}", caption=caption)
         )
-        figures.append(Figure(image=image, alt=f"Frames of the arm: {name}", caption=caption))
     return Gallery(tuple(figures))
