@@ -25,7 +25,7 @@ from rich.console import Console
 from rich.table import Table
 
 import ikde
-from ikde.paper.published import APPROXIMATIONS
+from ikde.paper.inputs import APPROXIMATIONS
 
 console = Console()
 PLATFORM_Z = (213.0, 213.3, 214.0, 215.0, 216.0, 217.0, 218.0, 219.0, 220.0, 221.0, 222.0)

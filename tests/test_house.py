@@ -24,8 +24,6 @@ NO_TEST_OF_ITS_OWN = {
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
     "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",
     "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
-    "paper/inputs.py": "sample sizes and what is loaded; the tests of every section use them",
-    "paper/topics.py": "a table; tests/paper/test_results.py goes over it",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
 }
 

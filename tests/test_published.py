@@ -9,7 +9,7 @@ import pytest
 
 import ikde
 from ikde.model.rotation import rotation_about
-from ikde.paper.published import load_published
+from ikde.paper.inputs import load_published
 
 PAPER = load_published()
 ROWS = {f"target {row['target']} {row['row']}": row for row in PAPER["table_5"]}

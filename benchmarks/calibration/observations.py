@@ -12,7 +12,7 @@ import numpy as np
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import approximation_volume_m3
-from ikde.paper.published import APPROXIMATIONS, load_published
+from ikde.paper.inputs import APPROXIMATIONS, load_published
 from ikde.paper.solutions import read_row
 from ikde.paper.sweeps import Sweep, compute_clearance, find_onset, read_sweeps, shows_sweep
 

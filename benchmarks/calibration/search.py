@@ -19,7 +19,7 @@ from calibration.layout import (
 )
 from calibration.observations import first_failure, load_sweeps, observe_collisions, observe_sweep
 from ikde.model.robot import Robot
-from ikde.paper.published import APPROXIMATIONS
+from ikde.paper.inputs import APPROXIMATIONS
 from ikde.paper.sweeps import bisect, shows_sweep
 
 SPAN_MM = 60.0

@@ -60,7 +60,7 @@ def paper(
 
 
 def _read_sections(only: str | None) -> tuple[str, ...]:
-    from ikde.paper.topics import TOPICS
+    from ikde.paper.results import TOPICS
 
     if only is None:
         return tuple(TOPICS)

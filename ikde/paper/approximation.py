@@ -7,10 +7,9 @@ from typing import Any
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.spheres import approximation_volume_m3
-from ikde.paper.inputs import Inputs
-from ikde.paper.pictures import draw_robot
-from ikde.paper.published import APPROXIMATIONS, meant
-from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, judge, make_table
+from ikde.paper.columns import label, make_table, mark_off, ours, published
+from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
+from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge
 from ikde.report.numbers import fixed
 from ikde.report.page import Cell, Column, Gallery, Section, Table, Text
 
@@ -76,40 +75,32 @@ class Approximation(Computed):
 
 def compute_approximation(inputs: Inputs) -> Approximation:
     """Table 2's volumes and degrees as printed and ours, and which detectors are free at home."""
-    robot, published = inputs.robot, inputs.published["table_2"]
+    robot, home, published = inputs.robot, inputs.robot.home, inputs.published["table_2"]
     volumes = {name: approximation_volume_m3(robot, name) for name in DETECTORS}
     return Approximation(
-        components=[_compute_component(robot, volumes, name, entry) for name, entry in published.items()],
-        home=[
-            Home(
-                detector=name,
-                printed="collides" if name == "single" else "free",
-                **asdict(judge(robot, robot.home, name)),
+        components=[
+            Component(
+                component=name,
+                part=entry["part"],
+                original_mm3=entry["original_mm3"],
+                **{key: _compare(robot, (key, name), entry, 1e9 * volumes[key][name]) for key in APPROXIMATIONS},
             )
+            for name, entry in published.items()
+        ],
+        home=[
+            Home(detector=name, printed="collides" if name == "single" else "free", **asdict(judge(robot, home, name)))
             for name in DETECTORS
         ],
         sphere_counts={name: sum(row.count for row in robot.approximations[name]) for name in DETECTORS},
         total_volume_mm3={name: 1e9 * sum(volumes[name].values()) for name in DETECTORS},
-        settings={"source": "[Qiao2021, Table 2 and section 5.3.1]", "figure": {"q": robot.home.tolist()}},
+        settings={"source": "[Qiao2021, Table 2 and section 5.3.1]", "figure": {"q": home.tolist()}},
     )
 
 
-def _compute_component(
-    robot: Robot, volumes: Mapping[str, Mapping[str, float]], name: str, entry: Mapping[str, Any]
-) -> Component:
-    original = entry["original_mm3"]
-    typical, improved = (
-        _compare(robot, (key, name), (original, 1e9 * volumes[key][name]), entry[key]) for key in APPROXIMATIONS
-    )
-    return Component(component=name, part=entry["part"], original_mm3=original, typical=typical, improved=improved)
-
-
-def _compare(
-    robot: Robot, place: tuple[str, str], volumes_mm3: tuple[float, float], printed: Mapping[str, Any]
-) -> Volume:
-    """One cell: an approximation of a component, volumes of the part and of its spheres."""
-    original, volume = volumes_mm3
-    degree, right = 100.0 * original / volume, meant(printed)["degree_pct"]
+def _compare(robot: Robot, place: tuple[str, str], entry: Mapping[str, Any], volume: float) -> Volume:
+    """One cell: an approximation of a component, the component's print, and the volume of its spheres in mm^3."""
+    printed = entry[place[0]]
+    degree, right = 100.0 * entry["original_mm3"] / volume, meant(printed)["degree_pct"]
     is_near = abs(degree - right) < 0.0051 + HALF_DIGIT * right
     return Volume(
         spheres=describe_spheres(robot, *place),
@@ -132,9 +123,6 @@ def find_provenance(robot: Robot, approximation: str, component: str) -> list[st
     rows = robot.approximations[approximation]
     named = {("spheres", approximation, index) for index, row in enumerate(rows) if row.component == component}
     return sorted({source.kind for path, source in robot.provenance.items() if path[:3] in named})
-
-
-# ---- the section
 
 
 def show_approximation(data: Approximation, inputs: Inputs) -> Section:
@@ -164,34 +152,33 @@ def _introduce(data: Approximation) -> Text:
 def _make_volumes(data: Approximation, name: str) -> Table:
     return make_table(
         ((row, row.volume(name)) for row in data.components),
-        (Column("part", align="left"), lambda row: f"{row[0].component}, {row[0].part}"),
-        (Column("its volume", "mm³", mark="published"), lambda row: f"{row[0].original_mm3:.4e}"),
-        (Column("spheres (R in mm)", align="left"), lambda row: row[1].spheres),
-        (Column("printed", "mm³", group=SPHERES, mark="published"), lambda row: f"{row[1].volume_mm3.printed:.4e}"),
-        (Column("ours", "mm³", group=SPHERES, mark="ours"), lambda row: f"{row[1].volume_mm3.ours:.4e}"),
-        (Column("printed", "%", group="degree", mark="published"), lambda row: _format_degree(row[1])),
-        (Column("ours", "%", group="degree", mark="ours"), lambda row: fixed(row[1].degree_pct.ours, 2)),
-        (Column("count and radii are", align="left"), lambda row: ", ".join(row[1].provenance)),
+        label("part", lambda row: f"{row[0].component}, {row[0].part}"),
+        published("its volume", "mm³", lambda row: f"{row[0].original_mm3:.4e}"),
+        label("spheres (R in mm)", lambda row: row[1].spheres),
+        published("printed", "mm³", lambda row: f"{row[1].volume_mm3.printed:.4e}", SPHERES),
+        ours("ours", "mm³", lambda row: f"{row[1].volume_mm3.ours:.4e}", SPHERES),
+        published("printed", "%", lambda row: _format_degree(row[1]), "degree"),
+        ours("ours", "%", lambda row: fixed(row[1].degree_pct.ours, 2), "degree"),
+        label("count and radii are", lambda row: ", ".join(row[1].provenance)),
         caption=f"Table 2: the {name} approximation",
         note="A degree marked ≠ is a misprint: the printed volumes themselves give ours.",
     )
 
 
 def _format_degree(volume: Volume) -> str | Cell:
-    degree = fixed(volume.degree_pct.printed, 2)
-    return Cell(degree, "off") if volume.misprint else degree
+    return mark_off(fixed(volume.degree_pct.printed, 2), not volume.misprint)
 
 
 def _make_home(data: Approximation) -> Table:
     single, *several = ("collides" if row.collides else "is free" for row in data.home)
     return make_table(
         data.home,
-        (Column("approximation", align="left"), lambda row: row.detector),
+        label("approximation", lambda row: row.detector),
         (Column("spheres"), lambda row: str(data.sphere_counts[row.detector])),
-        (Column("printed", align="left", mark="published"), lambda row: row.printed),
-        (Column("ours", align="left", mark="ours"), lambda row: row.ours),
-        (Column("clearance", "mm", mark="ours"), lambda row: fixed(row.clearance_mm, 2)),
-        (Column("closest pair", align="left"), lambda row: " – ".join(row.pair)),
+        label("printed", lambda row: row.printed, mark="published"),
+        label("ours", lambda row: row.ours, mark="ours"),
+        ours("clearance", "mm", lambda row: fixed(row.clearance_mm, 2)),
+        label("closest pair", lambda row: " – ".join(row.pair)),
         (Column("colliding pairs"), lambda row: str(len(row.colliding_pairs))),
         caption="Section 5.3.1: the home configuration",
         note=f"With one sphere a component home {single}, with several {' and '.join(several)}.",

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -14,8 +15,7 @@ from ikde.kernels.paper import judge_surfaces
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Budget, Inputs
-from ikde.paper.published import APPROXIMATIONS, PAIR_LISTS
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Budget, Inputs
 from ikde.paper.section import Computed, make_collision
 from ikde.paper.surface import (
     M_STEPS,
@@ -36,17 +36,11 @@ Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PairCounts:
-    """How many pairs of components a detector compares, and of spheres if it compares all of them."""
+class ListVerdicts:
+    """An approximation over a list of pairs, how many it compares, and how many configurations collide."""
 
     component_pairs: int
-    sphere_pairs: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ListVerdicts(PairCounts):
-    """An approximation over a list of pairs, and how many configurations collide."""
-
+    sphere_pairs: int  # if it compares all of them
     approximation: str
     pairs: str
     colliding: int
@@ -93,16 +87,14 @@ class Times:
 
     median_s: float
     p95_s: float
-    timed: int
-    """Configurations."""
+    timed: int  # configurations
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KernelTimes(Times):
     """Median and p95 over configurations, each of them the median of its rounds."""
 
-    mean_s: float
-    """Over all configurations one after the other, where a processor cannot learn one's branches by heart."""
+    mean_s: float  # of all, one after the other, where a processor cannot learn one's branches by heart
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,10 +110,8 @@ class SurfaceTimes:
     """By surface points under eq. 20."""
 
     approximation: str
-    every_point: Times
-    """Every point against every other, as the paper does."""
-    quick: KernelTimes
-    """Only those that can matter."""
+    every_point: Times  # every point against every other, as the paper does
+    quick: KernelTimes  # only those that can matter
     same_verdicts: int
 
 
@@ -153,21 +143,20 @@ def compute_detection(inputs: Inputs) -> Detection:
     return Detection(
         lists=[
             ListVerdicts(
-                approximation=key[0],
-                pairs=key[1],
-                colliding=int(verdicts[key].sum()),
-                **asdict(count_pairs(collision)),
+                component_pairs=len(collision.pairs),
+                sphere_pairs=count_sphere_pairs(collision),
+                approximation=name,
+                pairs=pairs,
+                colliding=int(verdicts[name, pairs].sum()),
             )
-            for key, collision in models.items()
+            for (name, pairs), collision in models.items()
         ],
-        lists_differ=[
-            _compare_lists(robot, verdicts, name, pairs) for name in APPROXIMATIONS for pairs in PAIR_LISTS[1:]
-        ],
+        lists_differ=[_compare_lists(robot, verdicts, *key) for key in product(APPROXIMATIONS, PAIR_LISTS[1:])],
         surface_differs=list(_compare_surface(robot, few)),
         measured=Measured(
             lists=[
-                ListTimes(approximation=key[0], pairs=key[1], **asdict(_time_centres(collision, Q, budget)))
-                for key, collision in models.items()
+                ListTimes(approximation=name, pairs=pairs, **asdict(_time_centres(collision, Q, budget)))
+                for (name, pairs), collision in models.items()
             ],
             surface=[_time_surface(CollisionModel.of(robot, name), Q, budget) for name in APPROXIMATIONS],
         ),
@@ -198,17 +187,12 @@ def check_centres_many(collision: CollisionModel, Q: Floats) -> Bools:
     return collides
 
 
-def count_pairs(collision: CollisionModel) -> PairCounts:
-    """Pairs that are compared."""
+def count_sphere_pairs(collision: CollisionModel) -> int:
+    """Pairs of spheres in the pairs of components that are compared."""
     sizes: Counter[str] = Counter()
     for row in collision.rows:
         sizes[row.component] += row.count
-    return PairCounts(
-        component_pairs=len(collision.pairs), sphere_pairs=sum(sizes[a] * sizes[b] for a, b in collision.pairs)
-    )
-
-
-# ---- verdicts that differ
+    return sum(sizes[a] * sizes[b] for a, b in collision.pairs)
 
 
 def compare_pairs(robot: Robot, one: str, other: str) -> tuple[list[list[str]], list[list[str]]]:
@@ -238,8 +222,7 @@ def _compare_surface(robot: Robot, Q: Floats) -> Iterator[SurfaceDifference]:
         collision = CollisionModel.of(robot, name)
         centres = check_centres_many(collision, Q)
         for rule, grid in SURFACE:
-            rows, (m_steps, n_steps) = np.vstack([robot.home, Q]), grid
-            home, *others = check_surface_many(robot, rows, collision, rule=rule, m_steps=m_steps, n_steps=n_steps)
+            home, *others = check_surface_many(robot, np.vstack([robot.home, Q]), collision, rule=rule, grid=grid)
             surface = np.array(others)
             yield SurfaceDifference(
                 approximation=name,
@@ -255,23 +238,14 @@ def _compare_surface(robot: Robot, Q: Floats) -> Iterator[SurfaceDifference]:
             )
 
 
-# ---- times
-
-
 def _time_centres(collision: CollisionModel, Q: Floats, budget: Budget) -> KernelTimes:
-    arrays, packed = pack_robot(collision.robot), collision.arrays
-    rows = Q[: budget.timed_verdicts]
-    return _time_kernel(lambda qs, out: judge_centres(arrays, packed, qs, out), rows, budget.timing_rounds)
+    judge = partial(judge_centres, pack_robot(collision.robot), collision.arrays)
+    return _time_kernel(judge, Q[: budget.timed_verdicts], budget.timing_rounds)
 
 
 def _time_surface(collision: CollisionModel, Q: Floats, budget: Budget) -> SurfaceTimes:
-    robot, packed = collision.robot, collision.arrays
-    arrays, angle = pack_robot(robot), covering_angle_rad()
-    directions = surface_directions()
-
-    def judge(qs: Floats, out: Bools) -> None:
-        judge_surfaces(arrays, packed, directions, angle, collision.limit_m, qs, out)
-
+    robot, points = collision.robot, (surface_directions(), covering_angle_rad())
+    judge = partial(judge_surfaces, pack_robot(robot), collision.arrays, *points, collision.limit_m)
     check_surface(robot, Q[0], collision, m_steps=3, n_steps=2)  # compiles or loads
     few, verdicts = Q[: budget.plain_verdicts], []
     plain = [clock(lambda q=q: verdicts.append(check_surface(robot, q, collision).collision)) for q in few]

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 
-from ikde.paper.detection import Detection, ListDifference, SurfaceDifference
+from ikde.paper.columns import label, make_table, ours
+from ikde.paper.detection import Detection, SurfaceDifference
 from ikde.paper.inputs import Inputs
-from ikde.paper.section import make_table, name_pairs
+from ikde.paper.section import name_pairs
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Cell, Column, Section, Table, Text
 
@@ -29,7 +30,9 @@ def _introduce(data: Detection) -> Text:
     settings, measured = data.settings, data.measured
     slowest = max(1e6 * row.median_s for row in measured.lists)
     plain = [row.every_point.median_s for row in measured.surface]
-    blind = [row for row in data.surface_differs if row.rule == "eq. 18"]
+    blind, sees = ([row for row in data.surface_differs if row.rule == rule] for rule in ("eq. 18", "eq. 20"))
+    extra = ((f"with {_name_grid(row)} points a sphere", row.only_surface_collides, row.approximation) for row in sees)
+    changed = ((LIST_NAMES[row.pairs], row.changed, row.approximation) for row in data.lists_differ)
     return Text(
         f"Over {settings['verdicts']:,} random configurations, {settings['configurations']} (the same for all, "
         f"{settings['surface_verdicts']:,} of them for surface points). A verdict by centres (eq. 21) takes at most "
@@ -37,26 +40,16 @@ def _introduce(data: Detection) -> Text:
         f"before, takes {significant(min(plain), 2)} to {significant(max(plain), 2)} s. Eq. 18, which asks for points "
         f"that coincide, sees {sum(row.surface_collides for row in blind):,} of "
         f"{sum(row.centres_collide for row in blind):,} collisions; eq. 20, which allows for the grid's spacing, "
-        f"reports collisions that centres do not: {_count_extra(data.surface_differs)}.\n\n"
-        f"The list decides, too. Grades that differ from Formula 22 as meant: "
-        f"{_count_changed(data.lists_differ)}."
+        f"reports collisions that centres do not: {_count(extra)}.\n\n"
+        f"The list decides, too. Verdicts that differ from Formula 22 as meant: {_count(changed)}."
     )
 
 
-def _count_extra(rows: Iterable[SurfaceDifference]) -> str:
-    """What eq. 20 adds, grid by grid: `36 × 18 points a sphere 120 (typical), 61 (improved)`."""
+def _count(rows: Iterable[tuple[str, int, str]]) -> str:
+    """Counts by name and approximation: `all non-adjacent 3 (typical), 363 (improved)`."""
     found: dict[str, list[str]] = {}
-    for row in rows:
-        if row.rule == "eq. 20":
-            found.setdefault(_name_grid(row), []).append(f"{row.only_surface_collides:,} ({row.approximation})")
-    return "; ".join(f"with {grid} points a sphere {', '.join(counts)}" for grid, counts in found.items())
-
-
-def _count_changed(rows: Iterable[ListDifference]) -> str:
-    """Grades that another list changes: `all non-adjacent 3 (typical), 363 (improved)`."""
-    found: dict[str, list[str]] = {}
-    for row in rows:
-        found.setdefault(LIST_NAMES[row.pairs], []).append(f"{row.changed:,} ({row.approximation})")
+    for name, count, approximation in rows:
+        found.setdefault(name, []).append(f"{count:,} ({approximation})")
     return "; ".join(f"{name} {', '.join(counts)}" for name, counts in found.items())
 
 
@@ -68,14 +61,14 @@ def _make_lists(data: Detection) -> Table:
     count = f"{data.settings['verdicts']:,}"
     return make_table(
         zip(data.lists, data.measured.lists, strict=True),
-        (Column("spheres", align="left"), lambda row: row[0].approximation),
-        (Column("list of pairs", align="left"), lambda row: LIST_NAMES[row[0].pairs]),
-        (Column("component pairs", mark="ours"), lambda row: f"{row[0].component_pairs}"),
-        (Column("sphere pairs", mark="ours"), lambda row: f"{row[0].sphere_pairs}"),
-        (Column("colliding", mark="ours"), lambda row: f"{row[0].colliding:,} of {count}"),
-        (Column("median", "µs", group=BY_CENTRES, mark="ours"), lambda row: significant(1e6 * row[1].median_s)),
-        (Column("p95", "µs", group=BY_CENTRES, mark="ours"), lambda row: significant(1e6 * row[1].p95_s)),
-        (Column("mean", "µs", group=BY_CENTRES, mark="ours"), lambda row: significant(1e6 * row[1].mean_s)),
+        label("spheres", lambda row: row[0].approximation),
+        label("list of pairs", lambda row: LIST_NAMES[row[0].pairs]),
+        ours("component pairs", "", lambda row: f"{row[0].component_pairs}"),
+        ours("sphere pairs", "", lambda row: f"{row[0].sphere_pairs}"),
+        ours("colliding", "", lambda row: f"{row[0].colliding:,} of {count}"),
+        ours("median", "µs", lambda row: significant(1e6 * row[1].median_s), BY_CENTRES),
+        ours("p95", "µs", lambda row: significant(1e6 * row[1].p95_s), BY_CENTRES),
+        ours("mean", "µs", lambda row: significant(1e6 * row[1].mean_s), BY_CENTRES),
         caption="Lists of pairs, by centres (eq. 21)",
         note=f"The time includes {data.settings['time_includes']}; {data.settings['threads']} thread. Median and "
         "p95 judge each configuration again and again; the mean takes them one after the other.",
@@ -85,13 +78,13 @@ def _make_lists(data: Detection) -> Table:
 def _make_differences(data: Detection) -> Table:
     return make_table(
         data.lists_differ,
-        (Column("spheres", align="left"), lambda row: row.approximation),
-        (Column("list", align="left"), lambda row: LIST_NAMES[row.pairs]),
-        (Column("compares also", align="left"), lambda row: name_pairs(row.pairs_added)),
-        (Column("does not compare", align="left"), lambda row: name_pairs(row.pairs_missing)),
-        (Column("collide by this list alone", mark="ours"), lambda row: f"{row.only_this_collides:,}"),
-        (Column("by Formula 22 alone", mark="ours"), lambda row: f"{row.only_the_other_collides:,}"),
-        caption="Grades that differ from those over Formula 22 as meant",
+        label("spheres", lambda row: row.approximation),
+        label("list", lambda row: LIST_NAMES[row.pairs]),
+        label("compares also", lambda row: name_pairs(row.pairs_added)),
+        label("does not compare", lambda row: name_pairs(row.pairs_missing)),
+        ours("collide by this list alone", "", lambda row: f"{row.only_this_collides:,}"),
+        ours("by Formula 22 alone", "", lambda row: f"{row.only_the_other_collides:,}"),
+        caption="Verdicts that differ from those over Formula 22 as meant",
         note=f"Of {data.settings['verdicts']:,} configurations.",
     )
 
@@ -99,17 +92,14 @@ def _make_differences(data: Detection) -> Table:
 def _make_surface(data: Detection) -> Table:
     return make_table(
         data.surface_differs,
-        (Column("spheres", align="left"), lambda row: row.approximation),
-        (Column("rule", align="left"), lambda row: row.rule.replace(" ", "\N{NO-BREAK SPACE}")),
+        label("spheres", lambda row: row.approximation),
+        label("rule", lambda row: row.rule.replace(" ", "\N{NO-BREAK SPACE}")),
         (Column("points a sphere"), _name_grid),
-        (
-            Column("home", align="left", mark="ours"),
-            lambda row: Cell("collides", "off") if row.home_collides else "free",
-        ),
-        (Column("colliding by points", mark="ours"), lambda row: f"{row.surface_collides:,}"),
-        (Column("by centres", mark="ours"), lambda row: f"{row.centres_collide:,}"),
-        (Column("by points alone", mark="ours"), lambda row: f"{row.only_surface_collides:,}"),
-        (Column("by centres alone", mark="ours"), lambda row: f"{row.only_centres_collide:,}"),
+        label("home", lambda row: Cell("collides", "off") if row.home_collides else "free", mark="ours"),
+        ours("colliding by points", "", lambda row: f"{row.surface_collides:,}"),
+        ours("by centres", "", lambda row: f"{row.centres_collide:,}"),
+        ours("by points alone", "", lambda row: f"{row.only_surface_collides:,}"),
+        ours("by centres alone", "", lambda row: f"{row.only_centres_collide:,}"),
         caption="Surface points against centres, pairs of Formula 22",
         note=f"Of {data.settings['surface_verdicts']:,} configurations. Where points call home a collision (≠), "
         "their spacing is wider than the clearance that centres see there ([Table 2](#table-2)).",
@@ -121,11 +111,11 @@ def _make_times(data: Detection) -> Table:
     centres_s = {row.approximation: row.median_s for row in data.measured.lists if row.pairs == "formula_22"}
     return make_table(
         ((row, centres_s[row.approximation], row.every_point.median_s) for row in surface),
-        (Column("spheres", align="left"), lambda row: row[0].approximation),
-        (Column("centres", "µs", mark="ours"), lambda row: significant(1e6 * row[1])),
-        (Column("points that can matter", "µs", mark="ours"), lambda row: significant(1e6 * row[0].quick.median_s)),
-        (Column("every point", "ms", mark="ours"), lambda row: significant(1e3 * row[2])),
-        (Column("every point / centres", mark="ours"), lambda row: fixed(row[2] / row[1], 0)),
+        label("spheres", lambda row: row[0].approximation),
+        ours("centres", "µs", lambda row: significant(1e6 * row[1])),
+        ours("points that can matter", "µs", lambda row: significant(1e6 * row[0].quick.median_s)),
+        ours("every point", "ms", lambda row: significant(1e3 * row[2])),
+        ours("every point / centres", "", lambda row: fixed(row[2] / row[1], 0)),
         caption="Median time of a verdict, pairs of Formula 22",
         note=f"Every point: {settings['plain_verdicts']} configurations; the others {settings['timed_verdicts']}. Of "
         f"the verdicts by every point {sum(row.same_verdicts for row in surface)} of "

@@ -9,9 +9,9 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import from_convention
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Inputs
-from ikde.paper.published import meant
-from ikde.paper.section import Computed, Misprint, make_table
+from ikde.paper.columns import label, make_table, mark_off, ours, published
+from ikde.paper.inputs import Inputs, meant
+from ikde.paper.section import Computed, Misprint
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_frames
 from ikde.report.numbers import fixed, significant, vector
@@ -63,7 +63,15 @@ def compute_kinematics(inputs: Inputs) -> Kinematics:
     frames = {model: forward(robot, q, convention="classical") for model, robot in robots.items()}
     return Kinematics(
         points=[_compute_point(point, frames) for point in formula["points"]],
-        figures=[_describe_figure(model, robot, q, formula) for model, robot in robots.items()],
+        figures=[
+            Drawn(
+                model=model,
+                robot=robot.name,
+                q=from_convention(robot, q, "classical").tolist(),
+                frames=["Ob", *(point[model] for point in formula["points"]), robot.tool],
+            )
+            for model, robot in robots.items()
+        ],
         models_differ_mm=_compare_models(formula, frames),
         settings={
             "source": "[Qiao2021, Formula 23]",
@@ -92,22 +100,10 @@ def _compute_point(point: Mapping[str, Any], frames: Frames) -> Point:
     )
 
 
-def _describe_figure(model: str, robot: Robot, q: Floats, formula: Mapping[str, Any]) -> Drawn:
-    return Drawn(
-        model=model,
-        robot=robot.name,
-        q=from_convention(robot, q, "classical").tolist(),
-        frames=["Ob", *(point[model] for point in formula["points"]), robot.tool],
-    )
-
-
 def _compare_models(formula: Mapping[str, Any], frames: Frames) -> float:
     """Largest distance between the same point of both models."""
     a, b = ([frames[model][point[model]][:3, 3] for point in formula["points"]] for model in MODELS)
     return float(1e3 * np.linalg.norm(np.subtract(a, b), axis=1).max())
-
-
-# ---- the section
 
 
 def show_kinematics(data: Kinematics, inputs: Inputs) -> Section:
@@ -136,13 +132,11 @@ def _introduce(data: Kinematics) -> Text:
 def _make_table(points: list[Point]) -> Table:
     return make_table(
         points,
-        (Column("point", align="left"), lambda point: point.names["classical"]),
-        (Column("frame", align="left"), lambda point: point.names["key_point"]),
-        (Column("printed x, y, z", "mm", mark="published"), lambda point: vector(point.printed_mm, 1)),
-        *(
-            (Column(f"{name}: x, y, z", "mm", mark="ours"), lambda point, key=key: vector(point.ours_mm[key], 2))
-            for key, name in SHOWN_MODELS.items()
-        ),
+        label("point", lambda point: point.names["classical"]),
+        label("frame", lambda point: point.names["key_point"]),
+        published("printed x, y, z", "mm", lambda point: vector(point.printed_mm, 1)),
+        ours(f"{SHOWN_MODELS['key_point']}: x, y, z", "mm", lambda point: vector(point.ours_mm["key_point"], 2)),
+        ours(f"{SHOWN_MODELS['classical']}: x, y, z", "mm", lambda point: vector(point.ours_mm["classical"], 2)),
         (Column("largest difference", "mm"), _format_difference),
         caption="Formula 23: frames of the arm in the world",
         note="A point marked ≠ is a misprint: " + "; ".join(_explain(p) for p in points if p.misprint) + ".",
@@ -150,8 +144,7 @@ def _make_table(points: list[Point]) -> Table:
 
 
 def _format_difference(point: Point) -> str | Cell:
-    difference = fixed(max(point.difference_mm.values()), 3)
-    return Cell(difference, "off") if point.misprint else difference
+    return mark_off(fixed(max(point.difference_mm.values()), 3), not point.misprint)
 
 
 def _explain(point: Point) -> str:
@@ -164,11 +157,8 @@ def _draw(drawn: list[Drawn], robots: Mapping[str, Robot]) -> Gallery:
     for entry in drawn:
         name = SHOWN_MODELS[entry.model]
         pose = draw_frames(robots[entry.model], np.array(entry.q), entry.frames, title=name)
+        caption = f"Figure 6: {name}; x red dotted, y green solid, z blue dashed."
         figures.append(
-            Figure(
-                image=to_png(plot_frames(pose), dpi=90),
-                alt=f"Frames of the arm: {name}",
-                caption=f"Figure 6: {name}; x red dotted, y green solid, z blue dashed.",
-            )
+            Figure(image=to_png(plot_frames(pose), dpi=90), alt=f"Frames of the arm: {name}", caption=caption)
         )
     return Gallery(tuple(figures))

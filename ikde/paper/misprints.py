@@ -4,20 +4,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from ikde.paper.columns import label, make_table
 from ikde.paper.inputs import Inputs
 from ikde.paper.section import Computed
-from ikde.report.page import Column, Section, Table, Text
+from ikde.report.page import Section, Table, Text
 
 Entries = Sequence[Mapping[str, str]]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """A number of the robot that the print does not force."""
-
-    number: str
-    kind: str
-    why: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +18,7 @@ class Misprints(Computed):
 
     misprints: Entries
     puzzles: Entries
-    calibrated: list[Choice]
+    calibrated: Entries  # numbers of the robot that the print does not force: number, kind, why
     provenance_counts: dict[str, int]
 
 
@@ -38,16 +30,13 @@ def compute_misprints(inputs: Inputs) -> Misprints:
         misprints=[dict(entry) for entry in inputs.misprints if entry["kind"] == "misprint"],
         puzzles=[dict(entry) for entry in inputs.misprints if entry["kind"] == "puzzle"],
         calibrated=[
-            Choice(number=".".join(map(str, path)), kind=source.kind, why=source.text)
+            {"number": ".".join(map(str, path)), "kind": source.kind, "why": source.text}
             for path, source in sources.items()
             if source.kind == "calibrated"
         ],
         provenance_counts={kind: kinds[kind] for kind in ("published", "derived", "calibrated")},
         settings={"robot": inputs.robot.name, "evidence": "tests/test_published.py, benchmarks/calibrate.py"},
     )
-
-
-# ---- the section
 
 
 def show_misprints(data: Misprints, _: Inputs) -> Section:
@@ -76,15 +65,13 @@ def _introduce(data: Misprints) -> Text:
 
 
 def _make_entries(entries: Entries, caption: str, meant: str) -> Table:
-    return Table(
-        columns=(
-            Column("paper", align="left"),
-            Column("place", align="left"),
-            Column("printed", align="left", mark="published"),
-            Column(meant, align="left", mark="ours"),
-            Column("evidence", align="left"),
-        ),
-        rows=tuple((e["paper"], e["place"], e["printed"], e["meant"], _unquote(e["evidence"])) for e in entries),
+    return make_table(
+        entries,
+        label("paper", lambda entry: entry["paper"]),
+        label("place", lambda entry: entry["place"]),
+        label("printed", lambda entry: entry["printed"], mark="published"),
+        label(meant, lambda entry: entry["meant"], mark="ours"),
+        label("evidence", lambda entry: _unquote(entry["evidence"])),
         caption=caption,
     )
 
@@ -95,9 +82,10 @@ def _unquote(evidence: str) -> str:
 
 
 def _make_calibrated(data: Misprints) -> Table:
-    return Table(
-        columns=(Column("number of the robot", align="left"), Column("why", align="left")),
-        rows=tuple((choice.number, _unquote(choice.why)) for choice in data.calibrated),
+    return make_table(
+        data.calibrated,
+        label("number of the robot", lambda entry: entry["number"]),
+        label("why", lambda entry: _unquote(entry["why"])),
         caption="Calibrated",
         note="`python benchmarks/calibrate.py` shows what each observation leaves free.",
     )

@@ -5,11 +5,10 @@ from dataclasses import asdict, replace
 from ikde.paper.approximation import Approximation
 from ikde.paper.inputs import Inputs
 from ikde.paper.kinematics import Kinematics, largest_error_mm
-from ikde.paper.results import Results
+from ikde.paper.results import TOPICS, Results
 from ikde.paper.section import Computed
 from ikde.paper.situations import Situations
 from ikde.paper.solutions import Solutions
-from ikde.paper.topics import TOPICS
 from ikde.report.numbers import fixed
 from ikde.report.page import Code, Facts, Number, Numbers, Page, Section, Text
 
@@ -41,11 +40,10 @@ def _headline(
     """How much of the print comes out."""
     volumes, rows = approximation.volumes, solutions.published
     detections, met = situations.detections, sum(row.shows_printed_error for row in rows)
+    error = fixed(largest_error_mm(kinematics), 3)
     return Numbers(
         (
-            Number(
-                f"{fixed(largest_error_mm(kinematics), 3)} mm", "largest error of Formula 23", "misprints put right"
-            ),
+            Number(f"{error} mm", "largest error of Formula 23", "misprints put right"),
             Number(f"{sum(v.agrees for v in volumes)} of {len(volumes)}", "volumes of Table 2 to five digits"),
             Number(f"{met} of {len(rows)}", "errors of Table 5 to four digits"),
             Number(f"{sum(d.agrees for d in detections)} of {len(detections)}", "detection angles of section 5.4"),

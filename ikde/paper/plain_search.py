@@ -1,5 +1,6 @@
 """The paper's plain search, which ignores collision: the setting that Table 4 is recomputed at, and its variations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -14,12 +15,13 @@ from ikde.paper.inputs import Inputs
 from ikde.solver.distinct import UNEXPLAINED
 from ikde.solver.metrics import compute_clearances
 from ikde.solver.problem import Problem, make_problem
-from ikde.solver.results import solve_rows
+from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import DeSettings, SolveSettings
 
 SEED = 2021
 CHUNK = 1000  # solves at a time: a progress bar moves, Ctrl-C is heard
 Limits = Literal["classical", "key_point", "half_turn", "full_turn"]
+"""Those of [Qiao2022], counted as Table 5 counts its joints or as the key-point model; or a turn to either side."""
 
 STATED = SolveSettings(
     method="de",
@@ -34,22 +36,19 @@ class Setup:
     """What Table 4 leaves open. The defaults are the setting at which all four printed rates are met."""
 
     settings: SolveSettings = STATED
-    base_half_width_m: float = 0.06
-    """Table 5's d_x and d_y lie within +-61 mm."""
+    base_half_width_m: float = 0.06  # Table 5's d_x and d_y lie within +-61 mm
     limits: Limits = "classical"
-    """The joint limits of [Qiao2022], counted as Table 5 counts its joints, or as the key-point model does; or none
-    but half a turn, or a whole one, to either side."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Solutions:
     """Solves of one target from random streams of their own, and those that met it."""
 
-    solves: int
     Q: Floats  # [S, N] the S that met the target, in the robot's own convention
     order: Ints  # [S] which solve each was
     seconds: Floats  # [solves]
     evaluations: Ints  # [solves]
+    attempts: Ints  # [solves]
 
     def first(self, solves: int) -> Floats:
         """Solutions among the first so many solves."""
@@ -60,23 +59,16 @@ def apply_setup(robot: Robot, setup: Setup) -> Robot:
     """The robot with a setup's joint ranges."""
     offsets = convention_offsets(robot, "classical") if setup.limits == "classical" else np.zeros(len(robot.joints))
     turn = {"half_turn": np.pi, "full_turn": 2.0 * np.pi}.get(setup.limits)
-    near = limit_base(robot, setup.base_half_width_m)
     joints = []
-    for joint, offset in zip(near.joints, offsets, strict=True):
-        if joint.kind == "prismatic":
-            joints.append(joint)
-        elif turn is not None:
-            joints.append(replace(joint, lower=-turn, upper=turn))
-        else:
-            joints.append(replace(joint, lower=joint.lower - offset, upper=joint.upper - offset))
-    return replace(near, joints=tuple(joints))
+    for joint, offset in zip(robot.joints, offsets, strict=True):
+        lower, upper = (joint.lower - offset, joint.upper - offset) if turn is None else (-turn, turn)
+        joints.append(replace(joint, lower=lower, upper=upper))
+    return limit_base(replace(robot, joints=tuple(joints)), setup.base_half_width_m)
 
 
 def limit_base(robot: Robot, reach_m: float) -> Robot:
     """The robot with its prismatic joints within +-`reach_m`: no range is printed, the solutions lie within 61 mm."""
-    kept = [
-        replace(joint, lower=-reach_m, upper=reach_m) if joint.kind == "prismatic" else joint for joint in robot.joints
-    ]
+    kept = [replace(j, lower=-reach_m, upper=reach_m) if j.kind == "prismatic" else j for j in robot.joints]
     return replace(robot, joints=tuple(kept))
 
 
@@ -93,13 +85,18 @@ def solve_plainly(inputs: Inputs, setup: Setup, target: Target, solves: int, *, 
         count = min(CHUNK, solves - begin)
         parts.append(solve_rows(problem, [target] * count, UNEXPLAINED, seed=SEED, first_stream=first_stream + begin))
         inputs.progress.advance(count)
+    return gather(parts)
+
+
+def gather(parts: Sequence[SolveResults]) -> Solutions:
+    """Solves one after the other as one sample."""
     reached = np.concatenate([rows.reached for rows in parts])
     return Solutions(
-        solves=solves,
         Q=np.concatenate([rows.q for rows in parts])[reached],
         order=np.flatnonzero(reached),
         seconds=np.concatenate([rows.found.seconds for rows in parts]),
         evaluations=np.concatenate([rows.evaluations for rows in parts]),
+        attempts=np.concatenate([rows.attempts for rows in parts]),
     )
 
 

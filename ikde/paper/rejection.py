@@ -1,6 +1,5 @@
 """Table 4: how many solutions of a plain search each detector rejects; what of it is spheres, and what is pairs."""
 
-import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
@@ -10,14 +9,12 @@ import numpy as np
 
 from ikde.batch.statistics import Z_95, Rate, Spread, compute_spread
 from ikde.kernels.arrays import Floats
-from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.paper.detection import check_centres_many, compare_pairs
-from ikde.paper.inputs import Inputs
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import SEED, Setup, Solutions, collides, solve_plainly
-from ikde.paper.published import APPROXIMATIONS, PAIR_LISTS
 from ikde.paper.section import Computed, make_collision
-from ikde.paper.timing import quartiles
+from ikde.paper.timing import clock, quartiles
 from ikde.report.numbers import with_interval
 
 READINGS: dict[str, dict[str, str]] = {
@@ -36,10 +33,8 @@ class RejectionRate:
 
     CN: int
     SN: int
-    rejected_pct: float | None
-    """None of nothing."""
-    interval_pct: list[float]
-    """95 %."""
+    rejected_pct: float | None  # None of nothing
+    interval_pct: list[float]  # 95 %
 
     @property
     def text(self) -> str:
@@ -188,19 +183,12 @@ def compute_rejection(inputs: Inputs) -> Rejection:
                 position_mm=inputs.published["targets_mm"][name],
                 printed=read_print(table[name]),
                 printed_gain=_unpaired_gain(*(Rate(row["CN"], row["SN"]) for row in table[name].values())),
-                samples=[
-                    _grade_sample(robot, found.first(solves), solves)
-                    for solves in sorted({min(PAPERS_SAMPLE, count), count})
-                ],
+                samples=[_grade_sample(robot, found.first(n), n) for n in sorted({min(PAPERS_SAMPLE, count), count})],
             )
             for name, found in solutions.items()
         ],
         measured=[_time_solves(inputs, name, found) for name, found in solutions.items()],
-        settings={
-            "lists": {"dropped": dropped, "added": added},
-            "readings": READINGS,
-            **describe_setup(setup),
-        },
+        settings={"lists": {"dropped": dropped, "added": added}, "readings": READINGS, **describe_setup(setup)},
     )
 
 
@@ -220,16 +208,17 @@ def describe_setup(setup: Setup) -> dict[str, Any]:
 def read_print(printed: Mapping[str, Any]) -> dict[str, PrintedRate]:
     """A target's printed cells by detector, with their rates."""
     return {
-        spheres: PrintedRate(SR=row["SR"], AT_s=row["AT_s"], **rate_fields(Rate(row["CN"], row["SN"])))
+        spheres: PrintedRate(SR=row["SR"], AT_s=row["AT_s"], **rate_fields(row["CN"], row["SN"]))
         for spheres, row in printed.items()
     }
 
 
-def rate_fields(rate: Rate) -> dict[str, Any]:
+def rate_fields(CN: int, SN: int) -> dict[str, Any]:
     """Fields of a `RejectionRate`."""
+    rate = Rate(CN, SN)
     return {
-        "CN": rate.count,
-        "SN": rate.total,
+        "CN": CN,
+        "SN": SN,
         "rejected_pct": 100 * rate.share if rate.total else None,
         "interval_pct": [100 * bound for bound in rate.interval],
     }
@@ -240,10 +229,7 @@ def _grade_sample(robot: Robot, Q: Floats, solves: int) -> Sample:
     return Sample(
         solves=solves,
         solved=len(Q),
-        rates=[
-            ListRate(spheres=key[0], pairs=key[1], **rate_fields(Rate(int(verdicts.sum()), len(Q))))
-            for key, verdicts in rejected.items()
-        ],
+        rates=[ListRate(spheres=s, pairs=p, **rate_fields(int(v.sum()), len(Q))) for (s, p), v in rejected.items()],
         paired=[_pair_verdicts(name, rejected) for name in READINGS],
         gain=_split_gain(rejected),
     )
@@ -262,10 +248,7 @@ def _pair_verdicts(reading: str, rejected: Grades) -> PairedVerdicts:
 
 def _split_gain(rejected: Grades) -> GainSplit:
     start, end = rejected["typical", "non_adjacent"], rejected["improved", "formula_22_printed"]
-    between = {
-        "spheres": rejected["improved", "non_adjacent"],
-        "pairs": rejected["typical", "formula_22_printed"],
-    }
+    between = {"spheres": rejected["improved", "non_adjacent"], "pairs": rejected["typical", "formula_22_printed"]}
     return GainSplit(
         total=paired_gain(start, end),
         orders=[
@@ -294,31 +277,23 @@ def _make_gain(share: float, variance: float) -> Gain:
 
 
 def _time_solves(inputs: Inputs, name: str, solutions: Solutions) -> SolveTimes:
-    robot, printed = inputs.robot, inputs.published["table_4"][name]
+    printed = inputs.published["table_4"][name]
     return SolveTimes(
         target=name,
         search_ms=spread_of(1e3 * solutions.seconds),
         evaluations=spread_of(solutions.evaluations),
         detection=[
-            DetectionTime(
-                spheres=spheres,
-                printed_AT_s=printed[spheres]["AT_s"],
-                verdict_us=_time_verdicts(
-                    make_collision(robot, spheres, "formula_22"), solutions.Q, inputs.budget.timing_rounds
-                ),
-            )
-            for spheres in APPROXIMATIONS
+            DetectionTime(spheres=s, printed_AT_s=printed[s]["AT_s"], verdict_us=_time_verdicts(inputs, s, solutions.Q))
+            for s in APPROXIMATIONS
         ],
     )
 
 
-def _time_verdicts(collision: CollisionModel, Q: Floats, rounds: int) -> VerdictTime:
-    seconds = []
-    for _ in range(rounds + 1):  # the first compiles, or warms up
-        started = time.perf_counter()
-        check_centres_many(collision, Q)
-        seconds.append((time.perf_counter() - started) / len(Q))
-    median, spread = quartiles(1e6 * np.array(seconds[1:]))
+def _time_verdicts(inputs: Inputs, spheres: str, Q: Floats) -> VerdictTime:
+    collision, rounds = make_collision(inputs.robot, spheres, "formula_22"), inputs.budget.timing_rounds
+    check_centres_many(collision, Q)  # compiles, or warms up
+    seconds = [clock(lambda: check_centres_many(collision, Q)) / len(Q) for _ in range(rounds)]
+    median, spread = quartiles(1e6 * np.array(seconds))
     return VerdictTime(median=median, quartiles=spread, rounds=rounds)
 
 

@@ -1,12 +1,13 @@
 """Table 4 as a section of the page."""
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import product
 
-from ikde.paper.inputs import Inputs
-from ikde.paper.published import APPROXIMATIONS
+from ikde.paper.columns import label, make_table, ours, published
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.rejection import Gain, GainOrder, ListRate, PrintedRate, Rejection, RejectionRate, TargetRates
-from ikde.paper.section import format_spread, make_table, name_pairs
+from ikde.paper.section import format_range, format_spread, name_pairs
 from ikde.plot.charts import Bars, plot_bars
 from ikde.plot.images import to_svg
 from ikde.plot.style import Axis
@@ -63,16 +64,16 @@ def _introduce(data: Rejection) -> Text:
 def _make_table(data: Rejection, reading: str) -> Table:
     return make_table(
         _list_cells(data, reading),
-        (Column("target", align="left"), lambda row: row[0].target),
-        (Column("detector", align="left"), lambda row: row[1]),
-        (Column("CN of SN", group="printed", mark="published"), lambda row: _count(row[2])),
-        (Column("rejected", "%", group="printed", mark="published"), lambda row: row[2].text),
-        (Column("CN of SN", group="ours, as few", mark="ours"), lambda row: _count(row[3])),
-        (Column("CN of SN", group="ours", mark="ours"), lambda row: _count(row[4])),
-        (Column("rejected", "%", group="ours", mark="ours"), lambda row: row[4].text),
-        (Column("SR", "%", group="ours", mark="ours"), lambda row: fixed(100 - row[4].percent, 1)),
-        (Column("print in ours", align="left"), lambda row: _say(row[4].contains(row[2]))),
-        (Column("ours in print", align="left"), lambda row: _say(row[2].contains(row[4]))),
+        label("target", lambda row: row[0].target),
+        label("detector", lambda row: row[1]),
+        published("CN of SN", "", lambda row: _count(row[2]), "printed"),
+        published("rejected", "%", lambda row: row[2].text, "printed"),
+        ours("CN of SN", "", lambda row: _count(row[3]), "ours, as few"),
+        ours("CN of SN", "", lambda row: _count(row[4]), "ours"),
+        ours("rejected", "%", lambda row: row[4].text, "ours"),
+        ours("SR", "%", lambda row: fixed(100 - row[4].percent, 1), "ours"),
+        label("print in ours", lambda row: _say(row[4].contains(row[2]))),
+        label("ours in print", lambda row: _say(row[2].contains(row[4]))),
         caption=f"Table 4, {READING_NAMES[reading]}",
         note="Rates with Wilson's 95 % interval. The last two columns: whether the printed rate lies within our "
         "interval, and ours within the print's, which allows for its own sample.",
@@ -125,19 +126,12 @@ def _draw(data: Rejection) -> Figure:
 
 
 def _make_lists(data: Rejection) -> Table:
-    rows = [
-        (target.target, target.samples[-1], pairs)
-        for target in data.targets
-        for pairs in dict.fromkeys(rate.pairs for rate in target.samples[-1].rates)
-    ]
     return make_table(
-        rows,
-        (Column("target", align="left"), lambda row: row[0]),
-        (Column("pairs that both compare", align="left"), lambda row: row[2].replace("_", " ")),
-        *(
-            (Column(f"rejected, {name}", "%", mark="ours"), lambda row, name=name: row[1].rate(name, row[2]).text)
-            for name in APPROXIMATIONS
-        ),
+        product(data.targets, PAIR_LISTS),
+        label("target", lambda row: row[0].target),
+        label("pairs that both compare", lambda row: row[1].replace("_", " ")),
+        ours("rejected, typical", "%", lambda row: row[0].samples[-1].rate("typical", row[1]).text),
+        ours("rejected, improved", "%", lambda row: row[0].samples[-1].rate("improved", row[1]).text),
         caption="The same solutions over every list of pairs",
         note="With Wilson's 95 % interval.",
     )
@@ -146,13 +140,13 @@ def _make_lists(data: Rejection) -> Table:
 def _make_paired(data: Rejection) -> Table:
     return make_table(
         ((target, paired) for target in data.targets for paired in target.samples[-1].paired),
-        (Column("target", align="left"), lambda row: row[0].target),
-        (Column("pairs", align="left"), lambda row: row[1].reading),
+        label("target", lambda row: row[0].target),
+        label("pairs", lambda row: row[1].reading),
         (Column("solutions"), lambda row: f"{row[0].samples[-1].solved:,}"),
-        (Column("both free", mark="ours"), lambda row: f"{row[1].both_free:,}"),
-        (Column("only the improved says free", mark="ours"), lambda row: f"{row[1].only_improved_free:,}"),
-        (Column("only the typical says free", mark="ours"), lambda row: f"{row[1].only_typical_free:,}"),
-        (Column("both reject", mark="ours"), lambda row: f"{row[1].both_reject:,}"),
+        ours("both free", "", lambda row: f"{row[1].both_free:,}"),
+        ours("only the improved says free", "", lambda row: f"{row[1].only_improved_free:,}"),
+        ours("only the typical says free", "", lambda row: f"{row[1].only_typical_free:,}"),
+        ours("both reject", "", lambda row: f"{row[1].both_reject:,}"),
         caption="Both detectors on the same solutions",
     )
 
@@ -161,12 +155,12 @@ def _make_gain(data: Rejection) -> Table:
     lists = data.settings["lists"]
     return make_table(
         ((target, order) for target in data.targets for order in target.samples[-1].gain.orders),
-        (Column("target", align="left"), lambda row: row[0].target),
-        (Column("in all", "points", group="printed gain", mark="published"), lambda row: _gain(row[0].printed_gain)),
-        (Column("in all", "points", group="our gain", mark="ours"), lambda row: _gain(row[0].samples[-1].gain.total)),
-        (Column("changed first", align="left"), lambda row: row[1].first),
-        (Column("by spheres", "points", group="our gain, split", mark="ours"), lambda row: _step(row[1], "spheres")),
-        (Column("by pairs", "points", group="our gain, split", mark="ours"), lambda row: _step(row[1], "pairs")),
+        label("target", lambda row: row[0].target),
+        published("in all", "points", lambda row: _gain(row[0].printed_gain), "printed gain"),
+        ours("in all", "points", lambda row: _gain(row[0].samples[-1].gain.total), "our gain"),
+        label("changed first", lambda row: row[1].first),
+        ours("by spheres", "points", lambda row: _step(row[1], "spheres"), "our gain, split"),
+        ours("by pairs", "points", lambda row: _step(row[1], "pairs"), "our gain, split"),
         caption="What the improved detector's gain is made of, with unequal pairs",
         note="From the typical spheres over all non-adjacent pairs to the improved ones over Formula 22 as printed, "
         f"which drops {name_pairs(lists['dropped'])} and adds {name_pairs(lists['added'])}. Spheres and pairs "
@@ -180,25 +174,22 @@ def _step(order: GainOrder, what: str) -> str:
 
 
 def _gain(gain: Gain) -> str:
-    low, high = gain.interval_points
-    return f"{fixed(gain.points, 1)} ({fixed(low, 1)} to {fixed(high, 1)})"
+    return format_range(partial(fixed, digits=1), gain.points, *gain.interval_points)
 
 
 def _make_times(data: Rejection) -> Table:
     return make_table(
-        ((target, detection, detection.verdict_us) for target in data.measured for detection in target.detection),
-        (Column("target", align="left"), lambda row: row[0].target),
-        (Column("detector", align="left"), lambda row: row[1].spheres),
-        (Column("printed AT", "s", mark="published"), lambda row: fixed(row[1].printed_AT_s, 4)),
-        (Column("search: median / p95 / max", "ms", mark="ours"), lambda row: format_spread(row[0].search_ms)),
         (
-            Column("mean verdict: median (quartiles)", "µs", mark="ours"),
-            lambda row: f"{significant(row[2].median)} ({' to '.join(map(significant, row[2].quartiles))})",
+            (target, detection, (detection.verdict_us.median, *detection.verdict_us.quartiles))
+            for target in data.measured
+            for detection in target.detection
         ),
-        (
-            Column("detection in a solve", "%", mark="ours"),
-            lambda row: significant(100 * 1e-3 * row[2].median / row[0].search_ms.median, 2),
-        ),
+        label("target", lambda row: row[0].target),
+        label("detector", lambda row: row[1].spheres),
+        published("printed AT", "s", lambda row: fixed(row[1].printed_AT_s, 4)),
+        ours("search: median / p95 / max", "ms", lambda row: format_spread(row[0].search_ms)),
+        ours("mean verdict: median (quartiles)", "µs", lambda row: format_range(significant, *row[2])),
+        ours("detection in a solve", "%", lambda row: significant(100 * 1e-3 * row[2][0] / row[0].search_ms.median, 2)),
         caption="AT split: search, and one verdict on its solution",
         note="AT is printed as the time of self-collision detection in a solve. Ours is one verdict by centres a "
         "solve: its mean over all solutions, median and quartiles over rounds. The search's spread is over the solves, "

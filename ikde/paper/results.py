@@ -3,24 +3,55 @@
 import json
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.errors import FileError, quoted
 from ikde.formats.reading import read_json
 from ikde.io.report_folder import RESULTS
 from ikde.kernels.jit import compile_clock
-from ikde.paper.inputs import FULL, Budget, Inputs
-from ikde.paper.published import APPROXIMATIONS
-from ikde.paper.rejection import READINGS
-from ikde.paper.sensitivity import list_variations
-from ikde.paper.topics import TOPICS
+from ikde.paper.approximation import compute_approximation, show_approximation
+from ikde.paper.detection import compute_detection
+from ikde.paper.detection_page import show_detection
+from ikde.paper.inputs import APPROXIMATIONS, FULL, Budget, Inputs
+from ikde.paper.kinematics import compute_kinematics, show_kinematics
+from ikde.paper.misprints import compute_misprints, show_misprints
+from ikde.paper.rejection import READINGS, compute_rejection
+from ikde.paper.rejection_page import show_rejection
+from ikde.paper.section import Computed
+from ikde.paper.sensitivity import compute_sensitivity, list_variations, show_sensitivity
+from ikde.paper.situations import compute_situations, show_situations
+from ikde.paper.solutions import compute_solutions, show_solutions
+from ikde.paper.timing import compute_timing, show_timing
+from ikde.paper.waiting import compute_waiting, show_waiting
+from ikde.report.page import Section
 
 SAME = 1e-9  # relative: numpy's last bits may differ between processors, ours do not
+
+
+class Topic(NamedTuple):
+    """A section of the report."""
+
+    compute: Callable[[Inputs], Computed]
+    show: Callable[[Any, Inputs], Section]
+
+
+TOPICS = {
+    "kinematics": Topic(compute_kinematics, show_kinematics),
+    "approximation": Topic(compute_approximation, show_approximation),
+    "timing": Topic(compute_timing, show_timing),
+    "rejection": Topic(compute_rejection, show_rejection),
+    "sensitivity": Topic(compute_sensitivity, show_sensitivity),
+    "waiting": Topic(compute_waiting, show_waiting),
+    "detection": Topic(compute_detection, show_detection),
+    "solutions": Topic(compute_solutions, show_solutions),
+    "situations": Topic(compute_situations, show_situations),
+    "misprints": Topic(compute_misprints, show_misprints),
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,8 +74,7 @@ class Results:
     """Everything that the report shows."""
 
     made: Made
-    sections: dict[str, Any]
-    """`Computed` by topic, in the order of the report."""
+    sections: dict[str, Any]  # `Computed` by topic, in the order of the report
 
     def as_json(self) -> dict[str, Any]:
         """Plain data as it comes back from a JSON file."""
@@ -60,12 +90,7 @@ def count_solves(inputs: Inputs) -> int:
 
 
 def compute_paper(inputs: Inputs, only: Sequence[str] = tuple(TOPICS)) -> Results:
-    """Compute the report's sections.
-
-    Args:
-        inputs: robots and published figures, how much of everything, and what is called with progress.
-        only: names of the sections to compute.
-    """
+    """Compute the report's sections, or `only` some of them by name."""
     started, begin = datetime.now(UTC), time.perf_counter()
     sections, seconds = {}, {}
     with compile_clock() as compiling:
@@ -99,9 +124,8 @@ def read_results(folder: Path) -> dict[str, Any]:
         raise FileError(path, "not a record of this version's `ikde bench paper`") from None
     for name, size in budget.items():
         if type(size) is not int or size < 1:
-            raise FileError(
-                path, f"expected a whole number of at least 1, got {quoted(size)}", ("made", "budget", name)
-            )
+            wrong = f"expected a whole number of at least 1, got {quoted(size)}"
+            raise FileError(path, wrong, ("made", "budget", name))
     parts = {("sections", name): section for name, section in sections.items()} if isinstance(sections, dict) else {}
     for where, value in {("sections",): sections, **parts}.items():
         if not isinstance(value, dict):
@@ -110,12 +134,7 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def check_paper(recorded: Mapping[str, Any], inputs: Inputs) -> list[str]:
-    """Compute the exact parts of a record again; returns a line for each difference.
-
-    Args:
-        recorded: what `read_results` gave.
-        inputs: robots and published figures, with the budget on record.
-    """
+    """A line for each difference, with what is exact of a record computed again; `inputs` have the record's budget."""
     again = compute_paper(inputs, recorded["made"]["only"]).as_json()
     return list_differences(_drop_times(recorded["sections"]), _drop_times(again["sections"]))
 

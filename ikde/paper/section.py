@@ -1,7 +1,7 @@
 """What the sections of the report share: their three parts, printed values beside ours, and what a detector sees."""
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Generic, TypeVar
 
@@ -10,12 +10,15 @@ import numpy as np
 from ikde.batch.statistics import Spread
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
+from ikde.model.target import Target
+from ikde.plot.images import to_png
+from ikde.plot.pose import plot_pose
 from ikde.report.numbers import significant
-from ikde.report.page import Cell, Column, Table
+from ikde.report.page import Figure
+from ikde.scene.drawn_pose import draw_pose
 from ikde.solver.check import check
 
 Value = TypeVar("Value")
-Row = TypeVar("Row")
 Misprint = dict[str, Any] | None
 """What a printed entry should say, by its keys, and `see`: the place in the list of misprints; None if it is right."""
 
@@ -24,8 +27,7 @@ Misprint = dict[str, Any] | None
 class Computed:
     """A section as it is computed: all fields but `measured` (times) and `settings` are the same bits in every run."""
 
-    settings: dict[str, Any]
-    """How it was made, for the record."""
+    settings: dict[str, Any]  # how it was made, for the record
 
     def as_json(self) -> dict[str, Any]:
         """Plain data in three parts, as it comes back from a JSON file."""
@@ -63,8 +65,7 @@ class Verdict:
 
     collides: bool
     clearance_mm: float
-    pair: list[str]
-    """The closest."""
+    pair: list[str]  # the closest
     colliding_pairs: list[list[str]]
 
 
@@ -95,16 +96,15 @@ def format_spread(values: Spread) -> str:
     return " / ".join(map(significant, (values.median, values.p95, values.max)))
 
 
-def make_table(
-    rows: Iterable[Row],
-    *columns: tuple[Column, Callable[[Row], str | Cell]],
-    caption: str,
-    note: str = "",
-) -> Table:
-    """A table of columns, each beside what it shows of a row."""
-    return Table(
-        columns=tuple(column for column, _ in columns),
-        rows=tuple(tuple(show(row) for _, show in columns) for row in rows),
-        caption=caption,
-        note=note,
-    )
+def format_range(show: Callable[[float], str], middle: float, low: float, high: float) -> str:
+    """`73.0 (63.6 to 80.7)`."""
+    return f"{show(middle)} ({show(low)} to {show(high)})"
+
+
+def draw_robot(
+    collision: CollisionModel, q: Sequence[float], *, caption: str, target_mm: Sequence[float] | None = None
+) -> Figure:
+    """The robot at `q` as a detector sees it: arm red, platform blue, colliding components black; small for a page."""
+    target = None if target_mm is None else Target(np.array(target_mm) * 1e-3)
+    pose = draw_pose(collision, np.array(q), target=target)
+    return Figure(image=to_png(plot_pose(pose, size_in=(6.4, 5.7)), dpi=84), alt=caption, caption=caption)

@@ -8,21 +8,13 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ikde.batch.statistics import Rate
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Inputs
+from ikde.paper.columns import Shown, label, make_table, ours
+from ikde.paper.inputs import APPROXIMATIONS, PAIR_LISTS, Inputs
 from ikde.paper.plain_search import Setup, collides, solve_plainly
-from ikde.paper.published import APPROXIMATIONS, PAIR_LISTS
-from ikde.paper.rejection import (
-    READINGS,
-    PrintedRate,
-    RejectionRate,
-    describe_setup,
-    rate_fields,
-    read_print,
-)
-from ikde.paper.section import Computed, make_collision, make_table
+from ikde.paper.rejection import READINGS, PrintedRate, RejectionRate, describe_setup, rate_fields, read_print
+from ikde.paper.section import Computed, make_collision
 from ikde.paper.surface import M_STEPS, N_STEPS, Rule, check_surface_many
 from ikde.plot.charts import Estimate, plot_forest
 from ikde.plot.images import to_svg
@@ -31,6 +23,7 @@ from ikde.report.numbers import fixed
 from ikde.report.page import Column, Figure, Gallery, Section, Table, Text
 
 GRIDS = ((M_STEPS, N_STEPS), (10 * M_STEPS, 10 * N_STEPS))  # of surface points: ours, and a far finer one
+BASES_M = (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
 CLOSEST = 5
 Printed = Mapping[str, Mapping[str, PrintedRate]]  # by target and detector
 Reject = Callable[[str, Floats], np.ndarray]  # (detector, Q) -> which are rejected
@@ -64,8 +57,7 @@ class Distance:
     group: str
     value: str
     reading: str
-    farthest_points: float | None
-    """None where a target has no solutions."""
+    farthest_points: float | None  # None where a target has no solutions
 
     @property
     def change(self) -> str:
@@ -93,44 +85,38 @@ def list_variations() -> list[Variation]:
     """What the search leaves open, around the stated setting."""
     stated = Setup()
 
-    def vary(group: str, values: Mapping[str, dict[str, Any]]) -> list[Variation]:
-        changed = {value: stated.settings.with_changes(**changes) for value, changes in values.items()}
-        return [Variation(group=group, value=v, setup=replace(stated, settings=s)) for v, s in changed.items()]
+    def search(**changes: Any) -> Setup:
+        return replace(stated, settings=stated.settings.with_changes(**changes))
 
-    def vary_de(group: str, values: Mapping[str, dict[str, Any]]) -> list[Variation]:
-        return vary(group, {value: {"de": changes} for value, changes in values.items()})
+    def de(**changes: Any) -> Setup:
+        return search(de=changes)
 
-    bases = (0.0, 0.02, 0.1, 0.5, 1.0, 5.0)
-    limits = {
-        "key-point convention": "key_point",
-        "half a turn either way": "half_turn",
-        "a turn either way": "full_turn",
+    varied = {
+        "as stated": {"the setting of Table 4 above": stated},
+        "base range": {f"±{1e3 * b:g} mm": replace(stated, base_half_width_m=b) for b in BASES_M},
+        "start population": {
+            **{f"middle {100 * s:g} % of each range": de(start_share=s) for s in (0.5, 0.25, 0.1)},
+            **{f"NP = {n}": de(population=n) for n in (20, 100, 200)},
+        },
+        "joint limits": {
+            "key-point convention": replace(stated, limits="key_point"),
+            "half a turn either way": replace(stated, limits="half_turn"),
+            "a turn either way": replace(stated, limits="full_turn"),
+        },
+        "out of range": {b: de(bounds=b) for b in ("clip", "parent", "midpoint", "none")},
+        "mutation": {s: de(strategy=s) for s in ("rand/1", "rand-to-best/1", "current-to-best/1")},
+        "update": {"at the end of the generation": de(update="generation")},
+        "tolerance": {f"{1e3 * t:g} mm": search(position_tolerance_m=t) for t in (1e-5, 1e-3)},
     }
-    return [
-        Variation(group="as stated", value="the setting of Table 4 above", setup=stated),
-        *(
-            Variation(group="base range", value=f"±{1e3 * b:g} mm", setup=replace(stated, base_half_width_m=b))
-            for b in bases
-        ),
-        *vary_de(
-            "start population", {f"middle {100 * s:g} % of each range": {"start_share": s} for s in (0.5, 0.25, 0.1)}
-        ),
-        *vary_de("start population", {f"NP = {n}": {"population": n} for n in (20, 100, 200)}),
-        *(Variation(group="joint limits", value=v, setup=replace(stated, limits=k)) for v, k in limits.items()),
-        *vary_de("out of range", {b: {"bounds": b} for b in ("clip", "parent", "midpoint", "none")}),
-        *vary_de("mutation", {s: {"strategy": s} for s in ("rand/1", "rand-to-best/1", "current-to-best/1")}),
-        *vary_de("update", {"at the end of the generation": {"update": "generation"}}),
-        *vary("tolerance", {f"{1e3 * t:g} mm": {"position_tolerance_m": t} for t in (1e-5, 1e-3)}),
-    ]
+    return [Variation(group=group, value=v, setup=s) for group, setups in varied.items() for v, s in setups.items()]
 
 
 def compute_sensitivity(inputs: Inputs) -> Sensitivity:
     """Rates of both readings for every variation, and how far each is from the print."""
     printed = {name: read_print(inputs.published["table_4"][name]) for name in inputs.targets}
     rows = [_rate(printed, *row) for row in _list_rows(inputs)]
-    ranked = sorted(
-        (row for row in rows if row.farthest_points is not None), key=lambda row: row.farthest_points or 0.0
-    )
+    known = (row for row in rows if row.farthest_points is not None)
+    ranked = sorted(known, key=lambda row: row.farthest_points or 0.0)
     return Sensitivity(
         rows=rows,
         closest=[
@@ -138,11 +124,7 @@ def compute_sensitivity(inputs: Inputs) -> Sensitivity:
             for row in ranked[:CLOSEST]
         ],
         printed=printed,
-        settings={
-            "solves": inputs.budget.variation_solves,
-            "readings": READINGS,
-            **describe_setup(Setup()),
-        },
+        settings={"solves": inputs.budget.variation_solves, "readings": READINGS, **describe_setup(Setup())},
     )
 
 
@@ -168,8 +150,7 @@ def _reject_by_centres(robot: Robot, pairing: Mapping[str, str], spheres: str, Q
 
 
 def _reject_by_surface(robot: Robot, rule: Rule, grid: tuple[int, int], spheres: str, Q: Floats) -> np.ndarray:
-    collision, (m_steps, n_steps) = make_collision(robot, spheres, "formula_22"), grid
-    return check_surface_many(robot, Q, collision, rule=rule, m_steps=m_steps, n_steps=n_steps)
+    return check_surface_many(robot, Q, make_collision(robot, spheres, "formula_22"), rule=rule, grid=grid)
 
 
 def _rate(
@@ -178,16 +159,10 @@ def _rate(
     cells = []
     for name, spheres in product(Q, APPROXIMATIONS):
         rejected = reject(spheres, Q[name])
-        rate = rate_fields(Rate(int(rejected.sum()), len(rejected)))
-        cells.append(CellRate(target=name, spheres=spheres, **rate))
+        cells.append(CellRate(target=name, spheres=spheres, **rate_fields(int(rejected.sum()), len(rejected))))
     worst = max(abs(cell.percent - printed[cell.target][cell.spheres].percent) for cell in cells)
-    is_known = all(cell.SN for cell in cells)
-    return VariedRates(
-        group=group, value=value, reading=reading, cells=cells, farthest_points=worst if is_known else None
-    )
-
-
-# ---- the section
+    farthest = worst if all(cell.SN for cell in cells) else None
+    return VariedRates(group=group, value=value, reading=reading, cells=cells, farthest_points=farthest)
 
 
 def show_sensitivity(data: Sensitivity, _: Inputs) -> Section:
@@ -216,16 +191,16 @@ def _introduce(data: Sensitivity) -> Text:
 
 
 def _make_closest(data: Sensitivity) -> Table:
+    closest = {(row.change, row.reading) for row in data.closest}
+    intervals = [cell.interval_pct for row in data.rows if (row.change, row.reading) in closest for cell in row.cells]
+    widest = max(0.5 * (high - low) for low, high in intervals)
     return make_table(
         data.closest,
-        (Column("change", align="left"), lambda row: row.change),
-        (Column("pairs", align="left"), lambda row: row.reading),
-        (
-            Column("farthest of four rates from the print", "points", mark="ours"),
-            _format_distance,
-        ),
+        label("change", lambda row: row.change),
+        label("pairs", lambda row: row.reading),
+        ours("farthest of four rates from the print", "points", _format_distance),
         caption="The settings that come closest to the print",
-        note=f"A rate's interval is up to ±{fixed(_widest(data), 1)} points wide, and all rows share their random "
+        note=f"A rate's interval is up to ±{fixed(widest, 1)} points wide, and all rows share their random "
         "streams: settings that differ by less cannot be told apart.",
     )
 
@@ -234,36 +209,24 @@ def _format_distance(row: Distance) -> str:
     return "–" if row.farthest_points is None else fixed(row.farthest_points, 1)
 
 
-def _widest(data: Sensitivity) -> float:
-    """Half the widest interval of the closest settings' rates."""
-    closest = {(row.change, row.reading) for row in data.closest}
-    rows = [row for row in data.rows if (row.change, row.reading) in closest]
-    return max(0.5 * (cell.interval_pct[1] - cell.interval_pct[0]) for row in rows for cell in row.cells)
-
-
 def _make_rates(data: Sensitivity, reading: str) -> Table:
     rows = [row for row in data.rows if row.reading == reading]
     return make_table(
         rows,
-        (Column("change", align="left"), lambda row: row.change),
+        label("change", lambda row: row.change),
         (Column("solved"), lambda row: f"{sum(cell.SN for cell in row.cells[::2]):,}"),
-        *(
-            (
-                Column(
-                    f"{cell.spheres}, print {fixed(_printed(data, cell), 0)}",
-                    "%",
-                    group=f"target {cell.target}",
-                    mark="ours",
-                ),
-                lambda row, k=k: row.cells[k].text,
-            )
-            for k, cell in enumerate(rows[0].cells)
-        ),
+        *(_show_cell(data, k) for k in range(len(rows[0].cells))),
         (Column("farthest", "points"), _format_distance),
         caption=f"Rejected solutions, {READING_NAMES[reading]}",
         note=f"Rates with Wilson's 95 % interval; {2 * data.settings['solves']:,} solves a row, of both targets; "
         "farthest: the largest of four distances from the print.",
     )
+
+
+def _show_cell(data: Sensitivity, k: int) -> Shown[VariedRates]:
+    head = data.rows[0].cells[k]
+    title = f"{head.spheres}, print {fixed(_printed(data, head), 0)}"
+    return ours(title, "%", lambda row: row.cells[k].text, f"target {head.target}")
 
 
 def _printed(data: Sensitivity, cell: CellRate) -> float:
@@ -280,13 +243,8 @@ def _draw(data: Sensitivity) -> Gallery:
             for row in rows
             if (cell := row.cells[k]).SN
         ]
-        name = f"target {head.target}, {head.spheres}"
         figure = plot_forest(estimates, x=Axis(label="rejected", unit="%"), published=_printed(data, head))
-        figures.append(
-            Figure(
-                image=to_svg(figure),
-                alt=f"Rejected share for {name} under every variation, with the printed rate",
-                caption=f"{name}, unequal pairs.",
-            )
-        )
+        name = f"target {head.target}, {head.spheres}"
+        alt = f"Rejected share for {name} under every variation, with the printed rate"
+        figures.append(Figure(image=to_svg(figure), alt=alt, caption=f"{name}, unequal pairs."))
     return Gallery(tuple(figures))

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from ikde.model.robot import Robot
-from ikde.paper.inputs import Inputs
-from ikde.paper.pictures import draw_robot
-from ikde.paper.published import APPROXIMATIONS, meant
-from ikde.paper.section import Computed, Misprint, PrintedMeant, PrintedOurs, make_collision, make_table
+from ikde.paper.columns import label, make_table, mark_off, ours, published
+from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
+from ikde.paper.section import Computed, Misprint, PrintedMeant, PrintedOurs, draw_robot, make_collision
 from ikde.paper.sweeps import FINE_STEPS, SECONDS, Sweep, find_onset, read_sweeps
 from ikde.plot.charts import Event, Line, plot_lines
 from ikde.plot.images import to_svg
@@ -28,8 +27,7 @@ class Contact:
     """Of the true shapes, in the paper's simulator."""
 
     t_s: float
-    angle_at_s: float
-    """When the motion passes the printed angle."""
+    angle_at_s: float  # when the motion passes the printed angle
     angle_deg: PrintedMeant[float]
     misprint: Misprint
 
@@ -53,11 +51,9 @@ class Detected(Detection):
     onset_deg: float
     onset_s: float
     pair: list[str]
-    clearance_mm: dict[str, float]
-    """A fine step before, at the detected moment, and at the simulator's contact."""
+    clearance_mm: dict[str, float]  # a fine step before, at the detected moment, and at the simulator's contact
     early_s: float
-    early_deg: PrintedOurs[float]
-    """Positive if the detector speaks before the simulator's contact: the motion that it gives away."""
+    early_deg: PrintedOurs[float]  # motion given away; positive if the detector speaks before the simulator's contact
     q_detected: list[float]
     q_contact: list[float]
 
@@ -145,9 +141,7 @@ def _compute_curve(robot: Robot, sweep: Sweep, t_s: np.ndarray) -> Curve:
     return Curve(
         t_s=t_s.tolist(),
         angle_deg=[sweep.angle(t) for t in t_s],
-        clearance_mm={
-            name: (1e3 * compute_clearances(model, Q).clearance_m).tolist() for name, model in models.items()
-        },
+        clearance_mm={name: (1e3 * compute_clearances(m, Q).clearance_m).tolist() for name, m in models.items()},
     )
 
 
@@ -156,6 +150,7 @@ def _compute_detection(robot: Robot, sweep: Sweep, simulator: Mapping[str, Any],
     if found is None:
         return Detection(detector=detector, printed_deg=printed, agrees=False, detected_deg=None)
     contact_s, contact_deg = simulator["t_s"], meant(simulator)["angle_deg"]
+    early_s = contact_s - found.onset_s
     Q = sweep.configurations(np.array([found.detected_s - 1.0 / FINE_STEPS, found.detected_s, contact_s]))
     collision = make_collision(robot, detector, sweep.pairs)
     clearances = compute_clearances(collision, Q)
@@ -171,16 +166,11 @@ def _compute_detection(robot: Robot, sweep: Sweep, simulator: Mapping[str, Any],
         onset_s=found.onset_s,
         pair=list(collision.pairs[clearances.closest_pair[1]]),
         clearance_mm={"step_before": before, "detected": at, "contact": contact},
-        early_s=contact_s - found.onset_s,
-        early_deg=PrintedOurs(
-            printed=float(np.sign(speed)) * (contact_deg - printed), ours=abs(speed) * (contact_s - found.onset_s)
-        ),
+        early_s=early_s,
+        early_deg=PrintedOurs(printed=float(np.sign(speed)) * (contact_deg - printed), ours=abs(speed) * early_s),
         q_detected=Q[1].tolist(),
         q_contact=Q[2].tolist(),
     )
-
-
-# ---- the section
 
 
 def show_situations(data: Situations, inputs: Inputs) -> Section:
@@ -211,23 +201,17 @@ def _introduce(data: Situations) -> Text:
 def _make_table(situations: list[Situation]) -> Table:
     return make_table(
         ((situation, detection) for situation in situations for detection in situation.detectors),
-        (Column("situation", align="left"), lambda row: f"{row[0].situation}, {row[0].varies}"),
-        (Column("detector", align="left"), lambda row: row[1].detector),
-        (Column("printed", "deg", group="detected", mark="published"), lambda row: fixed(row[1].printed_deg, 2)),
-        (Column("ours", "deg", group="detected", mark="ours"), lambda row: _format_angle(row[1])),
-        (Column("onset", "deg", mark="ours"), _if_detected(lambda found: fixed(found.onset_deg, 3))),
-        (Column("deciding pair", align="left", mark="ours"), _if_detected(lambda found: " – ".join(found.pair))),
-        (
-            Column("printed", "deg", group="contact in V-REP", mark="published"),
-            lambda row: _format_contact(row[0].simulator.angle_deg),
-        ),
+        label("situation", lambda row: f"{row[0].situation}, {row[0].varies}"),
+        label("detector", lambda row: row[1].detector),
+        published("printed", "deg", lambda row: fixed(row[1].printed_deg, 2), "detected"),
+        ours("ours", "deg", lambda row: _format_angle(row[1]), "detected"),
+        ours("onset", "deg", _if_detected(lambda found: fixed(found.onset_deg, 3))),
+        label("deciding pair", _if_detected(lambda found: " – ".join(found.pair)), mark="ours"),
+        published("printed", "deg", lambda row: _format_contact(row[0].simulator.angle_deg), "contact in V-REP"),
         (Column("meant", "deg", group="contact in V-REP"), lambda row: fixed(row[0].simulator.angle_deg.meant, 1)),
-        (Column("at", "s", group="contact in V-REP", mark="published"), lambda row: fixed(row[0].simulator.t_s, 2)),
+        published("at", "s", lambda row: fixed(row[0].simulator.t_s, 2), "contact in V-REP"),
         (Column("by the print", "deg", group="early"), _if_detected(lambda found: fixed(found.early_deg.printed, 2))),
-        (
-            Column("by ours", "deg", group="early", mark="ours"),
-            _if_detected(lambda found: fixed(found.early_deg.ours, 2)),
-        ),
+        ours("by ours", "deg", _if_detected(lambda found: fixed(found.early_deg.ours, 2)), "early"),
         caption="Section 5.4: detection against contact",
         note="A contact marked ≠ does not fit its own time on the uniform motion; “early by” takes the angle meant. "
         f"Ours is from the onset, the print's from its grid. {_explain(situations)}",
@@ -242,13 +226,11 @@ def _if_detected(show: Callable[[Detected], str]) -> Callable[[tuple[Situation, 
 def _format_angle(detection: Detection) -> str | Cell:
     if detection.detected_deg is None:
         return Cell("never", "off")
-    detected = fixed(detection.detected_deg, 2)
-    return detected if detection.agrees else Cell(detected, "off")
+    return mark_off(fixed(detection.detected_deg, 2), detection.agrees)
 
 
 def _format_contact(angle_deg: PrintedMeant[float]) -> str | Cell:
-    printed = fixed(angle_deg.printed, 1)
-    return printed if angle_deg.printed == angle_deg.meant else Cell(printed, "off")
+    return mark_off(fixed(angle_deg.printed, 1), angle_deg.printed == angle_deg.meant)
 
 
 def _explain(situations: list[Situation]) -> str:

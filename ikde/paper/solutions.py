@@ -1,7 +1,7 @@
 """Table 5 and Figure 8: the published solutions graded again, and solutions of our own."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from itertools import count
 from typing import Any
 
@@ -12,21 +12,12 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.paper.inputs import Inputs
-from ikde.paper.pictures import draw_robot
+from ikde.paper.columns import Shown, label, make_table, mark_off, ours, published
+from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
 from ikde.paper.plain_search import limit_base
-from ikde.paper.published import APPROXIMATIONS, meant
-from ikde.paper.section import (
-    Computed,
-    Misprint,
-    PrintedMeantOurs,
-    PrintedOurs,
-    Verdict,
-    judge,
-    make_table,
-)
+from ikde.paper.section import Computed, Misprint, PrintedMeantOurs, PrintedOurs, Verdict, draw_robot, judge
 from ikde.report.numbers import fixed
-from ikde.report.page import Cell, Column, Figure, Gallery, Mark, Section, Table, Text
+from ikde.report.page import Column, Figure, Gallery, Mark, Section, Table, Text
 from ikde.solver.check import check
 from ikde.solver.distinct import solve_distinct
 from ikde.solver.forward import forward
@@ -49,24 +40,16 @@ class NamedVerdict(Verdict):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Graded:
-    """A solution, its errors and what both detectors say."""
+class Solution:
+    """A solution of a target, its errors and what both detectors say."""
 
-    q: list[float]
-    """In the robot's own convention, m and rad."""
-    error_mm: list[float]
-    """Along each axis."""
+    q: list[float]  # in the robot's own convention, m and rad
+    error_mm: list[float]  # along each axis
     largest_error_mm: float
     detectors: dict[str, NamedVerdict]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Solution(Graded):
-    """A solution of a target, its joints as Table 5 prints them."""
-
     target: str
     row: str
-    printed_q: list[float]
+    printed_q: list[float]  # as Table 5 prints its joints
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,32 +123,29 @@ def _grade_row(robot: Robot, row: Mapping[str, Any], target_mm: list[float]) -> 
     q = read_row(robot, row["q"])
     graded = _grade(robot, q, target_mm)
     printed = "free with both" if row["row"].startswith("s") else "typical collides"
-    typical, improved = (graded.detectors[name].collides for name in APPROXIMATIONS)
+    typical, improved = (graded["detectors"][name].collides for name in APPROXIMATIONS)
     agrees = not (typical or improved) if printed == "free with both" else typical
     return PublishedSolution(
         target=row["target"],
         row=row["row"],
         printed_q=row["q"],
-        ME_mm=PrintedMeantOurs(printed=row["ME_mm"], meant=meant(row)["ME_mm"], ours=graded.largest_error_mm),
+        ME_mm=PrintedMeantOurs(printed=row["ME_mm"], meant=meant(row)["ME_mm"], ours=graded["largest_error_mm"]),
         label=Label(printed=printed, ours=describe_verdict(typical, improved), agrees=agrees),
         misprint=row.get("misprint"),
         outside_limits=list(joints_outside(robot, q)),
-        **_fields(graded),
+        **graded,
     )
 
 
-def _grade(robot: Robot, q: Floats, target_mm: list[float]) -> Graded:
+def _grade(robot: Robot, q: Floats, target_mm: list[float]) -> dict[str, Any]:
+    """The first fields of a `Solution`."""
     errors = np.abs(1e3 * forward(robot, q)["tool"][:3, 3] - target_mm)
-    return Graded(
-        q=q.tolist(),
-        error_mm=errors.tolist(),
-        largest_error_mm=float(errors.max()),
-        detectors={name: _judge(robot, q, name) for name in APPROXIMATIONS},
-    )
-
-
-def _fields(graded: Graded) -> dict[str, Any]:
-    return {field.name: getattr(graded, field.name) for field in fields(graded)}
+    return {
+        "q": q.tolist(),
+        "error_mm": errors.tolist(),
+        "largest_error_mm": float(errors.max()),
+        "detectors": {name: _judge(robot, q, name) for name in APPROXIMATIONS},
+    }
 
 
 def _judge(robot: Robot, q: Floats, detector: str) -> NamedVerdict:
@@ -176,9 +156,9 @@ def _judge(robot: Robot, q: Floats, detector: str) -> NamedVerdict:
 
 def describe_verdict(typical: bool, improved: bool) -> str:
     """What two verdicts say, in the words of Table 5's labels."""
-    if not typical and not improved:
-        return "free with both"
-    return "both collide" if typical and improved else "typical collides" if typical else "improved collides"
+    if typical == improved:
+        return "both collide" if typical else "free with both"
+    return "typical collides" if typical else "improved collides"
 
 
 def _solve_target(robot: Robot, name: str, target_mm: list[float]) -> list[OwnSolution]:
@@ -205,11 +185,8 @@ def _describe(robot: Robot, place: tuple[str, str], target_mm: list[float], resu
         detector=result.detector,
         stream=result.stream,
         attempts=result.attempts,
-        **_fields(_grade(robot, result.q, target_mm)),
+        **_grade(robot, result.q, target_mm),
     )
-
-
-# ---- the section
 
 
 def show_solutions(data: Solutions, inputs: Inputs) -> Section:
@@ -240,27 +217,17 @@ def _introduce(rows: list[PublishedSolution]) -> Text:
 def _make_published(rows: list[PublishedSolution]) -> Table:
     return make_table(
         rows,
-        (Column("target", align="left"), lambda row: row.target),
-        (Column("row", align="left"), lambda row: row.row),
-        (
-            Column("printed", "mm", group="ME", mark="published"),
-            lambda row: _mark(fixed(row.ME_mm.printed, 4), row.shows_printed_error),
-        ),
-        (Column("ours", "mm", group="ME", mark="ours"), lambda row: fixed(row.ME_mm.ours, 4)),
-        (Column("error in x, y, z", "mm", mark="ours"), _errors),
-        (
-            Column("printed", align="left", group="label", mark="published"),
-            lambda row: _mark(row.label.printed, row.label.agrees),
-        ),
-        (Column("ours", align="left", group="label", mark="ours"), lambda row: row.label.ours),
-        *_clearances(),
+        label("target", lambda row: row.target),
+        label("row", lambda row: row.row),
+        published("printed", "mm", lambda row: mark_off(fixed(row.ME_mm.printed, 4), row.shows_printed_error), "ME"),
+        ours("ours", "mm", lambda row: fixed(row.ME_mm.ours, 4), "ME"),
+        ours("error in x, y, z", "mm", _errors),
+        label("printed", lambda row: mark_off(row.label.printed, row.label.agrees), "label", "published"),
+        label("ours", lambda row: row.label.ours, "label", "ours"),
+        *map(_show_clearance, APPROXIMATIONS),
         caption="Table 5: the printed solutions, graded again",
         note=" ".join(_explain(row, row.misprint) for row in rows if row.misprint),
     )
-
-
-def _mark(text: str, agrees: bool) -> str | Cell:
-    return text if agrees else Cell(text, "off")
 
 
 def _explain(row: Solution, misprint: Mapping[str, Any]) -> str:
@@ -273,23 +240,21 @@ def _errors(row: Solution) -> str:
     return ", ".join(fixed(error, 4) for error in row.error_mm)
 
 
-def _clearances() -> Iterator[tuple[Column, Callable[[Solution], str]]]:
-    for name in APPROXIMATIONS:
-        column = Column(name, "mm", group="clearance", mark="ours")
-        yield column, lambda row, name=name: fixed(row.detectors[name].clearance_mm, 2)
+def _show_clearance(detector: str) -> Shown[Solution]:
+    return ours(detector, "mm", lambda row: fixed(row.detectors[detector].clearance_mm, 2), "clearance")
 
 
 def _make_ours(data: Solutions) -> Table:
     settings = data.settings
     return make_table(
         data.ours,
-        (Column("target", align="left"), lambda row: row.target),
-        (Column("row", align="left"), lambda row: row.row),
-        (Column("ME", "mm", mark="ours"), lambda row: fixed(row.largest_error_mm, 4)),
-        (Column("error in x, y, z", "mm", mark="ours"), _errors),
-        *_clearances(),
-        (Column("attempts", mark="ours"), lambda row: str(row.attempts)),
-        (Column("stream", mark="ours"), lambda row: str(row.stream)),
+        label("target", lambda row: row.target),
+        label("row", lambda row: row.row),
+        ours("ME", "mm", lambda row: fixed(row.largest_error_mm, 4)),
+        ours("error in x, y, z", "mm", _errors),
+        *map(_show_clearance, APPROXIMATIONS),
+        ours("attempts", "", lambda row: str(row.attempts)),
+        ours("stream", "", lambda row: str(row.stream)),
         caption=f"Solutions of ours, method {settings['method']}, {settings['position_tolerance_mm']:g} mm, base "
         f"within ±{settings['base_range_mm']:g} mm, seed {settings['seed']}",
         note=f"s rows: {settings['free']}. f rows: {settings['colliding']}.",
@@ -299,18 +264,17 @@ def _make_ours(data: Solutions) -> Table:
 def _make_joints(rows: Sequence[Solution], caption: str, mark: Mark) -> Table:
     return make_table(
         rows,
-        (Column("target", align="left"), lambda row: row.target),
-        (Column("row", align="left"), lambda row: row.row),
-        *(
-            (
-                Column(name, "mm" if name in ("d_x", "d_y") else "rad", mark=mark),
-                lambda row, k=k: fixed(row.printed_q[k], 4),
-            )
-            for k, name in enumerate(JOINTS)
-        ),
+        label("target", lambda row: row.target),
+        label("row", lambda row: row.row),
+        *(_show_joint(k, mark) for k in range(len(JOINTS))),
         caption=caption,
         note="Counted as in the classical model.",
     )
+
+
+def _show_joint(k: int, mark: Mark) -> Shown[Solution]:
+    column = Column(JOINTS[k], "mm" if k < 2 else "rad", mark=mark)
+    return column, lambda row: fixed(row.printed_q[k], 4)
 
 
 def _draw(data: Solutions, robot: Robot) -> Gallery:

@@ -21,7 +21,9 @@ from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, read_configuration
 
 Rule = Literal["eq. 18", "eq. 20"]
-M_STEPS, N_STEPS = 36, 18
+Grid = tuple[int, int]
+GRID: Grid = (36, 18)
+M_STEPS, N_STEPS = GRID
 
 
 def surface_directions(m_steps: int = M_STEPS, n_steps: int = N_STEPS) -> Floats:
@@ -48,19 +50,8 @@ class SurfaceCheck:
     """A verdict by surface points."""
 
     collision: bool
-    gap_m: float
-    """Smallest distance between surface points of a pair, less d_i + d_j under eq. 20."""
+    gap_m: float  # smallest distance between surface points of a pair, less d_i + d_j under eq. 20
     pair: tuple[str, str]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Judgement:
-    """How a configuration is judged: the detector, the points, and how near is a collision."""
-
-    collision: CollisionModel
-    directions: Floats  # [K, 3]
-    covering_angle: float  # rad
-    limit: float  # m
 
 
 def check_surface(
@@ -89,40 +80,36 @@ def check_surface(
     Raises:
         InputError: without a detector, and as `check` does.
     """
-    how = _read_judgement(robot, collision, rule, m_steps, n_steps)
-    arrays, packed = pack_robot(robot), how.collision.arrays
+    model, directions, covering_angle, limit = _read_judgement(robot, collision, rule, m_steps, n_steps)
+    arrays, packed = pack_robot(robot), model.arrays
     T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))
     centres = np.empty((3, packed.radius.size))
-    points = np.empty((packed.radius.size, len(how.directions), 3))
+    points = np.empty((packed.radius.size, len(directions), 3))
     compute_bodies(arrays, read_configuration(robot, q), T_world_body)
     compute_centres(packed, T_world_body, centres)
-    compute_surface_from_centres(packed, centres, how.directions, points)
-    gap, pair = compute_surface_gap(packed, points, how.covering_angle)
-    return SurfaceCheck(collision=gap <= how.limit, gap_m=gap, pair=how.collision.pairs[pair])
+    compute_surface_from_centres(packed, centres, directions, points)
+    gap, pair = compute_surface_gap(packed, points, covering_angle)
+    return SurfaceCheck(collision=gap <= limit, gap_m=gap, pair=model.pairs[pair])
 
 
 def check_surface_many(
-    robot: Robot,
-    Q: Floats,
-    collision: CollisionChoice = None,
-    *,
-    rule: Rule = "eq. 20",
-    m_steps: int = M_STEPS,
-    n_steps: int = N_STEPS,
+    robot: Robot, Q: Floats, collision: CollisionChoice = None, *, rule: Rule = "eq. 20", grid: Grid = GRID
 ) -> NDArray[np.bool_]:
     """Whether each row of `Q` [K, N] collides, in the robot's own convention: `check_surface`'s verdicts [K], fast.
 
-    Most points are passed over: they are farther from the other sphere's surface than a collision allows.
+    Most points of the `grid`, steps of m and n, are passed over: they are farther from the other sphere's surface than
+    a collision allows.
     """
-    how = _read_judgement(robot, collision, rule, m_steps, n_steps)
-    collides = np.empty(len(Q), dtype=bool)
-    arrays, packed = pack_robot(robot), how.collision.arrays
-    Q = np.ascontiguousarray(Q, dtype=float)
-    judge_surfaces(arrays, packed, how.directions, how.covering_angle, how.limit, Q, collides)
+    model, directions, covering_angle, limit = _read_judgement(robot, collision, rule, *grid)
+    Q, collides = np.ascontiguousarray(Q, dtype=float), np.empty(len(Q), dtype=bool)
+    judge_surfaces(pack_robot(robot), model.arrays, directions, covering_angle, limit, Q, collides)
     return collides
 
 
-def _read_judgement(robot: Robot, choice: CollisionChoice, rule: Rule, m_steps: int, n_steps: int) -> _Judgement:
+def _read_judgement(
+    robot: Robot, choice: CollisionChoice, rule: Rule, m_steps: int, n_steps: int
+) -> tuple[CollisionModel, Floats, float, float]:
+    """What is compared, the directions to surface points [K, 3], their covering angle in rad, and the limit in m."""
     if rule not in get_args(Rule):
         raise InputError(f"expected one of {', '.join(get_args(Rule))}, got {rule!r}", ("rule",))
     if m_steps < 3 or n_steps < 2:
@@ -130,10 +117,7 @@ def _read_judgement(robot: Robot, choice: CollisionChoice, rule: Rule, m_steps: 
     chosen = CollisionModel.of(robot, choice)
     if not chosen.pairs:
         raise InputError("expected a detector, got none", ("detector",))
-    covers = rule == "eq. 20"
-    return _Judgement(
-        collision=chosen,
-        directions=surface_directions(m_steps, n_steps),
-        covering_angle=covering_angle_rad(m_steps, n_steps) if covers else 0.0,
-        limit=chosen.limit_m if covers else 0.0,
-    )
+    directions = surface_directions(m_steps, n_steps)
+    if rule == "eq. 18":
+        return chosen, directions, 0.0, 0.0
+    return chosen, directions, covering_angle_rad(m_steps, n_steps), chosen.limit_m

@@ -13,7 +13,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
-from ikde.paper.published import meant
+from ikde.paper.inputs import meant
 from ikde.paper.section import make_collision
 from ikde.solver.plain import compute_gaps
 
@@ -28,11 +28,9 @@ class Sweep:
     pairs: str
     start_deg: Floats  # [6]
     end_deg: Floats  # [6]
-    joint: int
-    """Which of the arm's joints is printed."""
+    joint: int  # which of the arm's joints is printed
     fine_step_deg: float
-    detected_deg: dict[str, float]
-    """Printed, by detector."""
+    detected_deg: dict[str, float]  # printed, by detector
 
     def angle(self, t_s: float) -> float:
         """The printed joint's angle in deg at a time."""

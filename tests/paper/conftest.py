@@ -3,8 +3,7 @@
 import pytest
 from matplotlib.figure import Figure
 
-from ikde.paper.inputs import load_inputs
-from ikde.paper.published import load_published
+from ikde.paper.inputs import load_inputs, load_published
 from ikde.plot.pose import plot_pose
 from tests.substitutes import substituted
 from tests.tiny_paper import TINY, compute_tiny
@@ -30,7 +29,7 @@ def results():
 
 @pytest.fixture(autouse=True, scope="package")
 def _blank_pictures():
-    """Drawing a robot takes half a second; test_pictures.py does it."""
+    """Drawing a robot takes half a second; test_section.py does it."""
     with substituted(plot_pose, lambda *_, **__: Figure(figsize=(1, 1))):
         yield
 

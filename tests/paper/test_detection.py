@@ -7,7 +7,7 @@ import pytest
 
 import ikde
 from ikde.model.collision_model import CollisionModel
-from ikde.paper.detection import PairCounts, check_centres_many, compute_detection, count_pairs, draw_configurations
+from ikde.paper.detection import check_centres_many, compute_detection, count_sphere_pairs, draw_configurations
 from ikde.paper.inputs import QUICK
 from ikde.paper.section import make_collision
 from ikde.paper.surface import check_surface_many
@@ -35,7 +35,8 @@ def test_fewer_configurations_are_the_beginning_of_more(qiao):
 def test_pairs_of_spheres_are_counted_pair_by_pair(qiao):
     collision = make_collision(qiao, "typical", "load_arm")
     # the load's one sphere against J3, J4, J5, J6 and the spheres of both links and the tool
-    assert count_pairs(collision) == PairCounts(component_pairs=7, sphere_pairs=4 + 3 + 4 + 3)
+    assert len(collision.pairs) == 7
+    assert count_sphere_pairs(collision) == 4 + 3 + 4 + 3
 
 
 def test_lists_are_told_apart_by_their_pairs_and_verdicts(qiao, section):
@@ -80,4 +81,4 @@ class TestPuzzles:
     def test_eq_20_with_steps_of_10_deg_rejects_everything_and_with_1_deg_not_home(self, qiao):
         Q = np.vstack([qiao.home, draw_configurations(qiao, 1000)])
         assert check_surface_many(qiao, Q, "typical").all()
-        assert not check_surface_many(qiao, Q[:1], "typical", m_steps=360, n_steps=180).any()
+        assert not check_surface_many(qiao, Q[:1], "typical", grid=(360, 180)).any()

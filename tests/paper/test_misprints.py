@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
+from ikde.paper.inputs import load_misprints, load_published, meant
 from ikde.paper.misprints import compute_misprints, show_misprints
-from ikde.paper.published import load_misprints, load_published, meant
 from ikde.report.page import Table, Text
 from tests.paper.conftest import is_plain
 
@@ -51,7 +51,7 @@ def test_an_entry_as_meant_keeps_what_is_right():
 def test_every_calibrated_number_is_named(inputs):
     section = compute_misprints(inputs)
     assert is_plain(section)
-    numbers = {choice.number for choice in section.calibrated}
+    numbers = {entry["number"] for entry in section.calibrated}
     assert {"frames.load_centre", "frames.platform_rear", "joints.d_x.upper", "adjacent"} <= numbers
     assert section.provenance_counts["calibrated"] == len(section.calibrated)
     assert {entry["kind"] for entry in section.misprints} == {"misprint"}

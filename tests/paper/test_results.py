@@ -11,8 +11,7 @@ from ikde.errors import FileError
 from ikde.io.report_folder import RESULTS, format_results, write_report
 from ikde.paper import results as module
 from ikde.paper.inputs import FULL, QUICK
-from ikde.paper.results import check_paper, count_solves, list_differences, read_results
-from ikde.paper.topics import TOPICS
+from ikde.paper.results import TOPICS, check_paper, count_solves, list_differences, read_results
 from tests.tiny_paper import compute_tiny
 
 SHIPPED = Path(__file__).parents[2] / "docs" / "paper"

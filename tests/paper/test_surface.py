@@ -47,12 +47,12 @@ def test_no_detector_is_refused(qiao):
 def test_many_give_the_verdicts_of_one(qiao, rng, rule, detector):
     Q = random_q(qiao, rng, 40)
     one = [check_surface(qiao, q, detector, rule=rule, **COARSE).collision for q in Q]
-    assert check_surface_many(qiao, Q, detector, rule=rule, **COARSE).tolist() == one
+    assert check_surface_many(qiao, Q, detector, rule=rule, grid=(12, 6)).tolist() == one
 
 
 def test_many_are_told_apart_on_a_fine_grid(qiao, rng):
     Q = random_q(qiao, rng, 300)
-    touching = check_surface_many(qiao, Q, "improved", m_steps=360, n_steps=180)
+    touching = check_surface_many(qiao, Q, "improved", grid=(360, 180))
     assert 0 < touching.sum() < len(Q)
 
 

@@ -1,6 +1,6 @@
 """What the papers print ships with ikde."""
 
-from ikde.paper.published import load_misprints, load_published
+from ikde.paper.inputs import load_misprints, load_published
 
 
 def test_every_table_of_the_paper_is_there():
