@@ -1,4 +1,4 @@
-"""Whether a part holds what its run makes: pages and summaries count on it, and the files may be a stranger's."""
+"""Whether a part holds what its run makes: pages and summaries count on it, and the files are not trusted."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -96,7 +96,7 @@ def _connect(distributed: Any, address: str, workers: int | None) -> Iterator[An
 
 
 def _start_cluster(distributed: Any, workers: int) -> Any:
-    """Processes on this machine, one thread each, that nobody else needs to see."""
+    """Processes on this machine, one thread each, for this process alone."""
     return distributed.LocalCluster(
         n_workers=workers,
         threads_per_worker=1,
@@ -124,7 +124,7 @@ def _until_it_goes(answers: Generator[Answer]) -> Generator[Answer]:
     """Answers for as long as the cluster is there; raises `InputError` when it is not."""
     try:
         yield from answers
-    except (OSError, CancelledError) as error:  # what a lost connection is depends on who finds out first
+    except (OSError, CancelledError) as error:  # a lost connection shows as one or the other
         why = _first_line(error) or type(error).__name__
         raise InputError(f"the cluster has gone away; {GO_ON} ({why})", ("dask",)) from None
 

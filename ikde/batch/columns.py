@@ -99,13 +99,13 @@ def _cost(rows: SolveResults) -> Columns:
 def _reason(rows: SolveResults) -> Columns:
     """Why not, and what would help; null where the target was reached."""
     missed, stories = np.flatnonzero(~rows.reached), rows.outcomes.explanations
-    told = np.full(len(rows), -1)
-    told[missed], reasons = _reasons(rows, missed)
+    codes = np.full(len(rows), -1)
+    codes[missed], reasons = _reasons(rows, missed)
     looked_into = sorted(stories)
     hints, helped = _words_and_codes([stories[row].hint for row in looked_into])
     hinted = np.full(len(rows), -1)
     hinted[looked_into] = helped
-    return {"reason": _coded(told, reasons), "hint": _coded(hinted, hints)}
+    return {"reason": _coded(codes, reasons), "hint": _coded(hinted, hints)}
 
 
 def _reasons(rows: SolveResults, missed: Ints) -> tuple[Ints, list[str]]:

@@ -1,4 +1,4 @@
-"""The folder of a run: whose it is, who writes to it, and what of it is finished."""
+"""The folder of a run: which run, the one process that writes to it, and what is finished."""
 
 import fcntl
 import os
@@ -136,7 +136,7 @@ def _remove_parts(folder: Path) -> None:
 
 
 def _remove_report(folder: Path) -> None:
-    """Delete the page of a run that is gone, and nothing that somebody else has put there."""
+    """Delete the page of a run that is gone, and nothing else that lies there."""
     if folder.is_dir():
         for name in REPORT_FILES:
             (folder / name).unlink(missing_ok=True)

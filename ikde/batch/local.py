@@ -61,5 +61,5 @@ def _solve_side_by_side(
                 begun += 1
             yield flying.popleft().result()
     finally:
-        stop.set()  # nothing is under way, unless somebody lost patience
+        stop.set()  # nothing is under way, unless it was interrupted
         pool.shutdown(cancel_futures=True)

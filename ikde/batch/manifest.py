@@ -1,6 +1,6 @@
 """The manifest of a run: recipe, what it was started on, and the parts to expect. Written before anything else.
 
-Who reads a run may have it from a stranger: everything in it is checked, and nothing in its folder may be a link.
+A run may come from anywhere: everything in it is checked, and nothing in its folder may be a link.
 """
 
 import json
@@ -134,8 +134,8 @@ def read_manifest(folder: Path) -> Manifest:
         raise FileError(folder, f"holds no run of ikde: {MANIFEST}: {error.message}") from None
     if isinstance(data, dict) and data.get("format") in EARLIER:
         # Columns of another format mean something else: parts of both must not be mixed.
-        told = f"holds a run of an earlier ikde ({data['format']!r}, expected {FORMAT!r}); name another folder"
-        raise FileError(folder, told)
+        message = f"holds a run of an earlier ikde ({data['format']!r}, expected {FORMAT!r}); name another folder"
+        raise FileError(folder, message)
     try:
         manifest = TypeAdapter(Manifest).validate_python(data)
     except ValidationError as error:

@@ -30,7 +30,7 @@ def read_batch(folder: str | PathLike[str], timing: bool = False) -> pa.Table:
     tables = [read_part(folder, manifest, part, kind) for part in list_finished(folder, manifest)]
     if not tables:
         raise FileError(folder, "no part of this run is finished yet")
-    with errors_of(folder):  # parts of a stranger may have different columns
+    with errors_of(folder):  # parts that are not ours may have different columns
         return pa.concat_tables(tables).unify_dictionaries()
 
 

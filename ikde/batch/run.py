@@ -1,4 +1,4 @@
-"""Run a batch: part after part into a folder, stopped at any moment, gone on with by the same call."""
+"""Run a batch: part after part into a folder, stopped at any moment, resumed by the same call."""
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -47,7 +47,7 @@ def run_batch(
 ) -> RunSummary:
     """Solve everything that a batch asks for and write it to a folder.
 
-    The folder of a run that was stopped is gone on with: finished parts stay, and the answers are the same bits as
+    A run that was stopped is resumed: finished parts stay, and the answers are the same bits as
     those of a run that was never stopped.
 
     Args:

@@ -23,7 +23,7 @@ def batch(
         Path, typer.Argument(metavar="FILE", help="What to run: see configs/runs/ and `ikde schema batch`.")
     ],
     out: Annotated[
-        Path | None, typer.Option(metavar="FOLDER", help="Where the answers go; a run that is there is gone on with.")
+        Path | None, typer.Option(metavar="FOLDER", help="Where the answers go; an existing run there is resumed.")
     ] = None,
     threads: Annotated[int | None, typer.Option(help="Threads (default: all cores). Same answers.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the run that is in the folder.")] = False,

@@ -37,12 +37,12 @@ def use_color() -> bool:
 
 
 def page_width() -> int:
-    """Columns of the terminal, within what tables need and can use; 100 where nobody is looking."""
+    """Columns of the terminal, within what tables need and can use; 100 outside a terminal."""
     return min(max(get_terminal_size().columns, 60), 120) if sys.stdout.isatty() else 100
 
 
 def working(text: str) -> AbstractContextManager[Any]:
-    """A spinner on stderr while the block runs, if somebody is looking."""
+    """A spinner on stderr while the block runs, in a terminal."""
     if not sys.stderr.isatty():
         return nullcontext()
     from rich.console import Console

@@ -1,4 +1,4 @@
-"""How far a batch or a benchmark is, on stderr: a bar for who is looking, a line now and then for a log."""
+"""How far a batch or a benchmark is, on stderr: a bar in a terminal, a line now and then in a log."""
 
 import sys
 import time

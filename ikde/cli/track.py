@@ -111,6 +111,6 @@ def _draw(motion: "TrackSummary", title: str, command: str, tell: Callable[[str]
 
 @contextmanager
 def _show_steps() -> Iterator[Callable[[str], None]]:
-    """What is being done, on stderr, if somebody is looking."""
+    """What is being done, on stderr, in a terminal."""
     with working("") as status:
         yield (lambda text: None) if status is None else lambda text: status.update(as_words(f"{text} ..."))

@@ -35,7 +35,7 @@ def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_
 
 @contextmanager
 def _progress(count: int) -> Iterator[Callable[[int, "Stage"], None]]:
-    """A bar for who is looking, else a line a stage."""
+    """A bar in a terminal, else a line a stage."""
     if not sys.stderr.isatty():
         yield lambda number, stage: print_note(f"{number + 1} of {count}: {stage.name}")
         return

@@ -113,7 +113,7 @@ class ParquetTable:
 def claimed_bytes(metadata: pq.FileMetaData, columns: int) -> int:
     """What so many columns of a Parquet file take up as numbers, according to itself.
 
-    Nothing finer is asked: to look at a column of a damaged file ends the process.
+    Nothing finer is asked: reading a column of a damaged file ends the process.
     """
     groups = sum(metadata.row_group(index).num_rows for index in range(metadata.num_row_groups))
     return FLOAT_BYTES * columns * max(metadata.num_rows, groups)

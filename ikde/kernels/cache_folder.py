@@ -1,4 +1,4 @@
-"""The folder of compiled code, and whether it may be trusted: code is run from it, so nobody else may write there.
+"""The folder of compiled code, and whether it may be trusted: code is run from it, so no other user may write there.
 
 Every folder and every symbolic link on the way to it is checked. Those above it may belong to root, and may be shared
 if only owners can rename what lies in them (the sticky bit). It and all that lies in it is this user's alone.
@@ -63,7 +63,7 @@ def prepare(folder: Path) -> str | None:
 
 
 def find_fault(state: os.stat_result) -> str | None:
-    """Why what lies in the cache could be somebody else's doing, or None."""
+    """Why another user could have written to the cache, or None."""
     if HAS_OWNERS and state.st_uid != USER:
         return f"belongs to user {state.st_uid}"
     if HAS_OWNERS and state.st_mode & (stat.S_IWGRP | stat.S_IWOTH):

@@ -247,7 +247,7 @@ def evolve_memetic(robot, collision, target, index, search, memetic, descent, bo
 
 @inline_kernel
 def show_closest(robot, collision, target, index, search, memetic, descent, box, q, work):
-    """Into `q` [N], after an attempt in vain: what its champion comes to when collisions are ignored.
+    """Into `q` [N], after an attempt that failed: what its champion comes to when collisions are ignored.
 
     So that a target that is reached only by colliding is known by the pairs that collide. Without a champion `q` stays.
     Leaves the poses at `q` in `work`. Returns (cost in m, meets, evaluations).
@@ -282,7 +282,7 @@ def solve_memetic_lane(
     """Run attempts attempts[0] .. attempts[1]-1 on one target, up to the first that is reached.
 
     Attempts are independent; the outputs are those of `finish_attempt`. An attempt makes `memetic.evaluations`, and
-    after one in vain at most `memetic.polish_steps` damped steps more.
+    after one that failed at most `memetic.polish_steps` damped steps more.
     """
     joints = out_q.size
     work = make_memetic_workspace(robot, collision, joints, memetic)

@@ -139,7 +139,7 @@ class Robot:
     provenance: Mapping[tuple[str | int, ...], Provenance]
     """Path of a number in the robot's file -> where it comes from."""
     wheels: Wheels | None = None
-    """None for a robot without a base that drives on two wheels, and for one whose wheels nobody told."""
+    """None for a robot without a base that drives on two wheels, or whose wheel geometry is not given."""
     neighbours: tuple[LeftOutPair, ...] = ()
     """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
 

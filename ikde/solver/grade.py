@@ -35,11 +35,11 @@ class Outcomes:
     verified: MaskedBools
     """[T] whether plain numpy agrees; masked where it was not asked."""
     reached: Bools
-    """[T] accepted by all who graded it, and nobody disagrees."""
+    """[T] accepted by every grader that graded it, and none disagrees."""
     stop_reasons: Ints
     """[T] index into `STOP_REASONS`."""
     explanations: Mapping[int, Explanation]
-    """Row -> why, of rows that were looked into; counts tell of the others."""
+    """Row -> why, of rows that were explained; the others have their counts."""
 
 
 def grade(

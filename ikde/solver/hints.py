@@ -110,7 +110,7 @@ def hint_at_stream(problem: Problem, target: Target, found: SearchState) -> str 
 
 
 def try_longer(problem: Problem, probe: Probe) -> str | None:
-    """Whether the search, gone on with, finds a solution."""
+    """Whether more attempts find a solution."""
     last = problem.settings.engines[-1]
     attempts = {"first_attempt": problem.settings.budget(last), "attempts": ENGINES[last].attempts_of_probe}
     found = probe.run(problem, **attempts)

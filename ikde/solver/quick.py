@@ -66,11 +66,11 @@ class Quick:
         metrics = self._grade(kind, T_world_tool, q)
         if not metrics[-1]:
             return None
-        told = counts.tolist()
-        if not told[COLLIDING]:
-            return self._results.make(target, q, metrics, told, seed, stream, seconds)
+        counted = counts.tolist()
+        if not counted[COLLIDING]:
+            return self._results.make(target, q, metrics, counted, seed, stream, seconds)
         blocking = {"blocking_pairs": count_blocking_pairs(self._pairs, blocked)}
-        return self._results.make(target, q, metrics, told, seed, stream, seconds, blocking)
+        return self._results.make(target, q, metrics, counted, seed, stream, seconds, blocking)
 
 
 @lru_cache(maxsize=64)

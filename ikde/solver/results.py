@@ -126,7 +126,7 @@ class SolveResults:
         return reason_from_counts(stop, excess_m, *counts, self.problem.settings.timeout_s)
 
     def explanation(self, index: int) -> Explanation:
-        """Why, and what would help: of a row that was not looked into what its counts tell, made now."""
+        """Why, and what would help: of a row that was not explained what its counts say, made now."""
         if index in self.outcomes.explanations:
             return self.outcomes.explanations[index]
         return Explanation(

@@ -75,7 +75,7 @@ def format_find(robot: RobotArrays, tests: list[Test], lower: Floats, upper: Flo
     load = [f"q{k} = q[{k}]" for k in range(len(lower))]
     return _function(
         "find_collision(robot, collision, q, buffers)",
-        "Index of a pair within the safe distance at `q` [N], the likeliest looked at first, or -1.",
+        "Index of a pair within the safe distance at `q` [N], the likeliest first, or -1.",
         [*_reaches(tests), *_used([*load, *_sines(robot)], body), *body, "return np.int64(-1)"],
     )
 
@@ -102,7 +102,7 @@ def format_judge(robot: RobotArrays, tests: list[Test]) -> str:
 
 
 def order_pairs(robot: RobotArrays, tests: list[Test], lower: Floats, upper: Floats) -> list[int]:
-    """Pairs in the order in which to look at them: most hits not seen before for the least work first."""
+    """Pairs in the order in which to test them: most hits not seen before for the least work first."""
     hits = estimate_hits(robot, tests, lower, upper)
     rows = {
         pair: [k for k, test in enumerate(tests) if test.pair == pair] for pair in dict.fromkeys(t.pair for t in tests)

@@ -30,7 +30,7 @@ def load_module(collision: CollisionModel, kind: str) -> ModuleType:
 
     Without a cache it has no file, and every process compiles for itself.
     """
-    if not cache_folder.CACHE_IS_WRITABLE:  # what lies there may be anybody's
+    if not cache_folder.CACHE_IS_WRITABLE:  # what lies there is not trusted
         return _run(_format(collision, kind), None)
     index = robots_folder() / f"{digest_inputs(collision, kind)}.index"
     return _run(*(_find(index) or _write(index, _format(collision, kind))))

@@ -12,7 +12,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import Test
 from ikde.model.generate.lattice import Lattice
 
-BOXES = 4_000  # looked at for one test before it stays
+BOXES = 4_000  # tested for one proof before it is given up
 SAMPLES = 512
 MARGINS_M = (0.01, 0.1, 1.0)  # proofs hold up to such a safe distance; beyond the last nothing is proved
 MAX_JOINTS = 4  # between two bodies; beyond it a proof is hopeless

@@ -1,4 +1,4 @@
-"""Straight-line code: named values, constants folded, nothing computed twice, nothing computed in vain."""
+"""Straight-line code: named values, constants folded, nothing computed twice or without use."""
 
 import re
 from collections.abc import Iterable

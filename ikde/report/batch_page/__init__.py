@@ -1,1 +1,1 @@
-"""A batch as a page: what ran, who was reached, at what cost, how clear, and who was not."""
+"""A batch as a page: what ran, how much was reached, at what cost, how clear, and what was not."""

@@ -1,4 +1,4 @@
-"""Who was not reached, and why."""
+"""Unreached targets and reasons."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -19,7 +19,7 @@ class Memetic:
         self._inputs, problem = inputs, inputs.problem
         self._models = pack_searched(problem.collision)
         search = pack_search(problem)
-        self._settings = (search, MemeticArrays(), make_descent(problem, "pose"))  # no step of it looks at a tolerance
+        self._settings = (search, MemeticArrays(), make_descent(problem, "pose"))  # none of its steps uses a tolerance
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
