@@ -26,7 +26,7 @@ from rich.console import Console
 from rich.table import Table
 
 import ikde
-from ikde.io.batch_file import load_batch
+from ikde.io.plan_file import load_batch
 from ikde.solver.search import search
 
 RESULTS = Path(__file__).parent / "results" / "batch_scale.json"

@@ -19,7 +19,7 @@ from machine import describe
 from rich.console import Console
 from rich.table import Table
 
-from ikde.io.track_file import load_track
+from ikde.io.plan_file import load_track
 from ikde.model.base_motion import Drive
 from ikde.report.track_comparison import FIGURES, list_cells
 from ikde.track.comparison import FULL, METHODS, TrackBudget, compare_methods

@@ -21,11 +21,11 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.errors import (
         VerificationError as VerificationError,
     )
-    from ikde.io.batch_file import load_batch as load_batch
     from ikde.io.mjcf import format_mjcf as format_mjcf
+    from ikde.io.plan_file import load_batch as load_batch
+    from ikde.io.plan_file import load_track as load_track
     from ikde.io.robots import load_robot as load_robot
     from ikde.io.robots import robot_names as robot_names
-    from ikde.io.track_file import load_track as load_track
     from ikde.io.trajectory_files import write_trajectory as write_trajectory
     from ikde.io.urdf import format_urdf as format_urdf
     from ikde.kernels.jit import compile_clock as compile_clock
@@ -65,10 +65,10 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
 __version__ = "0.1.0"
 
 _HOME = {
-    "load_batch": "ikde.io.batch_file",
+    "load_batch": "ikde.io.plan_file",
     "run_batch": "ikde.batch.run",
     "read_batch": "ikde.batch.read",
-    "load_track": "ikde.io.track_file",
+    "load_track": "ikde.io.plan_file",
     "run_track": "ikde.track.run",
     "follow_path": "ikde.track.follow_path",
     "ToolPath": "ikde.track.path",

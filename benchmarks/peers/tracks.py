@@ -30,7 +30,7 @@ from adapters.mink_ import MinkProgram
 from adapters.pink_ import PinkProgram
 
 import ikde
-from ikde.io.track_file import load_track
+from ikde.io.plan_file import load_track
 from ikde.model.base_motion import Drive
 from ikde.track import trajectory
 from ikde.track.comparison import draw_random_starts, measure

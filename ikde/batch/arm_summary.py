@@ -1,7 +1,7 @@
 """What came of one arm of a run, counted part by part."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -73,14 +73,12 @@ class _Counts:
     """Solves and what became of them."""
 
     name: str | None = None
-    solves: int = 0
-    reached: int = 0
+    reached: Rate = field(default_factory=lambda: Rate(0, 0))
     collisions: dict[str, Rate] = field(default_factory=lambda: defaultdict(lambda: Rate(0, 0)))
 
     def add(self, solutions: pa.Table, graders: tuple[str, ...]) -> None:
         reached = solutions["reached"].to_numpy()
-        self.solves += len(solutions)
-        self.reached += int(reached.sum())
+        self.reached += Rate(int(reached.sum()), len(solutions))
         for grader in graders:
             self.collisions[grader] += Rate.of(read_verdicts(solutions[f"{grader}_collides"])[reached])
 
@@ -122,14 +120,17 @@ class ArmTally:
             name=self._facts.name,
             method=self._facts.method,
             detector=self._facts.detector,
-            reached=Rate(self._all.reached, self._all.solves),
+            reached=self._all.reached,
             collision_checked=self._collision_checked,
             verified=self._verified,
             stop_reasons=dict(self._stop_reasons.most_common()),
             attempts=compute_spread(_join(self._attempts)),
             milliseconds=compute_spread(_join(self._seconds) * 1e3),
             collisions={grader: self._all.collisions[grader] for grader in self._graders},
-            by_target=tuple(self._targets()),
+            by_target=tuple(
+                TargetSummary(target=target, name=one.name, reached=one.reached, collisions=dict(one.collisions))
+                for target, one in self._of_target.items()
+            ),
             unreached_targets=len(np.unique(_join(self._missed))),
             listed=tuple(self._listed.values()),
         )
@@ -140,11 +141,6 @@ class ArmTally:
             mine = solutions.filter(pa.array(targets == target))
             name = mine["target_name"][0].as_py() if "target_name" in mine.column_names else None
             self._of_target.setdefault(target, _Counts(name)).add(mine, self._graders)
-
-    def _targets(self) -> Iterator[TargetSummary]:
-        for target, counts in self._of_target.items():
-            reached, collisions = Rate(counts.reached, counts.solves), counts.collisions
-            yield TargetSummary(target=target, name=counts.name, reached=reached, collisions=dict(collisions))
 
     def _list_unreached(self, solutions: pa.Table) -> None:
         """Each target once: the first repeat that missed it, and how many did; it may go on in the next part."""

@@ -24,11 +24,7 @@ MAX_NUMBER = 1e12  # of a number
 def check_part(
     path: Path, manifest: Manifest, part: Part, kind: str, table: pa.Table, columns: Sequence[str] | None
 ) -> None:
-    """Check a file of a part, read whole or those of `columns` that it has.
-
-    Raises:
-        FileError: with what is wrong in it first.
-    """
+    """Raise `FileError` with what is wrong first in a file of a part, read whole or those of `columns` that it has."""
     for complaint in _find_faults(manifest, part, kind, table, columns):
         raise FileError(path, f"is no part of this run: {complaint}")
 
@@ -51,6 +47,11 @@ def _find_faults(
         if name in required and not _is_verdict(name) and column.null_count:
             yield f"{name} has no value in some row"
         yield from _find_wrong_values(name, column, manifest, part)
+
+
+def verdict_columns(graders: Sequence[str]) -> list[str]:
+    """Columns that are null where nothing was checked."""
+    return [*VERDICTS, *(f"{grader}_collides" for grader in graders)]
 
 
 def _required(manifest: Manifest, kind: str) -> list[str]:

@@ -33,14 +33,8 @@ def make_solutions(
 ) -> pa.Table:
     """The solutions of a part: what depends on recipe and seed only, the same bits in every run.
 
-    Args:
-        arm: its name.
-        rows: the finished searches.
-        numbers: [T] number of each solve in its arm; solve i is target i // repeats, repeat i % repeats.
-        repeats: solves a target.
-        names: a name a row, or None.
-        groups: which of `GROUPS`; the rest of the columns is always there.
-        graders: further detectors, four columns each.
+    Solve i of `numbers` [T] is target i // repeats, repeat i % repeats; `names` has a name a row, `groups` those of
+    `GROUPS` that are there beside the columns that always are; of each grader there are four columns.
     """
     columns = _identity(arm, numbers, repeats, names) | _verdict(rows)
     for group, make in GROUPS.items():
@@ -62,7 +56,7 @@ def make_timing(arm: str, rows: SolveResults, *, numbers: Ints, repeats: int) ->
 def _identity(arm: str, numbers: Ints, repeats: int, names: pa.Array | Sequence[str] | None) -> Columns:
     columns: Columns = {"arm": _word(arm, len(numbers)), "target": pa.array(numbers // repeats)}
     if names is not None:
-        columns["target_name"] = _words(names)
+        columns["target_name"] = pa.array(names, pa.string()).dictionary_encode()
     columns["repeat"] = _integers(numbers % repeats)
     return columns
 
@@ -184,7 +178,3 @@ def _coded(codes: Ints, words: Sequence[str]) -> pa.Array:
     """Words by their index; null where it is negative."""
     indices = pa.array(codes.astype(np.int32), mask=codes < 0)
     return pa.DictionaryArray.from_arrays(indices, pa.array(words, pa.string()))
-
-
-def _words(words: pa.Array | Sequence[str]) -> pa.Array:
-    return pa.array(words, pa.string()).dictionary_encode()

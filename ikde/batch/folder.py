@@ -50,11 +50,7 @@ def claim_folder(folder: Path, batch: Batch, *, overwrite: bool) -> Iterator[Non
 
 @contextmanager
 def keep_names(folder: Path) -> Iterator[Callable[[], None]]:
-    """What is called after every part that is written: names get onto the disk once a second, and at the end.
-
-    Raises:
-        FileError: if they cannot.
-    """
+    """What is called after every part: names get onto the disk once a second, and at the end, or raise `FileError`."""
     last = time.monotonic()
 
     def keep() -> None:
@@ -93,7 +89,8 @@ def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
         (folder / kind).mkdir(exist_ok=True)
         remove_temporaries(folder / kind)
         if overwrite:
-            _remove_parts(folder / kind)
+            for path in (folder / kind).glob("*.parquet"):
+                path.unlink()
             sync_folder(folder / kind)
     if overwrite:
         _remove_report(folder / REPORT)
@@ -128,11 +125,6 @@ def _lock(folder: Path) -> Iterator[None]:
         file.write(str(os.getpid()))
         file.flush()
         yield
-
-
-def _remove_parts(folder: Path) -> None:
-    for path in folder.glob("*.parquet"):
-        path.unlink()
 
 
 def _remove_report(folder: Path) -> None:

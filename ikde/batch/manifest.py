@@ -14,9 +14,11 @@ from pydantic import AfterValidator, ConfigDict, Field, StringConstraints, TypeA
 
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.batch.parts import MAX_PARTS, PLAIN_NAME, SOLUTIONS, TIMING, Part, list_parts
-from ikde.batch.plan import Batch
+from ikde.batch.plan import Arm, Batch
+from ikde.batch.spec import MAX_ARMS, MAX_GRADERS
 from ikde.errors import FileError, format_path, quoted
 from ikde.formats.atomic import replace_all
+from ikde.formats.entries import Count
 from ikde.formats.reading import read_json
 
 MANIFEST = "manifest.json"
@@ -27,7 +29,6 @@ EARLIER = ("ikde batch 1", "ikde batch 2")  # with other columns: a pair was one
 SHOWN = 3  # differences that are spelt out
 
 PlainName = Annotated[str, StringConstraints(pattern=f"^{PLAIN_NAME.pattern}$")]
-Count = Annotated[int, Field(ge=1, le=10**9)]
 
 
 def _check_recipe(recipe: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -59,8 +60,8 @@ class Manifest:
     recipe: Annotated[Mapping[str, Any], AfterValidator(_check_recipe)]
     file: str | None
     robot: str
-    arms: Annotated[tuple[ArmFacts, ...], Field(min_length=1, max_length=1000)]
-    graders: Annotated[tuple[PlainName, ...], Field(max_length=100)]
+    arms: Annotated[tuple[ArmFacts, ...], Field(min_length=1, max_length=MAX_ARMS)]
+    graders: Annotated[tuple[PlainName, ...], Field(max_length=MAX_GRADERS)]
     targets: Count
     repeats: Count
     solves: Count
@@ -82,15 +83,7 @@ class Manifest:
 
 def make_manifest(batch: Batch) -> Manifest:
     """The manifest of a run that starts now, here."""
-    arms = tuple(
-        ArmFacts(
-            name=arm.name,
-            method=arm.method,
-            detector=arm.problem.collision.name,
-            settings=asdict(arm.problem.settings),
-        )
-        for arm in batch.arms
-    )
+    arms = tuple(map(_describe_arm, batch.arms))
     return Manifest(
         format=FORMAT,
         name=batch.name,
@@ -110,6 +103,11 @@ def make_manifest(batch: Batch) -> Manifest:
         versions=describe_versions(),
         machine=describe_machine(),
     )
+
+
+def _describe_arm(arm: Arm) -> ArmFacts:
+    detector, settings = arm.problem.collision.name, asdict(arm.problem.settings)
+    return ArmFacts(name=arm.name, method=arm.method, detector=detector, settings=settings)
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
@@ -139,10 +137,8 @@ def read_manifest(folder: Path) -> Manifest:
     try:
         manifest = TypeAdapter(Manifest).validate_python(data)
     except ValidationError as error:
-        where = format_path(error.errors()[0]["loc"])
-        raise FileError(
-            folder, f"holds no run of ikde: its {MANIFEST} is none of ours ({where or 'all of it'})"
-        ) from None
+        where = format_path(error.errors()[0]["loc"]) or "all of it"
+        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours ({where})") from None
     names = [arm.name for arm in manifest.arms]
     parts = len(names) * -(-manifest.solves // manifest.chunk)
     if (
@@ -158,7 +154,7 @@ def describe_difference(there: Any, now: Any) -> str:
     """The first keys in which two recipes differ: `settings.strategy: 'rand/1' there, 'best/1' now`."""
     old, new = dict(_flatten(there)), dict(_flatten(now))
     keys = [key for key in {**old, **new} if key not in old or key not in new or old[key] != new[key]]
-    lines = [f"{format_path(key)}: {_show(old, key)} there, {_show(new, key)} now" for key in keys[:SHOWN]]
+    lines = [f"{format_path(key)}: {_show(key, old)} there, {_show(key, new)} now" for key in keys[:SHOWN]]
     more = [f"and {len(keys) - SHOWN} more"] if len(keys) > SHOWN else []
     return "; ".join([*lines, *more])
 
@@ -172,7 +168,5 @@ def _flatten(data: Any, where: tuple[str | int, ...] = ()) -> Iterator[tuple[tup
         yield from _flatten(value, (*where, key))
 
 
-def _show(leaves: Mapping[Any, Any], key: Any) -> str:
-    if key not in leaves:
-        return "nothing"
-    return quoted(leaves[key])
+def _show(key: Any, leaves: Mapping[Any, Any]) -> str:
+    return quoted(leaves[key]) if key in leaves else "nothing"

@@ -11,8 +11,8 @@ import pyarrow.parquet as pq
 
 from ikde.errors import FileError
 from ikde.formats.atomic import write_together
-from ikde.formats.reading import errors_of, read_bytes
-from ikde.formats.tables import check_room, claimed_bytes
+from ikde.formats.reading import check_room, errors_of, read_bytes
+from ikde.formats.tables import claimed_bytes
 
 PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]{1,100}")  # arms name files, graders name columns
 SOLUTIONS, TIMING = "solutions", "timing"

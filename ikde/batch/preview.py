@@ -1,15 +1,15 @@
 """What a batch would do, and how long it would take: measured by solving a sample of each arm, writing nothing."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pyarrow as pa
 
 from ikde.batch.options import check_options
 from ikde.batch.parts import Part, serialize
 from ikde.batch.plan import Arm, Batch
-from ikde.batch.task import Answer, Task, solve_task
-from ikde.model.target import Targets
+from ikde.batch.sources import ListSource
+from ikde.batch.task import Answer, Task, make_task, solve_task
 from ikde.solver.search import usable_cores
 
 SAMPLE_SECONDS = 2.0  # of all arms together, about
@@ -101,17 +101,11 @@ def _take_sample(batch: Batch, arm: Arm, size: int) -> Task:
     """A task of solves that are spread evenly over all targets."""
     chosen = [index * batch.source.count // size for index in range(size)]
     names = batch.source.names
-    return Task(
-        part=Part(arm.name, 0, 0, size),
-        arm=arm,
-        targets=Targets.of([batch.source.read(target, target + 1)[0] for target in chosen]),
+    sample = ListSource(
+        targets=[batch.source.read(target, target + 1)[0] for target in chosen],
         names=tuple(names[target] for target in chosen) if names else None,
-        repeats=1,
-        seed=batch.seed,
-        graders=batch.graders,
-        groups=batch.columns,
-        explain=batch.explain,
     )
+    return make_task(replace(batch, source=sample, repeats=1), Part(arm.name, 0, 0, size))
 
 
 def _estimate_bytes(answer: Answer, solves: int, parts: int) -> int:

@@ -20,13 +20,7 @@ MIN_CHUNK, MAX_CHUNK = 1000, 10_000
 
 
 def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None) -> Batch:
-    """Resolve a run file.
-
-    Args:
-        spec: the run file.
-        robot: the robot that it names.
-        folder: paths in the run file start here.
-        file: the run file's name, for the record.
+    """Resolve a run file whose paths start at `folder`; its own name is for the record.
 
     Raises:
         InputError: with the path of the key inside the run file.

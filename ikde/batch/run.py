@@ -86,13 +86,8 @@ def run_batch(
 
 def _start(parts: list[Part], missing: list[Part]) -> Progress:
     found, solves = len(parts) - len(missing), sum(part.rows for part in parts)
-    return Progress(
-        parts_done=found,
-        parts=len(parts),
-        solves_done=solves - sum(part.rows for part in missing),
-        solves=solves,
-        parts_found=found,
-    )
+    done = solves - sum(part.rows for part in missing)
+    return Progress(parts_done=found, parts=len(parts), solves_done=done, solves=solves, parts_found=found)
 
 
 @contextmanager

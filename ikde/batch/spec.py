@@ -24,6 +24,7 @@ from ikde.solver.settings import Collision, Update
 ColumnGroup = Literal["q", "errors", "clearance", "cost", "reason", "target"]
 COLUMN_GROUPS: tuple[ColumnGroup, ...] = get_args(ColumnGroup)
 
+MAX_ARMS, MAX_GRADERS = 1000, 100  # of a run
 GridCounts = Annotated[list[Annotated[int, Field(strict=True, ge=1, le=10**6)]], Field(min_length=3, max_length=3)]
 
 
@@ -172,9 +173,9 @@ class BatchSpec(Entry):
     """What to reach."""
     solve: SolveEntry = SolveEntry()
     """How to solve."""
-    arms: Annotated[dict[Name, SolveEntry], Field(max_length=1000)] = {}
+    arms: Annotated[dict[Name, SolveEntry], Field(max_length=MAX_ARMS)] = {}
     """Several ways to solve, compared over the same targets and random streams; each is laid over `solve`."""
-    grade: Annotated[list[DetectorChoice], Field(max_length=100)] = []
+    grade: Annotated[list[DetectorChoice], Field(max_length=MAX_GRADERS)] = []
     """Further detectors that grade every solution."""
     repeats: Count = 1
     """How often each target is solved, each time with its own random stream."""

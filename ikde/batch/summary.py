@@ -5,6 +5,7 @@ from os import PathLike
 from pathlib import Path
 
 from ikde.batch.arm_summary import ArmSummary, ArmTally
+from ikde.batch.check_part import verdict_columns
 from ikde.batch.manifest import Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING
 from ikde.batch.read import list_finished, read_part
@@ -36,11 +37,7 @@ class RunSummary:
 
 
 def summarise(folder: str | PathLike[str]) -> RunSummary:
-    """Summarise a run, finished or not, one part in memory at a time.
-
-    Raises:
-        FileError: for a folder that is no run, or holds a part that is damaged.
-    """
+    """Summarise a run, finished or not, a part in memory at a time; raises `FileError` for what is none, or damaged."""
     folder = Path(folder)
     manifest = read_manifest(folder)
     tallies = {arm.name: ArmTally(arm, manifest) for arm in manifest.arms}
@@ -64,5 +61,4 @@ def summarise(folder: str | PathLike[str]) -> RunSummary:
 
 def _columns(manifest: Manifest) -> list[str]:
     identity = ["arm", "target", "target_name", "repeat", "stop_reason", "reason", "attempts"]
-    verdicts = ["reached", "collision", "verified"]
-    return [*identity, *verdicts, *(f"{grader}_collides" for grader in manifest.graders)]
+    return [*identity, "reached", *verdict_columns(manifest.graders)]

@@ -21,12 +21,7 @@ Recipe = dict[str, Any]
 
 
 def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[TargetSource, Recipe]:
-    """The source of a run's targets, and what its answers depend on.
-
-    Args:
-        spec: the run file.
-        problem: what `solve` says, arms aside: `reachable` draws from its ranges.
-        folder: paths in the run file start here.
+    """The source of a run's targets, and what its answers depend on; `reachable` draws from the problem's ranges.
 
     Raises:
         InputError: with the path of the key inside the run file.
@@ -79,12 +74,7 @@ def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> Reach
     with prefix_errors("detector"):
         collision = CollisionModel.of(problem.robot, entry.detector)
     source = ReachableSource(
-        collision=collision,
-        lower=problem.lower,
-        upper=problem.upper,
-        goal=entry.goal,
-        count=entry.count,
-        seed=seed,
+        collision=collision, lower=problem.lower, upper=problem.upper, goal=entry.goal, count=entry.count, seed=seed
     )
     source.read(0, 1)  # a robot that is never free is found before anything runs
     return source
@@ -102,6 +92,5 @@ def _describe_table(table: TableSource) -> Recipe:
 
 def _describe_reachable(source: ReachableSource) -> Recipe:
     ranges = dict(zip(source.collision.robot.joint_names, zip(source.lower, source.upper, strict=True), strict=True))
-    return as_plain(
-        {"count": source.count, "goal": source.goal, "detector": source.collision.detector, "ranges": ranges}
-    )
+    described = {"count": source.count, "goal": source.goal, "detector": source.collision.detector, "ranges": ranges}
+    return as_plain(described)

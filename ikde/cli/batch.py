@@ -2,7 +2,7 @@
 
 import gc
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -45,29 +45,33 @@ def batch(
 
     Example: ikde batch configs/runs/first_run.yaml --out runs/first
     """
-    from ikde.io.batch_file import load_batch
+    from ikde.io.plan_file import load_batch
+    from ikde.report.batch import format_run, run_json
 
     gc.enable()
     if out is None and not dry_run:
         raise typer.BadParameter("a run needs a folder; only --dry-run needs none", param_hint="--out")
-    plan = load_batch(spec)
+    plan, solving = load_batch(spec), {"threads": threads, "dask": dask, "workers": workers}
     if not all(arm.problem.collision.pairs for arm in plan.arms):
         note_unchecked(plan.robot)
     if out is None or dry_run:
-        _preview(plan, threads, dask, workers, as_json)
+        _preview(plan, as_json, **solving)
         return
-    summary = _run(plan, out, threads, overwrite, dask, workers)
-    _print(summary, as_json)
+    summary = _run(plan, out, overwrite=overwrite, **solving)
+    if as_json:
+        print_json(run_json(summary))
+    else:
+        print_result(format_run(summary, color=use_color()))
     raise typer.Exit(ExitCode.NOT_REACHED if summary.unreached else ExitCode.OK)
 
 
-def _preview(plan: "Batch", threads: int | None, dask: str | None, workers: int | None, as_json: bool) -> None:
+def _preview(plan: "Batch", as_json: bool, *, threads: int | None, **cluster: Any) -> None:
     from ikde.batch.options import check_options
     from ikde.batch.preview import preview_batch
     from ikde.report.batch import format_preview, preview_json
 
-    check_options(threads, dask, workers)
-    if dask is not None:
+    check_options(threads, **cluster)
+    if cluster["dask"] is not None:
         print_note("a dry run solves its sample on this machine: the cluster is left alone")
     with note_compile():
         preview = preview_batch(plan, threads=threads)
@@ -77,32 +81,13 @@ def _preview(plan: "Batch", threads: int | None, dask: str | None, workers: int 
         print_result(format_preview(preview, color=use_color()))
 
 
-def _run(
-    plan: "Batch", out: Path, threads: int | None, overwrite: bool, dask: str | None, workers: int | None
-) -> "RunSummary":
+def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
     """Run with a progress bar; Ctrl-C says how to go on."""
     from ikde.batch.parts import GO_ON
     from ikde.batch.run import run_batch
 
     try:
         with show_progress(f"{plan.name} → {out}") as tell, note_compile():
-            return run_batch(
-                plan,
-                out,
-                threads=threads,
-                overwrite=overwrite,
-                dask=dask,
-                workers=workers,
-                progress=tell,
-            )
+            return run_batch(plan, out, progress=tell, **solving)
     except KeyboardInterrupt:
         raise typer.Abort(f"ikde: interrupted; {GO_ON}") from None
-
-
-def _print(summary: "RunSummary", as_json: bool) -> None:
-    from ikde.report.batch import format_run, run_json
-
-    if as_json:
-        print_json(run_json(summary))
-    else:
-        print_result(format_run(summary, color=use_color()))

@@ -9,7 +9,7 @@ import typer
 
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import Command, JsonOption
+from ikde.cli.options import Command, JsonOption, read_choices
 from ikde.cli.output import note_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
@@ -32,10 +32,7 @@ def paper(
         Path, typer.Option(metavar="FOLDER", help="Where report.html, report.md and results.json go.")
     ] = Path("report"),
     quick: Annotated[bool, typer.Option("--quick", help="Small samples: seconds instead of minutes.")] = False,
-    only: Annotated[
-        str | None,
-        typer.Option(metavar="SECTION,...", help="Compute these sections alone."),
-    ] = None,
+    only: Annotated[str | None, typer.Option(metavar="SECTION,...", help="Compute these sections alone.")] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Compute what is exact again, compare it with results.json; write nothing.")
     ] = False,
@@ -48,27 +45,16 @@ def paper(
     Example: ikde bench paper --out report/
     """
     from ikde.io.report_folder import prepare_folder
+    from ikde.paper.results import TOPICS
 
     gc.enable()
     if check and (quick or only):
         raise typer.BadParameter("results.json says what is in it; leave --quick and --only out", param_hint="--check")
-    sections = _read_sections(only)
+    sections = read_choices(only, tuple(TOPICS), "--only")
     if check:
         raise typer.Exit(_check(out, as_json))
     prepare_folder(out)
     _make(out, quick, sections, as_json)
-
-
-def _read_sections(only: str | None) -> tuple[str, ...]:
-    from ikde.paper.results import TOPICS
-
-    if only is None:
-        return tuple(TOPICS)
-    chosen = tuple(filter(None, only.split(",")))
-    wrong = [name for name in chosen if name not in TOPICS]
-    if wrong or not chosen:
-        raise typer.BadParameter(f"expected some of {', '.join(TOPICS)}, got {only!r}", param_hint="--only")
-    return chosen
 
 
 def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> None:

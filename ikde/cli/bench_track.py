@@ -1,14 +1,12 @@
 """`ikde bench track`: ways to follow the same tool paths side by side, as one page."""
 
 import gc
-import shlex
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import JsonOption, note_unchecked
+from ikde.cli.options import JsonOption, note_unchecked, read_choices, repeat_command
 from ikde.cli.output import note_compile, print_json, print_line
 from ikde.cli.progress import show_benchmark
 
@@ -36,14 +34,16 @@ def bench_track(
 
     Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
     """
+    from ikde.io.plan_file import load_track
     from ikde.io.report_folder import RESULTS, format_results, open_folder, write_report
-    from ikde.io.track_file import load_track
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
-    from ikde.track.comparison import FULL, QUICK, compare_methods, count_runs
+    from ikde.track.comparison import FULL, METHODS, QUICK, compare_methods, count_runs
 
     gc.enable()
-    chosen, budget = _read_methods(methods), QUICK if quick else FULL
+    wanted, budget = read_choices(methods, METHODS, "--methods"), QUICK if quick else FULL
+    chosen: list[TrackMethod] = [method for method in METHODS if method in wanted]
+    given = {"methods": methods, "drive": drive, "quick": quick or None}
     plans = [load_track(path).with_changes(drive=drive) for path in tracks]  # type: ignore[arg-type]
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
@@ -51,29 +51,10 @@ def bench_track(
         with note_compile("a minute or two"):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
-        page = make_comparison_page(compared, budget, _repeat(tracks, methods, drive, quick))
+        page = make_comparison_page(compared, budget, repeat_command(["bench", "track", *map(str, tracks)], given))
         data = compare_json(compared, budget)
         write_report(out, {RESULTS: format_results(data), "report.html": render_html(page)})
     if as_json:
         print_json(data)
     else:
         print_line(f"{out / 'report.html'}  ({RESULTS} beside it)")
-
-
-def _read_methods(text: str | None) -> "tuple[TrackMethod, ...]":
-    from ikde.track.comparison import METHODS
-
-    if text is None:
-        return METHODS
-    chosen = tuple(filter(None, text.split(",")))
-    if not chosen or not set(chosen) <= set(METHODS):
-        raise typer.BadParameter(f"expected some of {', '.join(METHODS)}, got {text!r}", param_hint="--methods")
-    return tuple(method for method in METHODS if method in chosen)
-
-
-def _repeat(tracks: Sequence[Path], methods: str | None, drive: str | None, quick: bool) -> str:
-    """The command that makes the page again."""
-    given = {"--methods": methods, "--drive": drive}
-    options = [part for option, value in given.items() if value for part in (option, value)]
-    options += ["--quick"] if quick else []
-    return shlex.join(["ikde", "bench", "track", *map(str, tracks), *options, "--out", "FOLDER"])

@@ -2,40 +2,22 @@
 
 import typer
 
+from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import (
-    AnglesOption,
-    AngleUnit,
-    ConventionOption,
-    DetectorOption,
-    JsonOption,
-    LengthUnit,
-    PairsOption,
-    PlotOption,
-    QOption,
-    RobotOption,
-    SafeDistanceOption,
-    UnitOption,
-    check_drawable,
-    draw,
-    note_unchecked,
-    read_collision,
-    read_q,
-)
 from ikde.cli.output import print_json, print_result, use_color
 
 
 def check(
-    q: QOption = None,
-    robot: RobotOption = "qiao2021",
-    detector: DetectorOption = None,
-    pairs: PairsOption = None,
-    safe_distance: SafeDistanceOption = None,
-    unit: UnitOption = LengthUnit.m,
-    angles: AnglesOption = AngleUnit.rad,
-    convention: ConventionOption = None,
-    plot: PlotOption = None,
-    as_json: JsonOption = False,
+    q: options.QOption = None,
+    robot: options.RobotOption = "qiao2021",
+    detector: options.DetectorOption = None,
+    pairs: options.PairsOption = None,
+    safe_distance: options.SafeDistanceOption = None,
+    unit: options.UnitOption = options.LengthUnit.m,
+    angles: options.AnglesOption = options.AngleUnit.rad,
+    convention: options.ConventionOption = None,
+    plot: options.PlotOption = None,
+    as_json: options.JsonOption = False,
 ) -> None:
     """Print the clearance of every pair of components, worst first.
 
@@ -49,14 +31,14 @@ def check(
     from ikde.solver.check import check as check_configuration
 
     model = load_robot(robot)
-    values = read_q(model, q, unit, angles, convention)
-    collision = read_collision(model, detector, pairs, safe_distance, unit)
+    values = options.read_q(model, q, unit, angles, convention)
+    collision = options.read_collision(model, detector, pairs, safe_distance, unit)
     result = check_configuration(model, values, collision)
-    check_drawable(plot)
-    note_unchecked(model, detector)
+    options.check_drawable(plot)
+    options.note_unchecked(model, detector)
     if as_json:
         print_json(check_json(model, result, convention))
     else:
         print_result(format_check(result, Units(unit, angles), color=use_color()))
-    draw(plot, collision, values)
+    options.draw(plot, collision, values)
     raise typer.Exit(ExitCode.NOT_REACHED if result.collision else ExitCode.OK)

@@ -1,32 +1,18 @@
 """`ikde fk`: where every frame is."""
 
-from ikde.cli.options import (
-    AnglesOption,
-    AngleUnit,
-    ConventionOption,
-    DetectorOption,
-    JsonOption,
-    LengthUnit,
-    PlotOption,
-    QOption,
-    RobotOption,
-    UnitOption,
-    check_drawable,
-    draw,
-    read_q,
-)
+from ikde.cli import options
 from ikde.cli.output import print_json, print_result, use_color
 
 
 def fk(
-    q: QOption = None,
-    robot: RobotOption = "qiao2021",
-    detector: DetectorOption = None,
-    unit: UnitOption = LengthUnit.m,
-    angles: AnglesOption = AngleUnit.rad,
-    convention: ConventionOption = None,
-    plot: PlotOption = None,
-    as_json: JsonOption = False,
+    q: options.QOption = None,
+    robot: options.RobotOption = "qiao2021",
+    detector: options.DetectorOption = None,
+    unit: options.UnitOption = options.LengthUnit.m,
+    angles: options.AnglesOption = options.AngleUnit.rad,
+    convention: options.ConventionOption = None,
+    plot: options.PlotOption = None,
+    as_json: options.JsonOption = False,
 ) -> None:
     """Print the pose of every frame in the world. Joint values outside the limits are accepted and named.
 
@@ -40,12 +26,12 @@ def fk(
     from ikde.solver.joints import joints_outside
 
     model = load_robot(robot)
-    values = read_q(model, q, unit, angles, convention)
+    values = options.read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
-    check_drawable(plot)
+    options.check_drawable(plot)
     collision = CollisionModel.of(model, detector)  # a wrong name is found before anything is printed
     if as_json:
         print_json(forward_json(model, values, frames, outside, convention))
     else:
         print_result(format_forward(model, frames, outside, Units(unit, angles), color=use_color()))
-    draw(plot, collision, values)
+    options.draw(plot, collision, values)

@@ -1,6 +1,7 @@
 """Options that several commands share, and how they become objects."""
 
-from collections.abc import Mapping
+import shlex
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -48,8 +49,7 @@ QOption = Annotated[
     ),
 ]
 DetectorOption = Annotated[
-    str | None,
-    of_collision(metavar="NAME|none", help="What counts as self-collision (default: the robot's)."),
+    str | None, of_collision(metavar="NAME|none", help="What counts as self-collision (default: the robot's).")
 ]
 PairsOption = Annotated[
     str | None, of_collision(metavar="LIST", help="Pair list instead of the detector's, e.g. non_adjacent.")
@@ -139,6 +139,21 @@ def read_freeze(
     given = {name: value for name, value in frozen.items() if value is not None}
     own = dict(zip(robot.joint_names, read_joints(robot, given, convention, default=robot.home), strict=True))
     return {name: float(own[name]) if name in given else None for name in frozen}
+
+
+def read_choices(text: str | None, known: Sequence[str], option: str) -> tuple[str, ...]:
+    """The names in `a,b`; all that are known if nothing is said."""
+    words = known if text is None else tuple(filter(None, text.split(",")))
+    if not words or not set(words) <= set(known):
+        raise typer.BadParameter(f"expected some of {', '.join(known)}, got {text!r}", param_hint=option)
+    return tuple(words)
+
+
+def repeat_command(words: Sequence[str], options: Mapping[str, object]) -> str:
+    """The command that makes a page again; of an option that is None there is nothing, of one that is True its name."""
+    given = {f"--{key}": value for key, value in options.items() if value is not None}
+    parts = [part for key, value in given.items() for part in ([key] if value is True else [key, str(value)])]
+    return shlex.join(["ikde", *words, *parts, "--out", "FOLDER"])
 
 
 def read_de(text: str | None) -> dict[str, Any]:

@@ -13,8 +13,7 @@ from ikde.cli.output import print_json, print_line
 def report(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of `ikde batch`, finished or not.")],
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="FOLDER", help="Where report.html and report.md go (default: RUN/report)."),
+        Path | None, typer.Option(metavar="FOLDER", help="Where report.html and report.md go (default: RUN/report).")
     ] = None,
     as_json: JsonOption = False,
 ) -> None:

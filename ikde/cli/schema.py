@@ -14,9 +14,7 @@ MODELS = {
 }
 
 
-def schema(
-    name: Annotated[str | None, typer.Argument(metavar="|".join(MODELS), show_default=False)] = None,
-) -> None:
+def schema(name: Annotated[str | None, typer.Argument(metavar="|".join(MODELS), show_default=False)] = None) -> None:
     """Print the JSON schema of a kind of file: editors complete its keys and explain them.
 
     Example: ikde schema batch > batch.schema.json

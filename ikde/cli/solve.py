@@ -5,31 +5,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import (
-    AnglesOption,
-    AngleUnit,
-    ConventionOption,
-    DetectorOption,
-    JsonOption,
-    LengthUnit,
-    PairsOption,
-    PlotOption,
-    RobotOption,
-    SafeDistanceOption,
-    UnitOption,
-    check_drawable,
-    check_positive,
-    draw,
-    note_unchecked,
-    of_robot,
-    of_search,
-    of_target,
-    read_collision,
-    read_de,
-    read_freeze,
-    read_q,
-)
+from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
 from ikde.solver.engine_table import ENGINES
@@ -62,8 +40,7 @@ OrientationToleranceOption = Annotated[
 ]
 NearOption = Annotated[str | None, of_robot(metavar="Q", help="Stay close to these joint values (as --q of check).")]
 FreezeOption = Annotated[
-    str | None,
-    of_robot(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home."),
+    str | None, of_robot(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home.")
 ]
 SeedOption = Annotated[int, of_search(help="Same seed, same answer.")]
 CountOption = Annotated[int, of_search(metavar="K", help="Distinct solutions to find.")]
@@ -95,12 +72,12 @@ def solve(
     axis: AxisOption = None,
     tolerance: ToleranceOption = None,
     orientation_tolerance: OrientationToleranceOption = None,
-    robot: RobotOption = "qiao2021",
+    robot: options.RobotOption = "qiao2021",
     near: NearOption = None,
     freeze: FreezeOption = None,
-    detector: DetectorOption = None,
-    pairs: PairsOption = None,
-    safe_distance: SafeDistanceOption = None,
+    detector: options.DetectorOption = None,
+    pairs: options.PairsOption = None,
+    safe_distance: options.SafeDistanceOption = None,
     seed: SeedOption = 0,
     count: CountOption = 1,
     rank: RankOption = "motion",
@@ -108,11 +85,11 @@ def solve(
     restarts: RestartsOption = None,
     timeout: TimeoutOption = None,
     de: DeOption = None,
-    unit: UnitOption = LengthUnit.m,
-    angles: AnglesOption = AngleUnit.rad,
-    convention: ConventionOption = None,
-    plot: PlotOption = None,
-    as_json: JsonOption = False,
+    unit: options.UnitOption = options.LengthUnit.m,
+    angles: options.AnglesOption = options.AngleUnit.rad,
+    convention: options.ConventionOption = None,
+    plot: options.PlotOption = None,
+    as_json: options.JsonOption = False,
 ) -> None:
     """Find joint values that bring the tool to a target, inside the limits and free of self-collision.
 
@@ -130,13 +107,13 @@ def solve(
     model, units = load_robot(robot), Units(unit, angles)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
-    checked = read_collision(model, detector, pairs, safe_distance, unit)
-    start = None if near is None else read_q(model, near, unit, angles, convention, "near")
+    checked = options.read_collision(model, detector, pairs, safe_distance, unit)
+    start = None if near is None else options.read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
-    frozen = read_freeze(model, freeze, unit, angles, convention)
+    frozen = options.read_freeze(model, freeze, unit, angles, convention)
     check_rank(rank)
-    check_drawable(plot)
-    note_unchecked(model, detector)
+    options.check_drawable(plot)
+    options.note_unchecked(model, detector)
     with working("searching ..."), note_compile():
         question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen}
         if count == 1:
@@ -144,7 +121,7 @@ def solve(
         else:
             results = solve_distinct(model, target, count, settings, rank=rank, **question)  # type: ignore[arg-type]
     _print(model, results, count, units, convention, as_json)
-    draw(plot, checked, results[0].q, target)
+    options.draw(plot, checked, results[0].q, target)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)
 
 
@@ -162,15 +139,15 @@ def _read_settings(
     from ikde.solver.settings import SolveSettings
 
     length_m, angle_rad = LENGTHS_M[units.length], ANGLES_RAD[units.angle]
-    check_positive(tolerance, "--tolerance")
-    check_positive(orientation_tolerance, "--orientation-tolerance", pi / angle_rad)
-    check_positive(timeout, "--timeout")
+    options.check_positive(tolerance, "--tolerance")
+    options.check_positive(orientation_tolerance, "--orientation-tolerance", pi / angle_rad)
+    options.check_positive(timeout, "--timeout")
     return SolveSettings.for_method(method).with_changes(
         position_tolerance_m=None if tolerance is None else tolerance * length_m,
         orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * angle_rad,
         restarts=restarts,
         timeout_s=timeout,
-        de=read_de(de),
+        de=options.read_de(de),
     )
 
 

@@ -1,23 +1,23 @@
 """`ikde track`: follow a path of the tool with the whole robot, into a folder that a robot could run from."""
 
 import gc
-import shlex
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q
+from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
 from ikde.cli.output import as_words, note_compile, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
     from ikde.track.summary import TrackSummary
 
-INSTEAD = "Instead of what the file says"
+instead = partial(typer.Option, rich_help_panel="Instead of what the file says")
 
 
 def track(
@@ -28,24 +28,17 @@ def track(
         Path | None, typer.Option(metavar="FOLDER", help="Where the motion, its figures and its page go.")
     ] = None,
     method: Annotated[
-        str | None,
-        typer.Option(help="continuation (ikde's own), optimized or typical (the paper's).", rich_help_panel=INSTEAD),
+        str | None, instead(help="continuation (ikde's own), optimized or typical (the paper's).")
     ] = None,
-    drive: Annotated[str | None, typer.Option(help="differential or omnidirectional.", rich_help_panel=INSTEAD)] = None,
-    seed: Annotated[int | None, typer.Option(help="Same seed, same motion.", rich_help_panel=INSTEAD)] = None,
+    drive: Annotated[str | None, instead(help="differential or omnidirectional.")] = None,
+    seed: Annotated[int | None, instead(help="Same seed, same motion.")] = None,
     start: Annotated[
-        str | None,
-        typer.Option(metavar="Q", help="Configuration at the first pose (as --q of check).", rich_help_panel=INSTEAD),
+        str | None, instead(metavar="Q", help="Configuration at the first pose (as --q of check).")
     ] = None,
-    unit: Annotated[
-        LengthUnit, typer.Option("--unit", help="Unit of lengths in --start.", rich_help_panel=INSTEAD)
-    ] = LengthUnit.m,
-    angles: Annotated[
-        AngleUnit, typer.Option("--angles", help="Unit of angles in --start.", rich_help_panel=INSTEAD)
-    ] = AngleUnit.rad,
+    unit: Annotated[LengthUnit, instead("--unit", help="Unit of lengths in --start.")] = LengthUnit.m,
+    angles: Annotated[AngleUnit, instead("--angles", help="Unit of angles in --start.")] = AngleUnit.rad,
     convention: Annotated[
-        str | None,
-        typer.Option(help="How joints are counted in --start (default: the robot's own).", rich_help_panel=INSTEAD),
+        str | None, instead(help="How joints are counted in --start (default: the robot's own).")
     ] = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Make the page with figures: report.html.")] = True,
     as_json: JsonOption = False,
@@ -57,8 +50,8 @@ def track(
 
     Example: ikde track configs/tracks/qiao2022_task1.yaml --out runs/task1
     """
+    from ikde.io.plan_file import load_track
     from ikde.io.report_folder import open_folder
-    from ikde.io.track_file import load_track
     from ikde.io.trajectory_files import write_track
     from ikde.report.track import format_track, track_json
 
@@ -69,7 +62,7 @@ def track(
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     given = {"method": method, "drive": drive, "seed": seed, "start": start}
     units = {"unit": unit if unit != LengthUnit.m else None, "angles": angles if angles != AngleUnit.rad else None}
-    command = _repeat(spec, {**given, **units, "convention": convention})
+    command = repeat_command(["track", str(spec)], {**given, **units, "convention": convention})
     with open_folder(out) if out else nullcontext():
         if not plan.collision.pairs:
             note_unchecked(plan.robot)
@@ -93,12 +86,6 @@ def _follow(plan: "TrackPlan") -> "TrackSummary":
     with note_compile("a minute or two"):
         trajectory = run_track(plan)
     return summarise_track(plan.collision, trajectory)
-
-
-def _repeat(spec: Path, options: Mapping[str, object]) -> str:
-    """The command that makes the page again."""
-    given = [part for key, value in options.items() if value is not None for part in (f"--{key}", str(value))]
-    return shlex.join(["ikde", "track", str(spec), *given, "--out", "FOLDER"])
 
 
 def _draw(motion: "TrackSummary", title: str, command: str, tell: Callable[[str], None]) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ikde.errors import FileError, quoted
-from ikde.formats.reading import errors_of, expect_at_most, max_bytes
+from ikde.formats.reading import check_room, errors_of
 
 ENDING = ".npy"
 PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
@@ -46,9 +46,7 @@ class NpzTable:
     def read(self, names: Sequence[str]) -> dict[str, np.ndarray]:
         """Arrays as they are."""
         chosen = {name: self._members[self.names.index(name)] for name in names}
-        size, most = sum(member.file_size for member in chosen.values()), max_bytes()
-        if size > most:
-            raise FileError(self._path, f"its arrays would take up {size / 1e6:,.0f} MB; {expect_at_most(most)}")
+        check_room(self._path, sum(member.file_size for member in chosen.values()), "arrays")
         return {name: np.atleast_1d(self._read(name, member)) for name, member in chosen.items()}
 
     def _read(self, name: str, member: zipfile.ZipInfo) -> np.ndarray:

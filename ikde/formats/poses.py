@@ -40,8 +40,7 @@ def read_orientation(entry: OrientationEntry, units: UnitsEntry) -> Orientation:
 def make_orientation(kind: OrientationKind, values: Floats) -> dict[str, Floats]:
     """What `Target` and `Targets` take, from axes [..., 3], roll, pitch, yaw [..., 3] in rad, or quaternions [..., 4].
 
-    Raises:
-        InputError: for a quaternion of length 0.
+    Raises `InputError` for a quaternion of length 0.
     """
     if kind == "axis":
         return {"axis_world_tool": np.asarray(values)}

@@ -37,12 +37,7 @@ def max_bytes(share: float = 1.0) -> int:
 
 
 def read_bytes(path: Path, share: float = 1.0, *, follow: bool = True) -> bytes:
-    """A whole file.
-
-    Args:
-        path: its name.
-        share: of the limit `$IKDE_MAX_FILE_MB`.
-        follow: whether a link may lead elsewhere.
+    """A whole file, of at most `share` of the limit `$IKDE_MAX_FILE_MB`; a link may lead elsewhere if told to `follow`.
 
     Raises:
         FileError: for what is missing, no regular file (a folder, pipe, device or socket), too large or unreadable.
@@ -71,13 +66,19 @@ def _check_regular(path: Path, status: os.stat_result, most: int) -> int:
     if not stat.S_ISREG(status.st_mode):
         raise FileError(path, "this is a pipe, a device or a socket; expected a regular file")
     if status.st_size > most:
-        raise FileError(path, f"{_write_mb(status.st_size)}; {expect_at_most(most)}")
+        raise FileError(path, f"{_write_mb(status.st_size)}; {_expect_at_most(most)}")
     return status.st_size
 
 
-def expect_at_most(most: int) -> str:
+def _expect_at_most(most: int) -> str:
     """What is said of files that are too large."""
     return f"expected at most {_write_mb(most)} (${LIMIT})"
+
+
+def check_room(path: Path, size: int, what: str = "columns") -> None:
+    """Refuse numbers that would not fit in memory before there are any."""
+    if size > max_bytes():
+        raise FileError(path, f"its {what} would take up {size / 1e6:,.0f} MB; {_expect_at_most(max_bytes())}")
 
 
 def _write_mb(size: int) -> str:
@@ -98,14 +99,13 @@ def read_json(path: Path, *, follow: bool = True) -> Any:
     depth = max(accumulate(_STEP.get(mark, 0) for mark in _BRACKET.findall(text)), default=0)
     if depth > MAX_DEPTH:
         raise FileError(path, f"nested too deeply; expected at most {MAX_DEPTH} levels")
-    try:
-        return json.loads(text, parse_constant=_refuse_constant)
-    except json.JSONDecodeError as error:
-        raise FileError(path, f"not JSON: {error.msg}", line=error.lineno) from None
-    except (ValueError, RecursionError) as error:
-        raise FileError(path, f"not JSON: {error}") from None
-    except MemoryError:
-        raise FileError(path, "cannot be read: not enough memory") from None
+    with errors_of(path):
+        try:
+            return json.loads(text, parse_constant=_refuse_constant)
+        except json.JSONDecodeError as error:
+            raise FileError(path, f"not JSON: {error.msg}", line=error.lineno) from None
+        except (ValueError, RecursionError) as error:
+            raise FileError(path, f"not JSON: {error}") from None
 
 
 def _refuse_constant(word: str) -> Any:

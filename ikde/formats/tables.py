@@ -18,7 +18,7 @@ import pyarrow.parquet as pq
 
 from ikde.errors import FileError, InputError, quoted
 from ikde.formats.npz import NpzTable
-from ikde.formats.reading import errors_of, expect_at_most, max_bytes, read_bytes
+from ikde.formats.reading import check_room, errors_of, read_bytes
 
 Column = pa.ChunkedArray | np.ndarray
 """[T], from arrow or numpy; of an NPZ file also [T, 3] or [T, 4]."""
@@ -157,12 +157,6 @@ def open_table(path: Path) -> Table:
     if len(table.names) > MAX_COLUMNS:
         raise FileError(path, f"expected at most {MAX_COLUMNS:,} columns, got {len(table.names):,}")
     return table
-
-
-def check_room(path: Path, size: int) -> None:
-    """Refuse numbers that would not fit in memory before there are any."""
-    if size > max_bytes():
-        raise FileError(path, f"its columns would take up {size / 1e6:,.0f} MB; {expect_at_most(max_bytes())}")
 
 
 def row_error(path: Path, row: int, message: str) -> FileError:

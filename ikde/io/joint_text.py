@@ -18,12 +18,8 @@ FILE_ENDINGS = (".yaml", ".yml", ".json")
 def parse_joints(robot: Robot, text: str, unit: str, angles: str, key: str = "q") -> list[float] | dict[str, float]:
     """Parse joint values into m and rad: a list in the robot's order, or a dict by joint name.
 
-    Args:
-        robot: the robot, for its joint names and kinds.
-        text: `"0 0 0.1 ..."`, `"q1=0.5 q_z=0"`, or the path of a YAML or JSON file with a list or a mapping.
-        unit: unit of the prismatic joints, `mm` or `m`.
-        angles: unit of the revolute joints, `deg` or `rad`.
-        key: what to call the value in an error.
+    `text` is `"0 0 0.1 ..."`, `"q1=0.5 q_z=0"`, or the path of a YAML or JSON file with a list or a mapping; prismatic
+    joints are in `unit`, revolute ones in `angles`. An error calls the value `key`.
 
     Raises:
         InputError: for words that are no numbers, a wrong count, an unknown joint.
@@ -40,7 +36,7 @@ def parse_joints(robot: Robot, text: str, unit: str, angles: str, key: str = "q"
 def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, float | None]:
     """Parse `d_x=0.2,q_z` into joints with their frozen value in m or rad, or None."""
     frozen: dict[str, float | None] = {}
-    for word in filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS).strip())):
+    for word in _split(text):
         name, equals, value = word.partition("=")
         if _known(name, robot.joint_names, "freeze") in frozen:
             raise InputError("this joint is given twice", ("freeze", name))
@@ -51,10 +47,14 @@ def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, f
     return frozen
 
 
+def _split(text: str) -> list[str]:
+    return list(filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS))))
+
+
 def _read(text: str, key: str) -> list[float] | dict[str, float]:
     if text.strip().lower().endswith(FILE_ENDINGS):
         return _read_file(Path(text.strip()))
-    words = list(filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS).strip())))
+    words = _split(text)
     if not any("=" in word for word in words):
         return [_number(word, (key,)) for word in words]
     pairs = {}
@@ -89,7 +89,6 @@ def _number(word: str, where: tuple[Any, ...]) -> float:
 
 def _known(name: str, names: Any, key: str) -> str:
     if name not in names:
-        raise InputError(
-            f"no joint is called {quoted(name)}{nearest(name, names)}; joints are {', '.join(names)}", (key,)
-        )
+        known = f"{nearest(name, names)}; joints are {', '.join(names)}"
+        raise InputError(f"no joint is called {quoted(name)}{known}", (key,))
     return name

@@ -13,16 +13,7 @@ from ikde.formats.robot_entries import make_detector
 from ikde.io.schema import as_file_error
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
-from ikde.model.robot import (
-    NO_DETECTOR,
-    AdjacentPair,
-    Frame,
-    Joint,
-    Provenance,
-    Robot,
-    SphereRow,
-    Wheels,
-)
+from ikde.model.robot import NO_DETECTOR, AdjacentPair, Frame, Joint, Provenance, Robot, SphereRow, Wheels
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import check_robot
 
@@ -145,7 +136,7 @@ def parse_robot(document: Document) -> Robot:
     try:
         return check_robot(_to_robot(file))
     except InputError as error:
-        raise document.at(error) from None
+        raise document.error(error.message, error.where) from None
 
 
 def _to_robot(file: RobotFile) -> Robot:
@@ -154,6 +145,7 @@ def _to_robot(file: RobotFile) -> Robot:
     if sum(entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
         raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
+    wheels = file.wheels
     return Robot(
         name=file.name,
         title=file.title,
@@ -168,7 +160,7 @@ def _to_robot(file: RobotFile) -> Robot:
         convention=file.convention,
         conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
         provenance=_provenance(file),
-        wheels=_to_wheels(file.wheels, length) if file.wheels else None,
+        wheels=Wheels(radius_m=wheels.radius * length, half_track_m=wheels.half_track * length) if wheels else None,
     )
 
 
@@ -207,10 +199,6 @@ def _to_row(entry: SphereRowEntry, length: float) -> SphereRow:
     )
 
 
-def _to_wheels(entry: WheelsEntry, length: float) -> Wheels:
-    return Wheels(radius_m=entry.radius * length, half_track_m=entry.half_track * length)
-
-
 def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...], known: dict[str, Pairs]) -> Pairs:
     """Pairs of a list with those of the lists it includes, each once, whichever way round.
 
@@ -245,21 +233,17 @@ def _choose_default(file: RobotFile) -> str:
     if file.default_detector is not None:
         return file.default_detector
     if len(file.detectors) > 1:
-        raise InputError(
-            f"there are several detectors: name one of {', '.join([*file.detectors, NO_DETECTOR])}",
-            ("default_detector",),
-        )
+        known = ", ".join([*file.detectors, NO_DETECTOR])
+        raise InputError(f"there are several detectors: name one of {known}", ("default_detector",))
     return next(iter(file.detectors), NO_DETECTOR)
 
 
 def _provenance(file: RobotFile) -> dict[Where, Provenance]:
     """Path of every entry (or of every key of it) that names a source -> that source."""
     found: dict[Where, Provenance] = {}
-    sections: dict[str, dict[str, Any]] = {
-        key: getattr(file, key) for key in ("joints", "frames", "conventions", "pairs", "detectors")
-    }
+    sections = ("joints", "frames", "conventions", "pairs", "detectors")
     entries: list[tuple[Where, Any]] = [
-        ((section, name), entry) for section, named in sections.items() for name, entry in named.items()
+        ((s, name), entry) for s in sections for name, entry in getattr(file, s).items()
     ]
     entries += [((key,), entry) for key in ("adjacent", "wheels") if (entry := getattr(file, key))]
     entries += [(("spheres", n, i), e) for n, rows in file.spheres.items() for i, e in enumerate(rows)]

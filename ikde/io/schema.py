@@ -1,12 +1,12 @@
 """Pydantic's complaints as ikde says them: one line, with the file, the line, the key and what was expected."""
 
 from types import UnionType
-from typing import Annotated, Any, Protocol, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.io.yaml_file import Where
+from ikde.io.yaml_file import Document, Where
 
 EXPECTED = {
     "missing": "this key is missing",
@@ -35,16 +35,6 @@ LIMITS = {
 KEY_ITSELF = "[key]"  # pydantic's last step to a key that is wrong, where others lead to values
 
 
-class Source(Protocol):
-    """Plain data that can say where in it an error is: a `Document`, or a `Given`."""
-
-    data: Any
-
-    def error(self, message: str, where: Where = ()) -> InputError:
-        """An error at a path of the data."""
-        ...
-
-
 class Given:
     """Data that came from no file: errors name the key alone."""
 
@@ -56,7 +46,7 @@ class Given:
         return InputError(message, where)
 
 
-def as_file_error(document: Source, error: ValidationError, model: type[BaseModel]) -> InputError:
+def as_file_error(document: Document | Given, error: ValidationError, model: type[BaseModel]) -> InputError:
     """The first complaint of pydantic, placed in the file; a misspelt key before the key that it left missing."""
     first = min(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
     where = _real_path(document.data, first["loc"])

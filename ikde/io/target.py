@@ -15,11 +15,7 @@ Numbers = Sequence[float]
 def make_target(
     position: Numbers, quat_wxyz: Numbers | None, rpy: Numbers | None, axis: Numbers | None, unit: str, angles: str
 ) -> Target:
-    """A target from a position in `unit` and at most one way to give the orientation.
-
-    Raises:
-        InputError: for NaN, infinity, a zero quaternion or axis, or two orientations.
-    """
+    """A target from a position in `unit` and at most one orientation; raises `InputError` for what makes none."""
     ways = {"--quat-wxyz": quat_wxyz, "--rpy": rpy, "--axis": axis}
     given = [name for name, value in ways.items() if value is not None]
     if len(given) > 1:

@@ -63,16 +63,9 @@ def write_trajectory(
 def write_track(
     folder: Path, trajectory: Trajectory, summary: Mapping[str, Any], page: str | None = None
 ) -> tuple[Path, ...]:
-    """Write what came of a track; what an earlier one left under these names is replaced or removed.
+    """Write what came of a track into a folder that is there; returns the files, the page first.
 
-    Args:
-        folder: where to; it is there.
-        trajectory: the motion; without a sample it has no files.
-        summary: plain data.
-        page: the page's text; None for no page.
-
-    Returns:
-        The files, the page first.
+    What an earlier track left under these names is replaced or removed. A motion without a sample has no files.
 
     Raises:
         FileError: if they cannot be written; then none of them is new, or only those that were named before.

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from ikde.errors import FileError, InputError, quoted
+from ikde.errors import FileError, quoted
 from ikde.formats.reading import MAX_DEPTH, read_text
 
 Where = tuple[str | int, ...]
@@ -69,10 +69,6 @@ class Document:
     def error(self, message: str, where: Where = ()) -> FileError:
         """An error at a path of this file."""
         return FileError(self.path, message, where, self.line(where))
-
-    def at(self, error: InputError) -> FileError:
-        """Another floor's error, placed in this file."""
-        return self.error(error.message, error.where)
 
 
 class _Anchored(NamedTuple):
@@ -167,7 +163,8 @@ class _Reader:
 
     def _read_scalar(self, event: Any, where: Where) -> Any:
         text = str(event.value)
-        tag = event.tag if event.tag not in (None, "!") else self._resolve(text, event.implicit)
+        known = event.tag not in (None, "!")
+        tag = event.tag if known else self._events.resolve(yaml.ScalarNode, text, event.implicit)
         try:
             match tag.rsplit(":", 1)[-1]:
                 case "int":
@@ -183,9 +180,6 @@ class _Reader:
         except ValueError:
             raise self._document.error(f"{quoted(text)} does not fit its tag {quoted(tag)}", where) from None
         raise self._document.error(f"the tag {quoted(tag)} is not read here", where)
-
-    def _resolve(self, text: str, implicit: tuple[bool, bool]) -> str:
-        return self._events.resolve(yaml.ScalarNode, text, implicit)
 
 
 def read_yaml(path: Path) -> Document:

@@ -85,6 +85,10 @@ class Panel:
     """The smallest span of the y axis, so that rounding is no mountain."""
 
 
+def _look(k: int) -> dict[str, Any]:
+    return {"color": pick(COLORS, k), "linestyle": pick(DASHES, k)}
+
+
 def plot_lines(
     lines: Sequence[Line], *, x: Axis, y: Axis, events: Sequence[Event] = (), level: tuple[float, str] | None = None
 ) -> Any:
@@ -92,7 +96,7 @@ def plot_lines(
     with drawing(x, y) as (figure, axes):
         colors = {line.label: pick(COLORS, k) for k, line in enumerate(lines)}
         for k, line in enumerate(lines):
-            axes.plot(line.x, line.y, label=legend_name(line.label), color=pick(COLORS, k), linestyle=pick(DASHES, k))
+            axes.plot(line.x, line.y, label=legend_name(line.label), **_look(k))
         if level is not None:
             axes.axhline(level[0], color=INK, linewidth=1.0, label=level[1])
         for k, event in enumerate(events):
@@ -137,7 +141,7 @@ def plot_forest(estimates: Sequence[Estimate], *, x: Axis, published: float | No
     count = len(estimates)
     with drawing(x, Axis(label=""), height_in=1.2 + 0.26 * count, grid="x") as (figure, axes):
         if published is not None:
-            axes.axvline(published, color=pick(COLORS, 1), linestyle=pick(DASHES, 1), linewidth=1.4, label="published")
+            axes.axvline(published, linewidth=1.4, label="published", **_look(1))
         rows = np.arange(count)
         holds = np.array([published is None or e.lower <= published <= e.upper for e in estimates], dtype=bool)
         _draw_estimates(axes, rows, estimates, holds, None if published is None else "interval holds it", "full")
@@ -166,8 +170,8 @@ def plot_cdf(samples: Sequence[Sample], *, x: Axis, y: str = "cases") -> Any:
     with drawing(x, Axis(label=f"{y} done", unit=SHARE, limits=(0, 101))) as (figure, axes):
         for k, (sample, values) in enumerate(zip(samples, numbers, strict=True)):
             total = len(values) if sample.total is None else sample.total
-            look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "drawstyle": "steps-post"}
-            axes.plot(*_climb(values, total, end), label=legend_name(sample.label), **look)
+            curve = _climb(values, total, end)
+            axes.plot(*curve, label=legend_name(sample.label), drawstyle="steps-post", **_look(k))
     return figure
 
 
@@ -187,8 +191,8 @@ def plot_histogram(samples: Sequence[Sample], *, x: Axis, bins: int = 60) -> Any
     with drawing(x, Axis(label="share", unit=SHARE, limits=(0, None))) as (figure, axes):
         for k, (sample, numbers) in enumerate(zip(samples, values, strict=True)):
             counts = np.histogram(np.clip(numbers, edges[0], edges[-1]), edges)[0]
-            look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "linewidth": 1.6}
-            axes.stairs(100.0 * counts / max(len(numbers), 1), edges, label=legend_name(sample.label), **look)
+            shares = 100.0 * counts / max(len(numbers), 1)
+            axes.stairs(shares, edges, label=legend_name(sample.label), linewidth=1.6, **_look(k))
     return figure
 
 
@@ -212,8 +216,7 @@ def plot_panels(panels: Sequence[Panel], *, x: Axis, columns: int = 1, height_in
         for axes, panel in zip(charts, panels, strict=True):
             for line in panel.lines:
                 k = labels.index(line.label) if line.label else 0
-                look = {"color": pick(COLORS, k), "linestyle": pick(DASHES, k), "linewidth": 1.6}
-                axes.plot(line.x, line.y, label=line.label or "_nolegend_", **look)
+                axes.plot(line.x, line.y, label=line.label or "_nolegend_", linewidth=1.6, **_look(k))
             for number, value in enumerate(panel.bounds):
                 label = "_nolegend_" if number else panel.bound
                 axes.axhline(value, color=INK, linewidth=0.9, linestyle=BOUND, label=label)

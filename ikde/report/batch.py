@@ -9,7 +9,7 @@ from ikde.batch.arm_summary import ArmSummary, TargetSummary, Unreached
 from ikde.batch.preview import Preview
 from ikde.batch.statistics import Rate, Spread
 from ikde.batch.summary import RunSummary
-from ikde.report.numbers import significant
+from ikde.report.numbers import count_of, significant
 from ikde.report.render import make_table, plain, render
 
 WIDTH = 160
@@ -29,8 +29,8 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
     from rich.filesize import decimal
 
     head = (
-        f"[bold]{plain(preview.name)}[/]: robot {plain(preview.robot)}, {_count(preview.targets, 'target')}, "
-        f"{_count(preview.repeats, 'repeat')}, seed {preview.seed}"
+        f"[bold]{plain(preview.name)}[/]: robot {plain(preview.robot)}, {count_of(preview.targets, 'target')}, "
+        f"{count_of(preview.repeats, 'repeat')}, seed {preview.seed}"
     )
     table = make_table("arm", "method", "detector", ">solves", ">ms a solve", ">about", ">of the sample reached")
     for arm in preview.arms:
@@ -43,8 +43,8 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
             f"{arm.sample_reached} / {arm.sample}",
         )
     lines = [
-        f"in all     {preview.solves:,} solves in {_count(preview.parts, 'part')}, about "
-        f"{format_seconds(preview.seconds)} on {_count(preview.threads, 'thread')}",
+        f"in all     {preview.solves:,} solves in {count_of(preview.parts, 'part')}, about "
+        f"{format_seconds(preview.seconds)} on {count_of(preview.threads, 'thread')}",
         f"on disk    about {decimal(preview.bytes)}",
         f"columns    {', '.join(preview.columns)}",
         "nothing was written",
@@ -71,27 +71,16 @@ def run_json(summary: RunSummary) -> dict[str, Any]:
 
 
 def _arm_json(arm: ArmSummary) -> dict[str, Any]:
-    return {
-        "name": arm.name,
-        "method": arm.method,
-        "detector": arm.detector,
-        "reached": _rate_json(arm.reached),
-        "collision_checked": arm.collision_checked,
-        "verified": asdict(arm.verified) if arm.verified.total else None,
-        "stop_reasons": dict(arm.stop_reasons),
-        "attempts": asdict(arm.attempts) if arm.attempts else None,
-        "milliseconds": asdict(arm.milliseconds) if arm.milliseconds else None,
-        "collisions": _collisions_json(arm),
-        "by_target": [
-            {"target": row.target, "name": row.name, "reached": _rate_json(row.reached)}
-            | {"collisions": _collisions_json(row)}
-            for row in arm.by_target
-        ],
-    }
+    """Its fields in their order, but for the targets that are listed for all arms together."""
+    rows = [asdict(row) | _rates_json(row) for row in arm.by_target]
+    verified = asdict(arm.verified) if arm.verified.total else None
+    data = asdict(arm) | _rates_json(arm) | {"verified": verified, "by_target": rows}
+    return {key: value for key, value in data.items() if key not in ("unreached_targets", "listed")}
 
 
-def _collisions_json(counted: ArmSummary | TargetSummary) -> dict[str, Any]:
-    return {grader: _rate_json(rate) for grader, rate in counted.collisions.items()}
+def _rates_json(counted: ArmSummary | TargetSummary) -> dict[str, Any]:
+    collisions = {grader: _rate_json(rate) for grader, rate in counted.collisions.items()}
+    return {"reached": _rate_json(counted.reached), "collisions": collisions}
 
 
 def _rate_json(rate: Rate) -> dict[str, Any]:
@@ -105,7 +94,7 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
     if summary.unreached:
         verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/]"
     else:
-        verdict = f"[bold green]all reached[/]: {_count(solves, 'solve')}"
+        verdict = f"[bold green]all reached[/]: {count_of(solves, 'solve')}"
     unchecked = [plain(arm.name) for arm in summary.arms if arm.collision_checked < arm.reached.total]
     if unchecked:
         verdict += f"\n[yellow]self-collision not checked[/]: {_name_arms(unchecked)}"
@@ -133,9 +122,9 @@ def _arm_table(arms: Iterable[ArmSummary]) -> Any:
     for arm in arms:
         table.add_row(
             *map(plain, (arm.name, arm.method, arm.detector)),
-            f"{arm.reached.count:,} / {arm.reached.total:,}",
+            _format_count(arm.reached),
             format_rate(arm.reached),
-            f"{arm.verified.count:,} / {arm.verified.total:,}" if arm.verified.total else "not checked",
+            _format_count(arm.verified) if arm.verified.total else "not checked",
             _format_spread(arm.attempts, "{:,.0f}".format),
             _format_spread(arm.milliseconds, significant),
         )
@@ -146,7 +135,7 @@ def _collision_table(arms: Iterable[ArmSummary]) -> Any:
     table = make_table("arm", "graded by", ">in collision", ">rate (95 %)", title="reached solutions, graded again")
     for arm in arms:
         for grader, rate in arm.collisions.items():
-            table.add_row(plain(arm.name), plain(grader), f"{rate.count:,} / {rate.total:,}", format_rate(rate))
+            table.add_row(plain(arm.name), plain(grader), _format_count(rate), format_rate(rate))
     return table
 
 
@@ -157,11 +146,8 @@ def _target_table(arms: Sequence[ArmSummary]) -> Any:
     table = make_table("arm", "target", *columns, title="by target")
     for arm in arms:
         for row in arm.by_target:
-            rates = (format_rate(row.collisions[grader]) for grader in graders)
-            reached = f"{row.reached.count:,} / {row.reached.total:,}"
-            table.add_row(
-                plain(arm.name), plain(row.name or str(row.target)), reached, format_rate(row.reached), *rates
-            )
+            rates = (format_rate(rate) for rate in (row.reached, *(row.collisions[name] for name in graders)))
+            table.add_row(plain(arm.name), plain(row.name or str(row.target)), _format_count(row.reached), *rates)
     return table
 
 
@@ -179,7 +165,7 @@ def _list_unreached(summary: RunSummary) -> list[str]:
         named = arm.listed[:MAX_NAMED]
         more = arm.unreached_targets - len(named)
         lines += (f"  {plain(_format_unreached(row, summary.repeats))}" for row in named)
-        lines += [f"  {plain(arm.name)}, and {_count(more, 'more target')}"] if more else []
+        lines += [f"  {plain(arm.name)}, and {count_of(more, 'more target')}"] if more else []
     return [*lines, ""]
 
 
@@ -188,6 +174,10 @@ def _format_unreached(row: Unreached, repeats: int) -> str:
     name = f" {row.name}" if row.name not in (None, number) else ""
     often = f", {row.missed:,} of {repeats:,} repeats, first repeat {row.repeat}" if repeats > 1 else ""
     return f"{row.arm}, {number}{name}{often}: {row.reason or row.stop_reason}"
+
+
+def _format_count(rate: Rate) -> str:
+    return f"{rate.count:,} / {rate.total:,}"
 
 
 def format_rate(rate: Rate) -> str:
@@ -209,7 +199,3 @@ def format_seconds(seconds: float) -> str:
             whole, left = divmod(round(seconds / small), large // small)
             return f"{whole} {unit} {left} {rest}"
     return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
-
-
-def _count(number: int, thing: str) -> str:
-    return f"{number:,} {thing}{'s' if number != 1 else ''}"

@@ -1,6 +1,7 @@
 """Frames and clearances as text and as JSON."""
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from ikde.formats.entries import LENGTHS_M
@@ -12,14 +13,19 @@ from ikde.report.render import make_table, plain, render
 from ikde.solver.check import CheckResult
 
 
+def joints_json(robot: Robot, q: Floats, convention: str | None) -> dict[str, Any]:
+    """A configuration by joint in the convention asked for, with its name."""
+    shown = to_convention(robot, q, convention).tolist()
+    return {"convention": convention or robot.convention, "q": dict(zip(robot.joint_names, shown, strict=True))}
+
+
 def forward_json(
     robot: Robot, q: Floats, Ts_world: Mapping[str, Floats], outside: tuple[str, ...], convention: str | None = None
 ) -> dict[str, Any]:
     """Frames by name: `p_world` [3] in m and `R_world` [3][3]; q in the convention asked for."""
     return {
         "robot": robot.name,
-        "convention": convention or robot.convention,
-        "q": dict(zip(robot.joint_names, to_convention(robot, q, convention).tolist(), strict=True)),
+        **joints_json(robot, q, convention),
         "outside_limits": list(outside),
         "frames": {name: {"p_world": T[:3, 3].tolist(), "R_world": T[:3, :3].tolist()} for name, T in Ts_world.items()},
     }
@@ -54,12 +60,8 @@ def check_json(robot: Robot, result: CheckResult, convention: str | None = None)
         "safe_distance_m": result.safe_distance_m,
         "collision": result.collision,
         "clearance_m": result.clearance_m,
-        "pairs": [
-            {"a": pair.a, "b": pair.b, "clearance_m": pair.clearance_m, "collides": pair.collides}
-            for pair in result.pairs
-        ],
-        "convention": convention or robot.convention,
-        "q": dict(zip(robot.joint_names, to_convention(robot, result.q, convention).tolist(), strict=True)),
+        "pairs": [asdict(pair) for pair in result.pairs],
+        **joints_json(robot, result.q, convention),
         "outside_limits": list(result.outside_limits),
     }
 

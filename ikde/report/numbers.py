@@ -54,6 +54,11 @@ def significant(value: float, digits: int = 3) -> str:
     return f"{rounded:,.{max(0, digits - 1 - exponent)}f}"
 
 
+def count_of(number: int, thing: str) -> str:
+    """`1 target`, `1,200 targets`."""
+    return f"{number:,} {thing}{'s' if number != 1 else ''}"
+
+
 def seconds(value_s: float) -> str:
     """`23 µs`, `1.4 ms` or `2.1 s`."""
     for factor, unit in ((1e6, "µs"), (1e3, "ms")):

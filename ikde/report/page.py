@@ -5,7 +5,7 @@ Fields that hold *markup* (`markup.py`) say so; titles, labels and table cells a
 
 import re
 from dataclasses import dataclass, field
-from itertools import chain, count
+from itertools import chain, count, groupby
 from typing import Literal
 
 Align = Literal["left", "right"]
@@ -75,6 +75,16 @@ class Column:
         group = f"{self.group}: " if self.group else ""
         return f"{group}{self.title} [{self.unit}]" if self.unit else f"{group}{self.title}"
 
+    @classmethod
+    def of(cls, *heads: str) -> tuple["Column", ...]:
+        """Columns by their heads, written as for the terminal's `make_table`: `arm`, `>solves`, `>time [ms]`."""
+        return tuple(map(_read_head, heads))
+
+
+def _read_head(head: str) -> Column:
+    title, _, unit = head.removesuffix("]").partition(" [")
+    return Column(title.removeprefix(">"), unit, "right" if head.startswith(">") else "left")
+
 
 @dataclass(frozen=True, slots=True)
 class Cell:
@@ -114,12 +124,7 @@ class Table:
 
     def groups(self) -> list[tuple[str, int]]:
         """Heads above the heads with the number of columns below them; empty if no column has a group."""
-        spans: list[tuple[str, int]] = []
-        for column in self.columns:
-            if spans and spans[-1][0] == column.group:
-                spans[-1] = (column.group, spans[-1][1] + 1)
-            else:
-                spans.append((column.group, 1))
+        spans = [(name, len(list(columns))) for name, columns in groupby(self.columns, lambda column: column.group)]
         return spans if any(name for name, _ in spans) else []
 
 

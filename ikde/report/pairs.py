@@ -1,5 +1,6 @@
 """Which pairs of components a detector compares, and why it leaves out the others, as text and as JSON."""
 
+from dataclasses import asdict
 from typing import Any
 
 from ikde.formats.entries import LENGTHS_M
@@ -23,7 +24,7 @@ def pairs_json(collision: CollisionModel) -> dict[str, Any] | None:
             {"a": pair.a, "b": pair.b, "clearance_at_home_m": pair.clearance_m}
             for pair in compute_pairs(collision, collision.robot.home)
         ],
-        "left_out": [{"a": p.a, "b": p.b, "reason": p.reason} for p in collision.left_out_pairs],
+        "left_out": [asdict(pair) for pair in collision.left_out_pairs],
         "always_touching": [list(pair) for pair in touching.pairs] if touching else [],
         "to_add": list(touching.lines) if touching else [],
     }

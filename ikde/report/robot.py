@@ -54,7 +54,7 @@ def robot_json(collision: CollisionModel) -> dict[str, Any]:
             for name, d in robot.detectors.items()
         },
         "default_detector": robot.default_detector,
-        "adjacent": [{"a": pair.a, "b": pair.b, "reason": pair.reason} for pair in robot.adjacent],
+        "adjacent": [asdict(pair) for pair in robot.adjacent],
         "collision": pairs_json(collision),
         "wheels": None if robot.wheels is None else asdict(robot.wheels),
         "provenance": dict(Counter(p.kind for p in robot.provenance.values())),
@@ -74,20 +74,12 @@ def format_robot(collision: CollisionModel, units: Units, *, color: bool = False
 
 
 def _joint_table(robot: Robot, units: Units) -> Any:
-    table = make_table(
-        "joint",
-        "kind",
-        ">lower",
-        ">home",
-        ">upper",
-        "unit",
-        "limits from",
-        title=f"joints, {robot.convention} convention",
-    )
+    heads = ("joint", "kind", ">lower", ">home", ">upper", "unit", "limits from")
+    table = make_table(*heads, title=f"joints, {robot.convention} convention")
     for joint in robot.joints:
         values = [f"{units.joint_value(joint, v):.6g}" for v in (joint.lower, joint.home, joint.upper)]
-        source = robot.provenance.get(("joints", joint.name, "lower")) or robot.provenance.get(("joints", joint.name))
-        table.add_row(plain(joint.name), joint.kind, *values, units.joint_unit(joint), source.kind if source else "")
+        source = _source_kind(robot, "joints", joint.name, "lower")
+        table.add_row(plain(joint.name), joint.kind, *values, units.joint_unit(joint), source)
     return table
 
 
@@ -95,18 +87,15 @@ def _frame_table(robot: Robot, units: Units) -> Any:
     table = make_table("frame", "parent", f"offset [{units.length}]", "joint", "from", title="frames")
     for frame in robot.frames:
         offset = " ".join(f"{v / LENGTHS_M[units.length]:.6g}" for v in frame.p_parent_frame)
-        source = robot.provenance.get(("frames", frame.name))
-        table.add_row(
-            plain(frame.name), plain(frame.parent), offset, plain(frame.joint or ""), source.kind if source else ""
-        )
+        names = map(plain, (frame.name, frame.parent, offset, frame.joint or ""))
+        table.add_row(*names, _source_kind(robot, "frames", frame.name))
     return table
 
 
 def _wheel_table(robot: Robot, wheels: Wheels, units: Units) -> Any:
     table = make_table("wheels", f">[{units.length}]", "from", title="wheels")
     for key, value in (("radius", wheels.radius_m), ("half_track", wheels.half_track_m)):
-        source = robot.provenance.get(("wheels", key)) or robot.provenance.get(("wheels",))
-        table.add_row(key, f"{value / LENGTHS_M[units.length]:.6g}", source.kind if source else "")
+        table.add_row(key, f"{value / LENGTHS_M[units.length]:.6g}", _source_kind(robot, "wheels", key))
     return table
 
 
@@ -119,6 +108,12 @@ def _detector_table(robot: Robot, units: Units) -> Any:
         distance = units.format_length(detector.safe_distance_m)
         table.add_row(plain(shown), plain(detector.spheres), str(spheres), plain(detector.pairs), str(pairs), distance)
     return table
+
+
+def _source_kind(robot: Robot, *where: str) -> str:
+    """Where the numbers at a place, or else those of the whole entry, come from."""
+    source = robot.provenance.get(where) or robot.provenance.get(where[:-1])
+    return source.kind if source else ""
 
 
 def _sources(robot: Robot) -> Any:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
+from ikde.report.geometry import joints_json
 from ikde.report.numbers import Units, format_fixed, seconds
 from ikde.report.render import make_table, plain, render
 from ikde.solver.engine_table import ENGINES
@@ -17,15 +18,13 @@ BAR = 21  # columns of a joint's bar
 
 def solve_json(robot: Robot, result: SolveResult, convention: str | None = None) -> dict[str, Any]:
     """A result as plain data: m, rad, s; `q` by joint name in the convention asked for."""
-    q = to_convention(robot, result.q, convention)
     return {
         "reached": result.reached,
         "stop_reason": str(result.stop_reason),
         "reason": result.reason,
         "hint": result.hint,
         "robot": robot.name,
-        "convention": convention or robot.convention,
-        "q": dict(zip(result.joint_names, q.tolist(), strict=True)),
+        **joints_json(robot, result.q, convention),
         "position_error_m": result.position_error_m,
         "orientation_error_rad": result.orientation_error_rad,
         "clearance_m": result.clearance_m,
@@ -80,11 +79,6 @@ def _bar(value: float, lower: float, upper: float) -> str:
     return "─" * at + "●" + "─" * (BAR - 1 - at)
 
 
-def describe_engine(result: SolveResult) -> str:
-    """The engine that answered, and of the paper's its settings."""
-    return ENGINES[result.method].label.format(de=result.settings.evolution)
-
-
 GRADERS = {
     True: "by kernels, confirmed by plain numpy",
     False: "by kernels; plain numpy disagrees",
@@ -106,14 +100,11 @@ def _figure_table(robot: Robot, result: SolveResult, units: Units) -> Any:
     table.add_row("self-collision", COLLISIONS[result.collision])
     table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
-    table.add_row(
-        "cost",
-        f"{seconds(result.solve_seconds)}, {result.evaluations} evaluations in "
-        f"{result.attempts} attempt{'s' if result.attempts != 1 else ''}{rejected}",
-    )
+    attempts = f"{result.attempts} attempt{'s' if result.attempts != 1 else ''}{rejected}"
+    table.add_row("cost", f"{seconds(result.solve_seconds)}, {result.evaluations} evaluations in {attempts}")
     if result.compile_seconds:
         table.add_row("compiled first", f"{result.compile_seconds:.1f} s")
-    table.add_row("engine", describe_engine(result))
+    table.add_row("engine", ENGINES[result.method].label.format(de=result.settings.evolution))
     if result.family:
         table.add_row("family", f"{result.family} (shoulder, elbow, wrist)")
     table.add_row("repeat with", f"the same command, seed {result.seed}: the same bits")

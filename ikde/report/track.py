@@ -123,7 +123,7 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     if len(trajectory.seconds):
         times = (1e6 * float(np.quantile(trajectory.seconds, share)) for share in (0.5, 0.99))
         spread = " / ".join(map(significant, times))
-        yield "time of a single step, median / p99", f"{spread} µs", _period(trajectory.path.dt_s)
+        yield "time of a single step, median / p99", f"{spread} µs", f"{1e6 * trajectory.path.dt_s:,.0f} µs"
         yield "time of the whole search", seconds(trajectory.search_seconds), ""
 
 
@@ -200,18 +200,11 @@ def gap_mm(gap_m: float, digits: int = 2) -> str:
 
 def _limits_json(motion: TrackSummary) -> dict[str, Any]:
     """What the motion had to keep; None where anything goes."""
-    limits = motion.limits
-    rows = {"speed": limits.speed, "acceleration": limits.acceleration}
-    named = {key: {} if row is None else name_joints(motion, row) for key, row in rows.items()}
-    return {
-        "ranges": limits.ranges,
-        **{key: {joint: _finite(value) for joint, value in row.items()} or None for key, row in named.items()},
-        "wheel_speed_rad_s": limits.wheel_speed_rad_s,
-        "max_distance_m": limits.max_distance_m,
-        "center": limits.center,
-        "position_error_m": limits.position_error_m,
-        "orientation_error_rad": limits.orientation_error_rad,
-    }
+    data = asdict(motion.limits)
+    for key in ("speed", "acceleration"):
+        if data[key] is not None:
+            data[key] = {joint: _finite(value) for joint, value in name_joints(motion, data[key]).items()}
+    return data
 
 
 def _is_prismatic(motion: TrackSummary, name: str) -> bool:
@@ -239,7 +232,3 @@ def _tiny(value: float) -> str:
 
 def _mm(value_m: float) -> str:
     return _tiny(MM * value_m)
-
-
-def _period(dt_s: float) -> str:
-    return f"{1e6 * dt_s:,.0f} µs"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ikde import __version__
-from ikde.report.numbers import significant
+from ikde.report.numbers import count_of, significant
 from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
 from ikde.report.track import MM, gap_mm, singular
 from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
@@ -46,8 +46,7 @@ def compare_json(compared: Sequence[Compared], budget: TrackBudget) -> dict[str,
 def make_comparison_page(compared: Sequence[Compared], budget: TrackBudget, command: str) -> Page:
     """One table over all tracks, then each track with its figures."""
     methods = list(dict.fromkeys(method for one in compared for method in one.motions))
-    paths = f"{len(compared)} path{'s' if len(compared) > 1 else ''}"
-    seeds = f"{budget.seeds} seed{'s' if budget.seeds > 1 else ''}"
+    paths, seeds = count_of(len(compared), "path"), count_of(budget.seeds, "seed")
     return Page(
         title="Following tool paths: the paper's methods beside ours",
         subtitle=f"{paths}: {', '.join(NAMES[method] for method in methods)}; {seeds} each.",
@@ -73,14 +72,13 @@ def _make_legend() -> Block:
 
 def make_runs_table(compared: Sequence[Compared]) -> Table:
     """A row a track and method: the worst of all seeds, times of the first."""
-    rows, names = [], shorten_names([one.data["name"] for one in compared])
-    for one, path in zip(compared, names, strict=True):
+    rows = []
+    for one, path in zip(compared, shorten_names([one.data["name"] for one in compared]), strict=True):
         for method in one.motions:
             runs = [run for run in one.data["runs"] if run["method"] == method]
-            cells = [path, method, *list_cells(runs)]
-            rows.append(tuple(Cell(cell, "ours") if method == OURS else cell for cell in cells))
+            rows.append(_mark_ours(path, method, *list_cells(runs)))
     return Table(
-        columns=(Column("path", align="left"), Column("method", align="left"), *FIGURES),
+        columns=(*Column.of("path", "method"), *FIGURES),
         rows=tuple(rows),
         caption="What each method reaches, breaks and costs",
         note="Counts are ranges over the seeds; errors, steps and clearances the worst. A step is what the base or a "
@@ -90,6 +88,10 @@ def make_runs_table(compared: Sequence[Compared]) -> Table:
         "the motion that was found, the whole path all the search for it, starts and backtracking; the other two were "
         "given their start. The typical DE moves the base freely in the plane.",
     )
+
+
+def _mark_ours(path: str, method: str, *cells: str) -> tuple[str | Cell, ...]:
+    return tuple(Cell(cell, "ours") if method == OURS else cell for cell in (path, method, *cells))
 
 
 def shorten_names(names: Sequence[str]) -> list[str]:
@@ -132,18 +134,15 @@ def _span(runs: Sequence[Row], key: str) -> str:
 
 def make_ends_table(compared: Sequence[Compared]) -> Table:
     """From how many random starts each method ends before its path does, and what is then in the way."""
-    rows, names = [], shorten_names([one.data["name"] for one in compared])
-    for one, path in zip(compared, names, strict=True):
+    rows = []
+    for one, path in zip(compared, shorten_names([one.data["name"] for one in compared]), strict=True):
         ends = one.data["dead_ends"]
         for name in ends["reached_points"]:
-            why = ", ".join(
-                f"{count} {reason.replace('_', ' ')}" for reason, count in ends["stops"].get(name, {}).items()
-            )
-            cells = (path, name, f"{ends[name]} of {ends['starts']}", why)
-            rows.append(tuple(Cell(cell, "ours") if name == OURS else cell for cell in cells))
-    columns = Column("path", align="left"), Column("method", align="left"), Column("dead ends")
+            stops = ends["stops"].get(name, {})
+            why = ", ".join(f"{count} {reason.replace('_', ' ')}" for reason, count in stops.items())
+            rows.append(_mark_ours(path, name, f"{ends[name]} of {ends['starts']}", why))
     return Table(
-        columns=(*columns, Column("what is in the way", align="left")),
+        columns=Column.of("path", "method", ">dead ends", "what is in the way"),
         rows=tuple(rows),
         caption="Dead ends: random starts from which a path is not followed to its end",
         note="Starts are free configurations at the first pose, near which random ones came to rest. Greedy is "

@@ -6,6 +6,7 @@ import sys
 from shutil import get_terminal_size
 
 import pytest
+import typer
 
 import ikde
 from ikde.cli.options import (
@@ -14,10 +15,12 @@ from ikde.cli.options import (
     check_drawable,
     draw,
     note_unchecked,
+    read_choices,
     read_collision,
     read_de,
     read_freeze,
     read_q,
+    repeat_command,
 )
 from ikde.cli.output import page_width
 from ikde.errors import FileError, InputError
@@ -200,3 +203,22 @@ def test_what_is_no_setting_of_the_de_is_refused(text, words):
     with pytest.raises(InputError) as caught:
         read_de(text)
     assert str(caught.value).startswith(words)
+
+
+def test_names_are_read_in_their_order_and_all_if_nothing_is_said():
+    known = ("a", "b", "c")
+    assert read_choices("c,a", known, "--only") == ("c", "a")
+    assert read_choices(None, known, "--only") == known
+
+
+@pytest.mark.parametrize("text", ["", ",", "a,d"])
+def test_names_that_are_none_are_refused(text):
+    with pytest.raises(typer.BadParameter, match="expected some of a, b"):
+        read_choices(text, ("a", "b"), "--only")
+
+
+def test_a_command_is_repeated_with_what_was_said():
+    said = {"seed": 0, "drive": None, "start": "q1=1 q2=2", "quick": True}
+    assert repeat_command(["track", "a b.yaml"], said) == (
+        "ikde track 'a b.yaml' --seed 0 --start 'q1=1 q2=2' --quick --out FOLDER"
+    )

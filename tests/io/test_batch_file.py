@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import ikde
 from ikde.errors import FileError, InputError
-from ikde.io.batch_file import load_batch
+from ikde.io.plan_file import load_batch
 from ikde.io.robots import FOLDER
 from ikde.kernels import cache_folder
 from ikde.model.collision_model import CollisionModel

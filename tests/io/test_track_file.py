@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ikde.errors import FileError, InputError
-from ikde.io.track_file import load_track
+from ikde.io.plan_file import load_track
 
 SHIPPED = {path.stem: path for path in sorted((Path(__file__).parents[2] / "configs" / "tracks").glob("*.yaml"))}
 GOOD = """\

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ikde.report.numbers import Units, fixed, format_fixed, percent, significant, vector, with_interval
+from ikde.report.numbers import Units, count_of, fixed, format_fixed, percent, significant, vector, with_interval
 
 MM_DEG = Units("mm", "deg")
 
@@ -66,3 +66,8 @@ def test_a_joint_has_the_unit_of_its_kind(qiao):
     assert MM_DEG.joint_value(slide, 0.5) == pytest.approx(500)
     assert MM_DEG.joint_value(turn, np.pi / 2) == pytest.approx(90)
     assert Units().joint_value(turn, 0.25) == 0.25
+
+
+@pytest.mark.parametrize(("number", "text"), [(0, "0 arms"), (1, "1 arm"), (1200, "1,200 arms")])
+def test_one_is_no_plural(number, text):
+    assert count_of(number, "arm") == text

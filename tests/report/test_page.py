@@ -29,6 +29,13 @@ def test_a_head_that_stands_alone_says_group_and_unit(column, head):
     assert column.head == head
 
 
+def test_heads_are_written_as_those_of_the_terminal():
+    words, right, unit = Column.of("arm", ">solves", ">time [ms]")
+    assert words == Column("arm", align="left")
+    assert right == Column("solves")
+    assert unit == Column("time", "ms")
+
+
 def test_neighbours_of_one_group_share_a_head():
     groups = ("", "print", "print", "ours", "print")
     table = Table(columns=tuple(Column("a", group=g) for g in groups), rows=(), caption="")

@@ -4,7 +4,7 @@ from functools import cache
 from pathlib import Path
 
 import ikde
-from ikde.io.track_file import load_track
+from ikde.io.plan_file import load_track
 from ikde.solver.settings import SolveSettings
 from ikde.track.follower import make_follower
 from ikde.track.limits import MotionLimits

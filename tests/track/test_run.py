@@ -6,7 +6,7 @@ import yaml
 
 import ikde
 from ikde.errors import FileError, InputError
-from ikde.io.track_file import load_track
+from ikde.io.plan_file import load_track
 from ikde.kernels.jit import compile_clock
 from ikde.solver.warmup import warm_up
 from ikde.track.follow_path import follow_path

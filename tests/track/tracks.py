@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import ikde
-from ikde.io.track_file import load_track
+from ikde.io.plan_file import load_track
 from ikde.track.follow_path import follow_path
 from ikde.track.path import ToolPath
 

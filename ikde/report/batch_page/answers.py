@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from ikde.batch.check_part import verdict_columns
 from ikde.batch.manifest import ArmFacts, Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part
 from ikde.batch.read import list_finished, read_part, read_verdicts
@@ -111,11 +112,7 @@ class RunAnswers:
 
 
 def gather_answers(folder: str | PathLike[str]) -> RunAnswers:
-    """Read a run, finished or not: of each part only the columns that a page shows.
-
-    Raises:
-        FileError: for a folder that is no run, or holds a part that is damaged.
-    """
+    """Read of each part of a run what a page shows; raises `FileError` for what is no run, or is damaged."""
     folder = Path(folder)
     manifest = read_manifest(folder)
     piles = {arm.name: _Pile() for arm in manifest.arms}
@@ -143,14 +140,14 @@ class _Pile:
         """Put one part on the pile; returns what was read of its solutions."""
         graders = manifest.graders
         listing = MISSED if len(self.missed) < MAX_MISSED else ()
-        wanted = [*NUMBERS, *_verdicts(graders), *WORDS, "target_name", *listing]
+        wanted = [*NUMBERS, *verdict_columns(graders), *WORDS, "target_name", *listing]
         solutions = read_part(folder, manifest, part, SOLUTIONS, wanted)
         timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
         for table, names in ((solutions, NUMBERS), (timing, ("solve_seconds",))):
             for name in names:
                 if name in table.column_names:
                     self.numbers.setdefault(name, []).append(table[name].to_numpy())
-        for name in _verdicts(graders):
+        for name in verdict_columns(graders):
             self.verdicts.setdefault(name, []).append(read_verdicts(solutions[name]))
         self._count_words(solutions)
         if listing:
@@ -177,7 +174,7 @@ class _Pile:
         if len(set(map(len, numbers.values()))) > 1:
             raise FileError(folder, f"its parts of arm {facts.name} hold different columns")
         nothing = np.ma.masked_array(np.empty(0, dtype=bool))
-        verdicts = {name: np.ma.concatenate(self.verdicts.get(name, [nothing])) for name in _verdicts(graders)}
+        verdicts = {name: np.ma.concatenate(self.verdicts.get(name, [nothing])) for name in verdict_columns(graders)}
         return ArmAnswers(
             facts=facts,
             numbers=numbers or NOTHING,
@@ -186,10 +183,6 @@ class _Pile:
             closest_pairs=dict(self.closest_pairs.most_common()),
             missed=self.missed,
         )
-
-
-def _verdicts(graders: tuple[str, ...]) -> list[str]:
-    return ["collision", "verified", *(f"{grader}_collides" for grader in graders)]
 
 
 def _find_names(solutions: pa.Table) -> dict[int, str]:

@@ -55,8 +55,7 @@ def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
     heads = {measure: ("least", "median") if measure is CLEARANCE else ("median", "at most") for measure in measures}
     return Table(
         columns=(
-            Column("arm", align="left"),
-            Column("detector", align="left"),
+            *Column.of("arm", "detector"),
             *(Column(head, measure.unit, group=measure.title) for measure in measures for head in heads[measure]),
         ),
         rows=tuple(
@@ -105,10 +104,7 @@ def _make_pairs(run: RunAnswers) -> Table:
     return Table(
         columns=(Column("pair", align="left"), *(Column(arm.name, "%", group="closest in") for arm in run.arms)),
         rows=tuple(
-            (
-                " – ".join(pair),
-                *(fixed(100 * shares.get(pair, 0.0), 1) if shares else "–" for shares in arms),
-            )
+            (" – ".join(pair), *(fixed(100 * shares.get(pair, 0.0), 1) if shares else "–" for shares in arms))
             for pair in shown
         ),
         caption="Which two components come closest, in percent of the reached solutions",

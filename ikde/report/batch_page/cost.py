@@ -73,12 +73,7 @@ def _draw(run: RunAnswers) -> list[Figure]:
         if len(np.unique(np.concatenate([np.empty(0), *(sample.values for sample in samples)]))) < 2:
             continue  # a curve of one value says nothing that the table does not
         figure = plot_cdf(samples, x=Axis(label=label, unit=unit, log=is_wide(samples), whole=not unit), y="solves")
-        figures.append(
-            Figure(
-                image=to_svg(figure),
-                alt=f"Share of the solves that reached their target within so much: {label}, a curve an arm",
-                caption=f"Solves that reached their target within so {'many attempts' if not unit else 'much time'}."
-                f"{few}",
-            )
-        )
+        alt = f"Share of the solves that reached their target within so much: {label}, a curve an arm"
+        caption = f"Solves that reached their target within so {'much time' if unit else 'many attempts'}.{few}"
+        figures.append(Figure(image=to_svg(figure), alt=alt, caption=caption))
     return figures

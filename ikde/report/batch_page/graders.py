@@ -25,17 +25,10 @@ def make_graders(run: RunAnswers) -> Section | None:
 
 def _make_rates(run: RunAnswers) -> Table:
     return Table(
-        columns=(
-            Column("arm", align="left"),
-            Column("checked"),
-            Column("graded by", align="left"),
-            Column("in collision"),
-            Column("rate", "%"),
-        ),
+        columns=Column.of("arm", ">checked", "graded by", ">in collision", ">rate [%]"),
         rows=tuple(
             (arm.name, f"{rate.total:,}", grader, f"{rate.count:,}", format_rate(rate))
-            for arm in run.arms
-            for grader, rate in ((grader, Rate.of(arm.collides(grader))) for grader in run.manifest.graders)
+            for arm, grader, rate in _list_rates(run)
         ),
         caption="Reached solutions that a detector sees in collision",
         note="Every solution is checked with every detector, whatever the search took into account: by the kernels' "
@@ -43,13 +36,13 @@ def _make_rates(run: RunAnswers) -> Table:
     )
 
 
+def _list_rates(run: RunAnswers) -> list[tuple[ArmAnswers, str, Rate]]:
+    return [(arm, grader, Rate.of(arm.collides(grader))) for arm in run.arms for grader in run.manifest.graders]
+
+
 def _draw(run: RunAnswers) -> list[Figure]:
     several = len(run.arms) > 1
-    rates = [
-        (f"{arm.name}: {grader}" if several else grader, Rate.of(arm.collides(grader)))
-        for arm in run.arms
-        for grader in run.manifest.graders
-    ]
+    rates = [(f"{arm.name}: {grader}" if several else grader, rate) for arm, grader, rate in _list_rates(run)]
     if not any(rate.total for _, rate in rates):
         return []
     alt = "Rate of collision with its 95 % interval, by arm and detector"
@@ -69,9 +62,7 @@ def _make_targets(run: RunAnswers) -> Table:
             rows.append((arm.name, name, f"{int(mine.sum()):,}", *map(format_rate, rates)))
     return Table(
         columns=(
-            Column("arm", align="left"),
-            Column("target", align="left"),
-            Column("reached"),
+            *Column.of("arm", "target", ">reached"),
             *(Column(grader, "%", group="in collision by") for grader in graders),
         ),
         rows=tuple(rows),
@@ -82,15 +73,7 @@ def _make_targets(run: RunAnswers) -> Table:
 def _make_paired(run: RunAnswers) -> Table:
     """Both verdicts on the same solutions, for every two graders."""
     return Table(
-        columns=(
-            Column("arm", align="left"),
-            Column("A", align="left"),
-            Column("B", align="left"),
-            Column("both free"),
-            Column("only A free"),
-            Column("only B free"),
-            Column("both in collision"),
-        ),
+        columns=Column.of("arm", "A", "B", ">both free", ">only A free", ">only B free", ">both in collision"),
         rows=tuple(
             (arm.name, a, b, *_pair(arm, a, b)) for arm in run.arms for a, b in combinations(run.manifest.graders, 2)
         ),

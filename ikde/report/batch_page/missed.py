@@ -20,30 +20,16 @@ def make_missed(run: RunAnswers) -> Section | None:
     shown = sorted(misses, key=lambda miss: miss[0])[:MAX_MISSED]
     rows = [_make_row(run, arm, target) for target, arm in shown]
     total = sum(np.unique(arm.numbers["target"][~arm.reached]).size for arm in run.arms)
-    columns = [
-        Column("target"),
-        Column("name", align="left"),
-        Column("x, y, z", "m"),
-        Column("arm", align="left"),
-        Column("missed"),
-        Column("why", align="left"),
-        Column("what would help", align="left"),
-    ]
+    columns = Column.of(">target", "name", ">x, y, z [m]", "arm", ">missed", "why", "what would help")
     kept = [k for k in range(len(columns)) if any(row[k] for row in rows)]
-    return Section(
-        "Not reached",
-        (
-            Table(
-                columns=tuple(columns[k] for k in kept),
-                rows=tuple(tuple(row[k] for k in kept) for row in rows),
-                caption="Targets that were not reached"
-                if total <= len(rows)
-                else f"The first {len(rows)} of {total:,} targets that were not reached",
-                note=_explain(run, rows),
-            ),
-        ),
-        anchor="not-reached",
+    which = "Targets" if total <= len(rows) else f"The first {len(rows)} of {total:,} targets"
+    table = Table(
+        columns=tuple(columns[k] for k in kept),
+        rows=tuple(tuple(row[k] for k in kept) for row in rows),
+        caption=f"{which} that were not reached",
+        note=_explain(run, rows),
     )
+    return Section("Not reached", (table,), anchor="not-reached")
 
 
 def _make_row(run: RunAnswers, arm: ArmAnswers, target: int) -> tuple[str, ...]:

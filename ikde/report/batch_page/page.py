@@ -12,7 +12,7 @@ from ikde.report.batch_page.missed import make_missed
 from ikde.report.batch_page.recipe import make_again, make_recipe, run_command
 from ikde.report.batch_page.success import make_success
 from ikde.report.markup import code, verbatim
-from ikde.report.numbers import fixed, significant
+from ikde.report.numbers import count_of, fixed, significant
 from ikde.report.page import Block, Notice, Number, Numbers, Page
 
 MAX_NUMBERS = 4  # arms that get large type
@@ -36,8 +36,8 @@ def make_batch_page(run: RunAnswers) -> Page:
 def _describe(manifest: Manifest) -> str:
     arms = f"{len(manifest.arms)} arms, " if len(manifest.arms) > 1 else ""
     repeats = f", {manifest.repeats:,} solves each" if manifest.repeats > 1 else ""
-    targets = f"{manifest.targets:,} target{'s' if manifest.targets > 1 else ''}"
-    return f"A batch of inverse kinematics: robot {manifest.robot}, {arms}{targets}{repeats}, seed {manifest.seed}."
+    asked = f"{arms}{count_of(manifest.targets, 'target')}{repeats}, seed {manifest.seed}"
+    return f"A batch of inverse kinematics: robot {manifest.robot}, {asked}."
 
 
 def _warn(run: RunAnswers) -> list[Block]:

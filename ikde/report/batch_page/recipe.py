@@ -49,7 +49,7 @@ def _state_facts(manifest: Manifest) -> Facts:
 
 def _compare(arms: Mapping[str, Mapping[str, str]], differing: list[str]) -> Table:
     return Table(
-        columns=(Column("arm", align="left"), *(_column(key) for key in differing)),
+        columns=Column.of("arm", *(key.removeprefix("settings: ").replace("_", " ") for key in differing)),
         rows=tuple((name, *(settings.get(key, "–") for key in differing)) for name, settings in arms.items()),
         caption="What differs between the arms",
         note="" if differing else "Nothing: only their names do.",
@@ -58,15 +58,11 @@ def _compare(arms: Mapping[str, Mapping[str, str]], differing: list[str]) -> Tab
 
 def _list_settings(settings: Mapping[str, str], arms: int) -> Table:
     return Table(
-        columns=(Column("setting", align="left"), Column("value", align="left")),
+        columns=Column.of("setting", "value"),
         rows=tuple((key.replace("_", " "), value) for key, value in settings.items()),
         caption="What all arms have in common" if arms > 1 else "How it was solved",
         note="Lengths in m, angles in rad; joints in the robot's own convention.",
     )
-
-
-def _column(key: str) -> Column:
-    return Column(key.removeprefix("settings: ").replace("_", " "), align="left")
 
 
 def _flatten(data: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, str]]:

@@ -45,13 +45,9 @@ def _make_table(run: RunAnswers) -> Table:
     reasons = list(dict.fromkeys(reason for arm in run.arms for reason in arm.stop_reasons if reason != "reached"))
     return Table(
         columns=(
-            Column("arm", align="left"),
-            Column("solves"),
-            Column("reached"),
-            Column("rate", "%"),
+            *Column.of("arm", ">solves", ">reached", ">rate [%]"),
             *(Column(reason.replace("_", " "), group="not reached") for reason in reasons),
-            Column("self-collision"),
-            Column("plain numpy agrees"),
+            *Column.of(">self-collision", ">plain numpy agrees"),
         ),
         rows=tuple(
             (
@@ -88,8 +84,7 @@ def _make_targets(run: RunAnswers) -> Table:
     names = run.names
     return Table(
         columns=(
-            Column("target"),
-            *([Column("name", align="left")] if names else []),
+            *Column.of(">target", *(["name"] if names else [])),
             *(Column(arm.name, "%", group="reached by") for arm in run.arms),
         ),
         rows=tuple(
