@@ -18,34 +18,34 @@ HAIR = 1e-9  # m: what a bound must leave for rounding before it may decide
 
 
 @kernel
-def compute_surface_from_centres(detector, centres, directions, out_points):
+def compute_surface_from_centres(collision, centres, directions, out_points):
     """Surface points by the key-point method: centre + R * direction, the directions fixed in the world.
 
     [Qiao2021, eq. 11, 14, 17]. `centres` [3, S] m; `directions` [K, 3] unit vectors; `out_points` [S, K, 3] m.
     """
-    for sphere in range(detector.radius.size):
+    for sphere in range(collision.radius.size):
         for k in range(directions.shape[0]):
             for i in range(3):
-                out_points[sphere, k, i] = centres[i, sphere] + detector.radius[sphere] * directions[k, i]
+                out_points[sphere, k, i] = centres[i, sphere] + collision.radius[sphere] * directions[k, i]
 
 
 @kernel
-def compute_surface_by_transformation(detector, T_world_body, directions, out_points):
+def compute_surface_by_transformation(collision, T_world_body, directions, out_points):
     """Surface points by spatial transformation: every point, fixed in its body, is mapped to the world."""
-    for component in range(detector.components.shape[0]):
-        T = T_world_body[detector.components[component, BODY]]
-        for sphere in range(detector.components[component, FIRST], detector.components[component, LAST]):
-            radius = detector.radius[sphere]
+    for component in range(collision.components.shape[0]):
+        T = T_world_body[collision.components[component, BODY]]
+        for sphere in range(collision.components[component, FIRST], collision.components[component, LAST]):
+            radius = collision.radius[sphere]
             for k in range(directions.shape[0]):
-                x = detector.p_body_sphere[0, sphere] + radius * directions[k, 0]
-                y = detector.p_body_sphere[1, sphere] + radius * directions[k, 1]
-                z = detector.p_body_sphere[2, sphere] + radius * directions[k, 2]
+                x = collision.p_body_sphere[0, sphere] + radius * directions[k, 0]
+                y = collision.p_body_sphere[1, sphere] + radius * directions[k, 1]
+                z = collision.p_body_sphere[2, sphere] + radius * directions[k, 2]
                 for i in range(3):
                     out_points[sphere, k, i] = T[i, 3] + T[i, 0] * x + T[i, 1] * y + T[i, 2] * z
 
 
 @kernel
-def compute_surface_gap(detector, points, covering_angle):
+def compute_surface_gap(collision, points, covering_angle):
     """Smallest distance between surface points of a pair, less d_i + d_j; and the index of its pair.
 
     With `covering_angle` 0 this is the quantity of [Qiao2021, eq. 18], which is 0 only if two points coincide, so it
@@ -53,11 +53,11 @@ def compute_surface_gap(detector, points, covering_angle):
     spheres whose surfaces touch or cross always have points within d_i + d_j. `points` [S, K, 3] m.
     """
     smallest, closest = math.inf, -1
-    for pair in range(detector.pairs.shape[0]):
-        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-        for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
-            for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
-                spacing = covering_angle * (detector.radius[i] + detector.radius[j])
+    for pair in range(collision.pairs.shape[0]):
+        a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+        for i in range(collision.components[a, FIRST], collision.components[a, LAST]):
+            for j in range(collision.components[b, FIRST], collision.components[b, LAST]):
+                spacing = covering_angle * (collision.radius[i] + collision.radius[j])
                 gap = math.sqrt(smallest_squared_distance(points[i], points[j])) - spacing
                 if gap < smallest:
                     smallest, closest = gap, pair
@@ -77,36 +77,36 @@ def smallest_squared_distance(points, others):
 
 
 @kernel
-def judge_surfaces(robot, detector, directions, covering_angle, limit, qs, out_collides):
+def judge_surfaces(robot, collision, directions, covering_angle, limit, qs, out_collides):
     """Whether each row of `qs` [n, N] collides, with the verdict of `compute_surface_gap` <= `limit` (m), but fast."""
     T_world_body = np.empty((robot.bodies.shape[0], 3, 4))
-    centres = np.empty((3, detector.radius.size))
+    centres = np.empty((3, collision.radius.size))
     for row in range(qs.shape[0]):
         compute_bodies(robot, qs[row], T_world_body)
-        compute_centres(detector, T_world_body, centres)
-        out_collides[row] = surfaces_collide(detector, centres, directions, covering_angle, limit)
+        compute_centres(collision, T_world_body, centres)
+        out_collides[row] = surfaces_collide(collision, centres, directions, covering_angle, limit)
 
 
 @kernel
-def surfaces_collide(detector, centres, directions, covering_angle, limit):
+def surfaces_collide(collision, centres, directions, covering_angle, limit):
     """True at the first two surface points of a pair within d_i + d_j + `limit` [Qiao2021, eq. 20; eq. 18]."""
-    for pair in range(detector.pairs.shape[0]):
-        a, b = detector.pairs[pair, 0], detector.pairs[pair, 1]
-        for i in range(detector.components[a, FIRST], detector.components[a, LAST]):
-            for j in range(detector.components[b, FIRST], detector.components[b, LAST]):
-                spacing = covering_angle * (detector.radius[i] + detector.radius[j])
-                if clouds_touch(detector, centres, directions, i, j, spacing, limit):
+    for pair in range(collision.pairs.shape[0]):
+        a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+        for i in range(collision.components[a, FIRST], collision.components[a, LAST]):
+            for j in range(collision.components[b, FIRST], collision.components[b, LAST]):
+                spacing = covering_angle * (collision.radius[i] + collision.radius[j])
+                if clouds_touch(collision, centres, directions, i, j, spacing, limit):
                     return True
     return False
 
 
 @kernel
-def clouds_touch(detector, centres, directions, i, j, spacing, limit):
+def clouds_touch(collision, centres, directions, i, j, spacing, limit):
     """Whether two spheres have surface points within `spacing` + `limit`: only points near both surfaces are compared.
 
     A point p of sphere i is | |p - c_j| - R_j | from the surface of sphere j, so from its points at least that.
     """
-    R, r = detector.radius[i], detector.radius[j]
+    R, r = collision.radius[i], collision.radius[j]
     x, y, z = centres[0, i] - centres[0, j], centres[1, i] - centres[1, j], centres[2, i] - centres[2, j]
     distance = math.sqrt(x * x + y * y + z * z)
     reach = spacing + limit + HAIR
@@ -133,7 +133,7 @@ def clouds_touch(detector, centres, directions, i, j, spacing, limit):
 
 
 @kernel
-def place_by_transformation(robot, detector, directions, q, moves, times, T_world_body, out_centres, out_points):
+def place_by_transformation(robot, collision, directions, q, moves, times, T_world_body, out_centres, out_points):
     """Place centres [3, S], or surface points [S, K, 3] if there are `directions` [K, 3], `times` times.
 
     Every point is fixed in its body and mapped by its body's pose: of `q` [N] if it `moves`, else as it stands in
@@ -143,14 +143,14 @@ def place_by_transformation(robot, detector, directions, q, moves, times, T_worl
         if moves:
             compute_bodies(robot, q, T_world_body)
         if directions.shape[0] > 0:
-            compute_surface_by_transformation(detector, T_world_body, directions, out_points)
+            compute_surface_by_transformation(collision, T_world_body, directions, out_points)
         else:
-            compute_centres(detector, T_world_body, out_centres)
+            compute_centres(collision, T_world_body, out_centres)
 
 
 @kernel
 def place_by_key_points(
-    robot, detector, directions, q, moves, times, T_world_body, T_world_frame, out_centres, out_points
+    robot, collision, directions, q, moves, times, T_world_body, T_world_frame, out_centres, out_points
 ):
     """Place centres, or surface points if there are `directions`, on the lines between key points, `times` times.
 
@@ -160,6 +160,6 @@ def place_by_key_points(
         if moves:
             compute_bodies(robot, q, T_world_body)
             compute_origins(robot, T_world_body, T_world_frame)
-        compute_centres_from_key_points(detector, T_world_frame, out_centres)
+        compute_centres_from_key_points(collision, T_world_frame, out_centres)
         if directions.shape[0] > 0:
-            compute_surface_from_centres(detector, out_centres, directions, out_points)
+            compute_surface_from_centres(collision, out_centres, directions, out_points)

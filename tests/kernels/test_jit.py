@@ -102,6 +102,7 @@ def test_the_clock_stands_still_when_nothing_compiles(qiao):
 
 ONE_SIGNATURE = """
 import ikde
+from ikde.solver.settings import BulkOptions
 from ikde.kernels.grade_many import grade_many
 from ikde.kernels.evolution import solve_lanes
 from tests.flat_settings import flat_settings
