@@ -11,7 +11,7 @@ from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.seeds import draw_seed
-from ikde.kernels.tables import find_collision, make_buffers, use_models
+from ikde.kernels.tables import find_collision, make_buffers
 
 
 @inline_kernel
@@ -87,8 +87,7 @@ def solve_branches(
     exists. An unreached target keeps its last colliding branch.
     """
     joints = out_q.shape[1]
-    tree, spheres = use_models(robot, collision)
-    q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(tree, spheres, joints)
+    q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
     T_world_body, T_carrier_tool = np.empty((robot.bodies.shape[0], 3, 4)), np.empty((3, 4))
     work, solutions, codes = np.empty((2, ANGLES)), np.empty((BRANCHES, 6)), np.empty(BRANCHES, dtype=np.int64)
     for row in range(rows[0], rows[1]):
@@ -105,7 +104,7 @@ def solve_branches(
             nearest, tallies = seeds.first_box < 1.0, (out_counts[row], out_pairs[row])
             first = next_index(state, count)  # so that another stream shows another branch
             chosen = choose_branch(
-                tree, spheres, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
+                robot, collision, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
             )
             place_arm(arm, max(chosen, 0), solutions, q)
             out_score[row, 0], out_score[row, 1] = 0.0, 0.0 if chosen >= 0 else UNKNOWN_DEPTH

@@ -12,7 +12,7 @@ from ikde.kernels.flat_arguments import unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
-from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used, use_models
+from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used
 
 GO_ON, MET, GIVE_UP = range(3)
 
@@ -128,10 +128,9 @@ def solve_targets(
     out_pairs,
 ):
     """`solve_target` for rows[0] .. rows[1] - 1 at once: streams [T], attempts [rows, 2], outputs a row a target."""
-    tree, spheres = use_models(robot, collision)
     joints = out_q.shape[1]
     q, T, errors = np.empty(joints * LANES), np.empty(12 * LANES), np.empty(2 * LANES)
-    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(tree, spheres, joints)
+    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
     row, attempt, steps = (
         np.empty(LANES, dtype=np.int64),
         np.empty(LANES, dtype=np.int64),
@@ -154,7 +153,7 @@ def solve_targets(
                 for k in range(joints):
                     trial[k] = q[lane + k * LANES]
                 out_counts[index, EVALUATIONS] += steps[lane]
-                pair = find_collision(tree, spheres, trial, buffers) if verdict == MET else -1
+                pair = find_collision(robot, collision, trial, buffers) if verdict == MET else -1
                 outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
                 done = record(descent, verdict, pair, position, orientation, trial, *outputs)
                 attempt[lane] += 1
@@ -171,7 +170,7 @@ def solve_targets(
             load(lane, target, index, ranges, seeds, seed, streams[index], attempt[lane], state, trial, q, T)
         if busy == 0:
             return
-        take_steps(tree, target, row, ranges, descent, q, T, errors, trial, buffers)
+        take_steps(robot, target, row, ranges, descent, q, T, errors, trial, buffers)
 
 
 @kernel
@@ -180,8 +179,7 @@ def fill_pool(robot, collision, lower, upper, out_q):
 
     Returns how many were found before the draws were spent; the same whatever the seed of a solve.
     """
-    tree, spheres = use_models(robot, collision)
-    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(tree, spheres, lower.size)
+    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(robot, collision, lower.size)
     seed_stream(POOL_STREAM, 0, 0, state)
     found = 0
     for _ in range(POOL_DRAWS * out_q.shape[0]):
@@ -189,5 +187,5 @@ def fill_pool(robot, collision, lower, upper, out_q):
             break
         for k in range(lower.size):
             out_q[found, k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
-        found += find_collision(tree, spheres, out_q[found], buffers) < 0
+        found += find_collision(robot, collision, out_q[found], buffers) < 0
     return found

@@ -24,15 +24,14 @@ class Buffers(NamedTuple):
     bounds: Floats  # [C, 3] m
 
 
-@kernel
 def use_models(robot, collision):
-    """What the functions below take of both models: all of it."""
+    """What the kernels here take of both models: all of it."""
     return robot, collision
 
 
 @kernel
 def unpack_used(numbers, whole):
-    """The same out of the block of a search (`flatten_search`)."""
+    """Both models out of the block of a search (`flatten_search`)."""
     return unpack_models(numbers[whole[2] :], whole[whole[3] :])
 
 

@@ -22,15 +22,14 @@ OWN_IMPORTS = (
     "from ikde.kernels.trig import sin_cos",
 )
 TABLE_IMPORT = "from ikde.kernels.tables import find_collision, make_buffers, unpack_used, use_models"
-NO_TABLES = '''@leaf_kernel
-def use_models(robot, collision):
-    """Straight-line code asks the models for the safe distance only: arrays cost more to hand on than most kernels."""
+NO_TABLES = '''def use_models(robot, collision):
+    """Straight-line code takes the safe distance only: arrays that are handed on cost a tenth of a search in bulk."""
     return 0, SafeDistance(collision.safe_distance)
 
 
 @leaf_kernel
 def unpack_used(numbers, whole):
-    """The same out of the block of a search."""
+    """What straight-line code takes of both models, out of the block of a search."""
     return 0, SafeDistance(numbers[0])
 
 

@@ -24,7 +24,8 @@ class Analytic:
         if (inputs.targets.kind != POSE).any():
             raise InputError("the closed form needs a whole pose: a position and an orientation", ("method",))
         self._arm = find_ur_arm(problem.robot)
-        self._kernels, self._models = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
+        self._kernels, models = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
+        self._models = models[0], self._kernels.use_models(*models)[1]
         self._seeds = make_seeds(problem, "pose")
 
     def call(self, rows: range, first: int, last: Ints) -> None:

@@ -34,7 +34,6 @@ class DampedLeastSquares:
         self._inputs, problem = inputs, inputs.problem
         names = {kind: KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
         self._one_by_one = len(inputs.streams) <= ONE_BY_ONE
-        self._models = pack_searched(problem.collision)
         prepare = prepare_search if self._one_by_one else self._prepare_many
         self._searches = {kind: prepare(problem, name) for kind, name in names.items()}
 
@@ -54,11 +53,12 @@ class DampedLeastSquares:
 
     def _prepare_many(self, problem: Problem, kind: str) -> Callable[..., None]:
         """The same on many targets, side by side: `search(rows, attempts)`."""
-        asked, solve_targets = self._inputs, load_kernels(problem.collision, kind).solve_targets
+        asked, module = self._inputs, load_kernels(problem.collision, kind)
+        models = module.use_models(*pack_searched(problem.collision))
         settings = (make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
 
         def search(rows: range, attempts: Ints) -> None:
             where = (asked.targets, np.array([rows.start, rows.stop]))
-            solve_targets(*self._models, *where, *settings, asked.seed, asked.streams, attempts, *asked.outputs)
+            module.solve_targets(*models, *where, *settings, asked.seed, asked.streams, attempts, *asked.outputs)
 
         return search

@@ -52,9 +52,9 @@ def runs_on_tables() -> bool:
 @lru_cache
 def _load_tables() -> SimpleNamespace:
     """The data-driven instance of both engines."""
-    from ikde.kernels import analytic, lm
+    from ikde.kernels import analytic, lm, tables
 
-    return SimpleNamespace(**{**vars(lm), **vars(analytic)})
+    return SimpleNamespace(**{**vars(tables), **vars(lm), **vars(analytic)})
 
 
 def make_seeds(problem: Problem, kind: str) -> SeedArrays:
@@ -102,7 +102,8 @@ def draw_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats
     if base[0] >= 0:
         lower, upper = lower.copy(), upper.copy()
         lower[base] = upper[base] = 0.0
-    module, models = load_kernels(collision, kind), pack_searched(collision)
+    module = load_kernels(collision, kind)
+    models = module.use_models(*pack_searched(collision))
     q = np.empty((count, len(lower)))
     with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
         found = module.fill_pool(*models, lower, upper, q)
