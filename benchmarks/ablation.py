@@ -22,6 +22,7 @@ from typing import Any
 
 import numba
 import numpy as np
+from lane_check import format_judge
 from machine import describe
 from rich.console import Console
 from rich.table import Table
@@ -175,8 +176,12 @@ def make_module(robot: ikde.Robot, variant: Variant) -> Any:
     if variant.every_test:
         generator.drop_implied = lambda tests: tests
         generator.drop_proved = lambda robot, tests, margin, lower, upper: tests
+    find = generator.format_find
+    generator.format_find = lambda arrays, tests, *ends: "\n\n".join(
+        [find(arrays, tests, *ends), format_judge(arrays, tests)]
+    )
     text = generator.format_module(CollisionModel.of(robot), "pose")
-    generator.drop_implied, generator.drop_proved = kept
+    generator.drop_implied, generator.drop_proved, generator.format_find = *kept, find
     made = ModuleType(re.sub(r"\W", "_", variant.name))
     text = (
         variant.change(text).replace("from ikde.kernels.jit import inline_kernel, kernel\n", PLAIN).replace(LEAF, BARE)

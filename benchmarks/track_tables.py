@@ -61,8 +61,9 @@ def format_whole_paths(record: Record) -> str:
         ours.append(1e3 * mine)
     return (
         "From the same random starts, two motions at a time, where both reach the end, `continuation` takes "
-        f"{significant(min(ours))} to {significant(max(ours))} ms for a whole path in the middle of the starts, ways "
-        f"back included: {significant(min(ratios), 2)} to {significant(max(ratios), 2)} times less than `optimized`."
+        f"{significant(min(ours))} to {significant(max(ours))} ms for a whole path in the middle of the starts, "
+        f"backtracking included: {significant(min(ratios), 2)} to {significant(max(ratios), 2)} times less than "
+        "`optimized`."
     )
 
 

@@ -9,18 +9,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` holds it to `_HOME`
     from ikde.batch.read import read_batch as read_batch
     from ikde.batch.run import run_batch as run_batch
-    from ikde.errors import (
-        FileError as FileError,
-    )
-    from ikde.errors import (
-        IkdeError as IkdeError,
-    )
-    from ikde.errors import (
-        InputError as InputError,
-    )
-    from ikde.errors import (
-        VerificationError as VerificationError,
-    )
+    from ikde.errors import FileError as FileError
+    from ikde.errors import IkdeError as IkdeError
+    from ikde.errors import InputError as InputError
+    from ikde.errors import VerificationError as VerificationError
     from ikde.io.mjcf import format_mjcf as format_mjcf
     from ikde.io.plan_file import load_batch as load_batch
     from ikde.io.plan_file import load_track as load_track

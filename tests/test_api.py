@@ -33,6 +33,12 @@ def test_a_name_is_listed_and_documented(name):
     assert inspect.getdoc(getattr(ikde, name))
 
 
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_call_stays_small(name):
+    kinds = [parameter.kind for parameter in inspect.signature(getattr(ikde, name)).parameters.values()]
+    assert kinds.count(inspect.Parameter.KEYWORD_ONLY) <= 8
+
+
 def test_type_checkers_see_the_same_names():
     assert names_for_type_checkers() == ikde._HOME
 

@@ -9,7 +9,7 @@ PACKAGE = ROOT / "ikde"
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 FORBIDDEN_NAMES = {"utils", "util", "types", "core", "base", "helpers", "common", "misc"}
-MAX_FILE_LENGTH, MAX_BODY_LENGTH = 400, 60
+MAX_FILE_LENGTH, MAX_LENGTH, MAX_ARGUMENTS, MOST_HAVE = 350, 80, 10, 4
 KERNEL_DECORATORS = {"kernel", "leaf_kernel", "inline_kernel", "inline_view_kernel"}
 PROVENANCE = {"published", "derived", "calibrated"}
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
@@ -36,10 +36,15 @@ def functions(path):
     return [node for node in ast.walk(TREES[path]) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
 
 
-def body_length(function):
-    """Lines of the body without its docstring."""
-    body = function.body[1:] if ast.get_docstring(function) else function.body
-    return body[-1].end_lineno - body[0].lineno + 1 if body else 0
+def length(function):
+    """Lines, signature and docstring included."""
+    return function.end_lineno - function.lineno + 1
+
+
+def arguments(function):
+    """How many it takes, `self` aside."""
+    given = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
+    return len(given) - (bool(given) and given[0].arg in ("self", "cls"))
 
 
 def imported(path):
@@ -83,9 +88,17 @@ def test_a_file_is_short():
 
 def test_a_function_is_short():
     def measure(path):
-        return {f.name: body_length(f) for f in functions(path) if body_length(f) > MAX_BODY_LENGTH}
+        return {f.name: length(f) for f in functions(path) if length(f) > MAX_LENGTH}
 
     assert offences(measure) == {}
+
+
+def test_a_function_takes_few_arguments():
+    """Kernels and commands aside: what a kernel needs stands in its signature, and an option is one of a command's."""
+    others = [path for path in SOURCES if not (inside(path, "kernels") or inside(path, "cli"))]
+    counts = sorted(arguments(f) for path in others for f in functions(path) if not is_kernel(f))
+    assert (counts[-1], counts[int(0.9 * len(counts))]) <= (MAX_ARGUMENTS, MOST_HAVE)
+    assert counts[int(0.9 * len(counts))] <= MOST_HAVE
 
 
 def test_a_file_opens_with_what_it_is_for():

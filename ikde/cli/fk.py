@@ -33,5 +33,5 @@ def fk(
     if as_json:
         print_json(forward_json(model, values, frames, outside, convention))
     else:
-        print_result(format_forward(model, frames, outside, Units(unit, angles), color=use_color()))
+        print_result(format_forward(frames, outside, Units(unit, angles), color=use_color()))
     options.draw(plot, collision, values)

@@ -6,15 +6,13 @@ from dataclasses import replace
 from ikde.errors import InputError, nearest
 from ikde.formats.entries import DetectorEntry, DetectorPartsEntry, UnitsEntry
 from ikde.model.collision_model import CollisionModel, check_detector
-from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, Joint, Robot
+from ikde.model.robot import MAX_MAGNITUDE, Detector, Joint, Robot
 
 
 def read_collision(robot: Robot, choice: str | DetectorEntry | None, units: UnitsEntry) -> CollisionModel:
     """What is compared: by a detector's name, one of the user's own, or the robot's; nothing for `none`."""
     if not isinstance(choice, DetectorEntry):
         return CollisionModel.of(robot, choice)
-    if choice.name == NO_DETECTOR:
-        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", ("name",))
     own = make_detector(choice.name, choice, units)
     check_detector(robot, own, ())
     return CollisionModel(robot=robot, detector=own)

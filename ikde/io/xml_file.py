@@ -9,7 +9,7 @@ from ikde.errors import FileError, InputError
 from ikde.formats.atomic import replace_all
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Robot
-from ikde.model.spheres import Sphere, expand_rows
+from ikde.model.spheres import Sphere
 from ikde.model.tree import build_tree
 
 _NO_XML = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
@@ -50,10 +50,8 @@ def reserve_name(wanted: str, taken: set[str]) -> str:
 def list_components(collision: CollisionModel) -> dict[str, list[Sphere]]:
     """Spheres of each component of a detector's approximation, in the frame of the joint that moves them."""
     components: dict[str, list[Sphere]] = {}
-    if collision.detector:
-        robot = collision.robot
-        for sphere in expand_rows(robot, build_tree(robot), collision.detector.spheres):
-            components.setdefault(sphere.component, []).append(sphere)
+    for sphere in collision.spheres:
+        components.setdefault(sphere.component, []).append(sphere)
     return components
 
 

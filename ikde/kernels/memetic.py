@@ -137,8 +137,8 @@ def breed(robot, collision, target, index, search, memetic, box, state, work, co
 def polish(robot, collision, target, index, search, memetic, descent, box, reach, steps, q, work, spent):
     """At most so many damped steps on `q` [N], in place, until it meets the target, stands still or spends the budget.
 
-    `reach` in m as for `clear_step`; with -inf collisions are ignored. Returns (cost in m, meets, evaluations): 1 a
-    point, and N a step, as if each Jacobian had been taken by differences, which it is not.
+    `reach` in m as for `take_clear_step`; with -inf collisions are ignored. Returns (cost in m, meets, evaluations):
+    1 a point, and N a step, as if each Jacobian had been taken by differences, which it is not.
     """
     members, smallest, idle = work.members, math.inf, 0
     cost, meets = math.inf, False

@@ -12,6 +12,8 @@ from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
 from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, SphereRow
+from ikde.model.spheres import Sphere, expand_rows
+from ikde.model.tree import build_tree
 
 NAMED = 3  # pairs in a message that is about many
 MAX_PAIRS, MAX_SPHERE_PAIRS = 50_000, 2_000_000  # of components in a list, and of spheres that a detector compares
@@ -32,7 +34,7 @@ class CollisionModel:
         """Resolve a choice; raises `InputError` for an unknown name, or for what does not fit the robot."""
         if isinstance(choice, CollisionModel):
             if choice.robot is not robot:
-                raise InputError(f"this is a collision model of another {choice.robot.name}", ("collision",))
+                raise InputError(f"this is the model of another Robot object ({choice.robot.name})", ("collision",))
             return choice
         if isinstance(choice, Detector):
             check_detector(robot, choice, ("detector",))
@@ -84,6 +86,13 @@ class CollisionModel:
         )
 
     @cached_property
+    def spheres(self) -> tuple[Sphere, ...]:
+        """All spheres of its components, compared or not, each on its body; none without a detector."""
+        if self.detector is None:
+            return ()
+        return tuple(expand_rows(self.robot, build_tree(self.robot), self.detector.spheres))
+
+    @cached_property
     def arrays(self) -> CollisionArrays:
         """Packed for the kernels."""
         return pack_collision(self.robot, self.detector)
@@ -99,7 +108,7 @@ def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...
             raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
     check_printable(detector.name, (*where, "name"))
     if detector.name == NO_DETECTOR:
-        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where)
+        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where or ("name",))
     distance = detector.safe_distance_m
     if not (is_number(distance) and 0.0 <= distance <= MAX_MAGNITUDE):
         raise InputError(f"expected a distance of at least 0, up to {MAX_MAGNITUDE:g} m", (*where, "safe_distance"))

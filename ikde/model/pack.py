@@ -39,9 +39,9 @@ def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
     """Pack a detector's spheres and pairs; None packs no pairs at all."""
     tree = build_tree(robot)
     pairs = robot.pair_lists[detector.pairs] if detector else ()
-    looked_at = {component for pair in pairs for component in pair}
+    compared = {component for pair in pairs for component in pair}
     every = expand_rows(robot, tree, detector.spheres) if detector else ()
-    spheres = [sphere for sphere in every if sphere.component in looked_at]
+    spheres = [sphere for sphere in every if sphere.component in compared]
     components = list(dict.fromkeys(sphere.component for sphere in spheres))
     groups = [[s for s in spheres if s.component == c] for c in components]
     rows = robot.approximations[detector.spheres] if detector else ()

@@ -1,1 +1,1 @@
-"""Floor 6: figures. Matplotlib is imported only when something is drawn."""
+"""Floor 7: figures. Matplotlib is imported only when something is drawn."""

@@ -52,7 +52,7 @@ def _format_collision(names: list[str]) -> str:
 
 
 def _list_directions() -> Floats:
-    """SolveResults [3, 3]: right, up and towards the eye, in the world."""
+    """Rows [3, 3]: right, up and towards the eye, in the world."""
     eye, azimuth = find_eye(ELEVATION_DEG, AZIMUTH_DEG), np.radians(AZIMUTH_DEG)
     right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     return np.array([right, np.cross(eye, right), eye])

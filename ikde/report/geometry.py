@@ -32,7 +32,7 @@ def forward_json(
 
 
 def format_forward(
-    robot: Robot, Ts_world: Mapping[str, Floats], outside: tuple[str, ...], units: Units, *, color: bool = False
+    Ts_world: Mapping[str, Floats], outside: tuple[str, ...], units: Units, *, color: bool = False
 ) -> str:
     """Frames for the terminal: origin, and the directions of their x and z axes."""
     unit = units.length

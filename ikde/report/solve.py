@@ -54,7 +54,7 @@ def format_solve(
     lines = [f"[{style}]{mark}[/]: {plain(result.reason)}"]
     if result.hint:
         lines.append(f"[yellow]what would help[/]: {plain(result.hint)}")
-    tables = _joint_table(robot, result, units, convention), _figure_table(robot, result, units)
+    tables = _joint_table(robot, result, units, convention), _grade_table(result, units)
     return render(*lines, *tables, color=color)
 
 
@@ -87,7 +87,7 @@ GRADERS = {
 COLLISIONS = {True: "yes", False: "no", None: "not checked"}
 
 
-def _figure_table(robot: Robot, result: SolveResult, units: Units) -> Any:
+def _grade_table(result: SolveResult, units: Units) -> Any:
     table = make_table("graded", GRADERS[result.verified])
     table.add_row("position error", units.format_error(result.position_error_m))
     asked = result.target.kind != "position"

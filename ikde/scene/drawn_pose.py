@@ -1,6 +1,6 @@
 """A robot as plain data to draw: spheres with their roles, links, frames, marks and labels; lengths in m, world frame.
 
-Renderers place these things and give each role its colour; they compute no geometry of the robot and no collisions.
+Renderers place these things in the colours of their roles; they compute no geometry of the robot and no collisions.
 """
 
 from collections.abc import Mapping, Sequence

@@ -6,15 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import (
-    FEASIBILITY,
-    IGNORE,
-    REJECT,
-    CollisionArrays,
-    Floats,
-    RobotArrays,
-    SearchArrays,
-)
+from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT, CollisionArrays, Floats, RobotArrays, SearchArrays
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.pack import pack_robot

@@ -99,7 +99,7 @@ class SolveResult:
 class ResultMaker:
     """Makes the results of one problem from what an engine found and a grader saw; unless told otherwise, reached ones.
 
-    All fields go in at once: a frozen dataclass sets its 26 one by one, which takes five times as long.
+    All fields go in at once: a frozen dataclass sets them one by one, which takes five times as long.
     """
 
     def __init__(self, problem: Problem, **others: Any) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from ikde.errors import InputError
 from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
@@ -79,6 +80,8 @@ def solve_many(
     Returns:
         A sequence of `SolveResult` whose columns are arrays: `q` [T, N], `reached` [T], `clearance_m` [T] and so on.
     """
+    if not isinstance(bulk, BulkOptions | None):
+        raise InputError(f"expected BulkOptions, got {bulk!r}", ("bulk",))
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
     return solve_rows(problem, targets, bulk or BulkOptions(), seed=check_seed(seed))

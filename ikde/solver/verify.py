@@ -1,4 +1,4 @@
-"""The judge: plain numpy, written apart from the kernels, grading the exact joint values that are returned."""
+"""The grader in plain numpy, written apart from the kernels, grading the exact joint values that are returned."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

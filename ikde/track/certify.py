@@ -14,7 +14,6 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.base_motion import base_twist, find_wheels, step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
-from ikde.model.spheres import expand_rows
 from ikde.model.tree import Tree, build_tree
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import compute_orientation_errors
@@ -86,7 +85,7 @@ def travel_radii(collision: CollisionModel, max_abs_q: Floats) -> Floats:
     """
     robot, tree = collision.robot, build_tree(collision.robot)
     centres: dict[str, list[tuple[int, Floats]]] = {}
-    for sphere in expand_rows(robot, tree, collision.detector.spheres) if collision.detector else ():
+    for sphere in collision.spheres:
         centres.setdefault(sphere.component, []).append((sphere.body, sphere.p_body_sphere))
     radii = np.zeros((len(collision.pairs), len(robot.joints)))
     for row, names in zip(radii, collision.pairs, strict=True):

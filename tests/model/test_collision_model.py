@@ -38,9 +38,9 @@ def test_an_unknown_name_is_refused_with_those_known(qiao):
 
 def test_a_model_of_another_robot_is_refused(qiao):
     narrow = replace(qiao, joints=(replace(qiao.joints[0], upper=1.0), *qiao.joints[1:]))
-    with pytest.raises(InputError, match=r"^collision: this is a collision model of another qiao2021$"):
+    with pytest.raises(InputError, match=r"^collision: this is the model of another Robot object \(qiao2021\)$"):
         CollisionModel.of(narrow, CollisionModel.of(qiao))
-    with pytest.raises(InputError, match="another qiao2021"):
+    with pytest.raises(InputError, match="another Robot object"):
         ikde.check(narrow, narrow.home, CollisionModel.of(qiao))
 
 

@@ -13,7 +13,7 @@ M_RAD, MM_DEG = Units(), Units("mm", "deg")
 
 
 def frames_text(robot, q, units, outside=()):
-    return format_forward(robot, ikde.forward(robot, q), outside, units)
+    return format_forward(ikde.forward(robot, q), outside, units)
 
 
 def rows(text):

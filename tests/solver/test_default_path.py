@@ -99,8 +99,8 @@ def test_a_closed_form_meets_poses(rng, monkeypatch):
     """By its module as plain Python: six joints take long to compile."""
     arm, settings = ikde.load_robot("ur5"), settings_of("analytic")
     monkeypatch.setattr(pool, "DRAWN", 32)
-    monkeypatch.setattr(pool.pool_file, "load_pool", lambda path: None)
-    monkeypatch.setattr(pool.pool_file, "save_pool", lambda path, seeds: None)
+    monkeypatch.setattr(pool, "load_pool", lambda path: None)
+    monkeypatch.setattr(pool, "save_pool", lambda path, seeds: None)
     free = [q for q in random_q(arm, rng, 12) if is_met(arm, meet(arm, q, "pose"), q, settings)]
     targets = [meet(arm, q, "pose") for q in free]
     assert len(targets) > 4

@@ -11,7 +11,7 @@ from ikde.kernels.tables import LANES
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.collision import count_sphere_pairs, count_tests, list_tests
-from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps
+from ikde.model.generate.functions import format_find, format_step, format_steps
 from ikde.model.generate.proofs import drop_implied, drop_proved, proof_margin
 from ikde.model.pack import pack_robot
 
@@ -67,7 +67,7 @@ def format_module(collision: CollisionModel, kind: str) -> str:
 
 
 def _format_tests(arrays: RobotArrays, collision: CollisionModel) -> list[str]:
-    """What is left out, in words; then `make_buffers`, `find_collision` and `judge_lanes` as straight-line code."""
+    """What is left out, in words; then `make_buffers` and `find_collision` as straight-line code."""
     margin, limits = proof_margin(collision), (collision.robot.lower, collision.robot.upper)
     every = list_tests(collision.arrays)
     needed = drop_implied(every)
@@ -76,7 +76,7 @@ def _format_tests(arrays: RobotArrays, collision: CollisionModel) -> list[str]:
     tested = f"{len(every)} tests of rows and spheres, {implied} of them implied by others,"
     never = f"{proved} proved never to fail inside the joint limits, for a safe distance up to {margin:g} m"
     counts = f"{count_sphere_pairs(collision.arrays)} pairs of spheres; {tested}\n{never}; {len(tests)} left."
-    return [counts, NO_TABLES, format_find(arrays, tests, *limits), format_judge(arrays, tests)]
+    return [counts, NO_TABLES, format_find(arrays, tests, *limits)]
 
 
 def _split(source: Path) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""Self-collision of one robot and detector as straight-line code: the twin of `kernels/clearance.py`.
+"""Self-collision of one collision model as straight-line code: the twin of `kernels/clearance.py`.
 
 Everything is seen from the body that carries all components, so the base of a mobile robot does not enter. Spheres are
 tested as lattices: one rounding finds the one that is nearest to a point.

@@ -80,27 +80,6 @@ def format_find(robot: RobotArrays, tests: list[Test], lower: Floats, upper: Flo
     )
 
 
-def format_judge(robot: RobotArrays, tests: list[Test]) -> str:
-    """`judge_lanes`: the smallest margin of every lane, without a branch."""
-    writer = Writer()
-    root = find_root(robot, tests)
-    poses = write_bodies(writer, robot, root)
-    margins = [write_margin(writer, poses, test, root) for test in tests]
-    while len(margins) > 1:  # a tree, so that neighbours do not wait for each other
-        halves = zip(margins[::2], margins[1::2], strict=False)
-        odd = margins[-1:] if len(margins) % 2 else []
-        margins = [writer.let(f"least_{a}", f"min({a}, {b})") for a, b in halves] + odd
-    lines = writer.lines(margins, set())
-    load = [f"q{k} = q[{_lane(k)}]" for k in _coordinates(robot)]
-    body = [*lines, f"out_free[i] = {margins[0] if margins else '1.0'} > 0.0"]
-    loop = [*_used([*load, *_sines(robot)], body), *body]
-    return _function(
-        "judge_lanes(collision, q, out_free)",
-        "Whether each lane of `q` [N * LANES] is free of self-collision, into `out_free` [LANES].",
-        [*_reaches(tests), "for i in range(LANES):", *(INDENT + line for line in loop)],
-    )
-
-
 def order_pairs(robot: RobotArrays, tests: list[Test], lower: Floats, upper: Floats) -> list[int]:
     """Pairs in the order in which to test them: most hits not seen before for the least work first."""
     hits = estimate_hits(robot, tests, lower, upper)

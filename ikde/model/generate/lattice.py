@@ -29,11 +29,6 @@ class Lattice:
             points = (points[:, None] + steps[None, :, None] * direction).reshape(-1, 3)
         return points
 
-    @property
-    def extent(self) -> float:
-        """Distance from the middle to the farthest centre, m."""
-        return float(np.linalg.norm(self.centres - self.middle, axis=1).max())
-
 
 def component_lattices(collision: CollisionArrays, component: int) -> list[Lattice]:
     """The spheres of one component as lattices; a sphere inside another of them is left out."""

@@ -1,4 +1,4 @@
-"""The module for a robot, detector and kind of target: found in the cache folder or written, run from what was read.
+"""The module for a collision model and kind of target: found in the cache folder or written, run from what was read.
 
 A module's file is named by the SHA-256 of its text, and is run only if its bytes have that hash. An index, a file for
 each digest of what a text depends on, names the text, so that nothing is written twice; no name of a robot, joint or

@@ -26,7 +26,7 @@ from tests.three_joints import CROWDED, crowd
 
 ROOT = Path(__file__).parents[3]
 each_kind = pytest.mark.parametrize("kind", KINDS)
-OWN = ["use_models", "unpack_used", "make_buffers", "take_step", "take_steps", "find_collision", "judge_lanes"]
+OWN = ["use_models", "unpack_used", "make_buffers", "take_step", "take_steps", "find_collision"]
 
 
 @cache
@@ -63,7 +63,6 @@ def test_a_check_of_many_tests_is_written_as_tables(kind):
     text = table_text(CROWDED, kind)
     assert [function.name for function in functions_of(text)][:2] == ["take_step", "take_steps"]
     assert assemble.TABLE_IMPORT in text
-    assert "judge_lanes" not in text
     pairs = count_sphere_pairs(CollisionModel.of(CROWDED).arrays)
     assert ast.get_docstring(ast.parse(text)).endswith(f"\n{pairs} pairs of spheres, in tables.")
 
@@ -76,7 +75,7 @@ def test_the_number_of_tests_decides(monkeypatch):
         monkeypatch.setattr(assemble, "MAX_TESTS", most)
         text = assemble.format_module(CollisionModel.of(robot), "position")
         assert (assemble.TABLE_IMPORT in text) == in_tables
-        assert ("def judge_lanes" in text) != in_tables
+        assert ("def find_collision" in text) != in_tables
 
 
 def test_no_sphere_is_in_a_text_that_reads_tables():
@@ -136,7 +135,7 @@ def test_the_engine_is_in_it_as_it_stands():
 def test_straight_line_code_has_no_loop_but_the_lanes():
     for function in functions_of(text_of("qiao2021", "pose"))[: len(OWN)]:
         loops = [node for node in ast.walk(function) if isinstance(node, ast.For | ast.While)]
-        assert len(loops) == (function.name in {"take_steps", "judge_lanes"})
+        assert len(loops) == (function.name == "take_steps")
         signature = [argument.arg for argument in function.args.args]
         twin = getattr(sys.modules["ikde.kernels.tables"], function.name, None)
         if twin is not None:

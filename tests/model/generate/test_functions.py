@@ -12,7 +12,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble
 from ikde.model.generate.assemble import NO_TABLES
 from ikde.model.generate.collision import list_tests
-from ikde.model.generate.functions import format_find, format_judge, format_step, format_steps, order_pairs
+from ikde.model.generate.functions import format_find, format_step, format_steps, order_pairs
 from ikde.model.generate.proofs import drop_implied, drop_proved
 from ikde.model.pack import pack_robot, pack_targets
 from tests.collision_robots import (
@@ -44,12 +44,12 @@ class Limit(NamedTuple):
 
 @cache
 def make_checks(robot, detector, margin=MARGIN):
-    """`find_collision` and `judge_lanes`, with the tests that a module has."""
+    """`find_collision`, with the tests that a module has."""
     arrays, packed = pack_robot(robot), CollisionModel(robot=robot, detector=detector).arrays
     tests = drop_implied(list_tests(packed))
     if np.isfinite(margin):
         tests = drop_proved(arrays, tests, margin, robot.lower, robot.upper)
-    text = format_find(arrays, tests, robot.lower, robot.upper) + format_judge(arrays, tests)
+    text = format_find(arrays, tests, robot.lower, robot.upper)
     return run_text(f"{NO_TABLES}\n{text}")
 
 
@@ -111,17 +111,6 @@ def test_beyond_the_margins_nothing_is_proved_and_everything_found(case, safe_di
     assert_verdicts(robot, detector, random_q(robot, rng, 20), safe_distance, margin)
 
 
-@fewer_cases
-def test_lanes_judge_as_one_at_a_time(case, rng):
-    robot, detector = case
-    Q, free = random_q(robot, rng, LANES), np.zeros(LANES, dtype=bool)
-    for safe_distance in (0.0, 0.02):
-        make_checks(robot, detector).judge_lanes(Limit(safe_distance), Q.T.ravel().tolist(), free)
-        clear = away_from_contact(find_gaps(robot, detector, Q), safe_distance)
-        found = find_pairs(robot, detector, Q, safe_distance)
-        np.testing.assert_array_equal(free[clear], found[clear] < 0)
-
-
 def test_configurations_at_the_limits_are_judged_like_others(rng):
     for robot, detector in FEWER:
         ends = rng.integers(3, size=(20, len(robot.joints)))
@@ -174,11 +163,8 @@ def test_reaches_that_almost_agree_are_kept_apart():
 
 def test_without_tests_nothing_collides(qiao):
     arrays = pack_robot(qiao)
-    checks = run_text(format_find(arrays, [], qiao.lower, qiao.upper) + format_judge(arrays, []))
+    checks = run_text(format_find(arrays, [], qiao.lower, qiao.upper))
     assert checks.find_collision(None, Limit(0.1), qiao.home, None) == -1
-    free = np.zeros(LANES, dtype=bool)
-    checks.judge_lanes(Limit(0.1), np.zeros(9 * LANES), free)
-    assert free.all()
 
 
 def test_every_pair_with_a_test_is_looked_at_once(qiao):

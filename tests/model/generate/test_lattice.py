@@ -5,7 +5,7 @@ import pytest
 
 from ikde.kernels.arrays import FIRST, LAST
 from ikde.model.collision_model import CollisionModel
-from ikde.model.generate.lattice import Lattice, component_lattices
+from ikde.model.generate.lattice import component_lattices
 from tests.collision_robots import CASES, make_row, name_case, two_arms
 
 
@@ -117,11 +117,3 @@ def test_of_equal_spheres_one_stays():
 def test_a_row_within_a_sphere_is_gone():
     rows = [make_row("x", "a", "b", 0.02, 4), make_row("x", "a", "b", 0.5)]
     assert counts(lattices_of(rows, a=(0, 0, 0), b=(0.1, 0, 0))) == [()]
-
-
-def test_the_extent_is_that_of_the_farthest_centre():
-    axes = ((np.array([0.6, 0.8, 0.0]), 0.1, 4), (np.array([0.0, 0.0, 1.0]), 0.3, 2))
-    lattice = Lattice(body=1, middle=np.array([1.0, 2.0, 3.0]), radius=0.1, axes=axes)
-    assert lattice.extent == pytest.approx(np.hypot(0.15, 0.15))
-    assert len(lattice.centres) == 8
-    np.testing.assert_allclose(lattice.centres.mean(axis=0), lattice.middle, atol=1e-15)
