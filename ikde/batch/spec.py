@@ -65,7 +65,7 @@ class BoxEntry(Entry):
     """How the tool is turned at every point."""
 
 
-class SphereEntry(Entry):
+class BallEntry(Entry):
     """Random points, uniform in a ball or on its surface."""
 
     center: Vector
@@ -94,7 +94,7 @@ class TargetsEntry(Entry):
     """A regular grid."""
     box: BoxEntry | None = None
     """Random points in a box."""
-    sphere: SphereEntry | None = None
+    sphere: BallEntry | None = None
     """Random points in a ball or on its surface."""
 
 

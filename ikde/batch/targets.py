@@ -8,7 +8,7 @@ import numpy as np
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.batch.recipe import array_digest, as_plain, digest
 from ikde.batch.sources import ListSource, TargetSource
-from ikde.batch.spec import BatchSpec, BoxEntry, GridEntry, ReachableEntry, SphereEntry
+from ikde.batch.spec import BallEntry, BatchSpec, BoxEntry, GridEntry, ReachableEntry
 from ikde.formats.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry, only_key
 from ikde.formats.error_path import prefix_errors
 from ikde.formats.poses import read_orientation, read_position
@@ -42,13 +42,13 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
 
 
 def _make_listed(
-    entry: list[InlineTarget] | GridEntry | BoxEntry | SphereEntry, units: UnitsEntry, seed: int
+    entry: list[InlineTarget] | GridEntry | BoxEntry | BallEntry, units: UnitsEntry, seed: int
 ) -> TargetSource:
     if isinstance(entry, list):
         return _make_inline(entry, units)
     with prefix_errors("orientation"):
         orientation = read_orientation(entry.orientation or OrientationEntry(), units)
-    if isinstance(entry, SphereEntry):
+    if isinstance(entry, BallEntry):
         center = read_position("center", entry.center, units)
         read_position("radius", np.abs(entry.center) + entry.radius, units)
         return make_ball(center, entry.radius * units.length_m, entry.filled, entry.count, seed, orientation)

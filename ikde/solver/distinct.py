@@ -20,7 +20,7 @@ from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, choose_settings
 from ikde.solver.solve import solve
 
-TURN_APART_RAD, SLIDE_APART_M = 0.1, 0.05  # what makes two solutions distinct
+REVOLUTE_APART_RAD, PRISMATIC_APART_M = 0.1, 0.05  # what makes two solutions distinct
 SAMPLES = 16  # solves for each solution that is wanted, to choose from
 MAX_WANTED = 10_000  # solutions
 ROUNDS = 4  # as often, if they were too much alike
@@ -166,5 +166,5 @@ def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
     """True if a revolute joint differs by more than 0.1 rad (around the circle) or a slide by more than 50 mm."""
     difference = np.abs(q - other)
     turns = difference[~robot.is_prismatic] % (2.0 * np.pi)
-    turned = np.minimum(turns, 2.0 * np.pi - turns) > TURN_APART_RAD
-    return bool(np.any(turned) or np.any(difference[robot.is_prismatic] > SLIDE_APART_M))
+    turned = np.minimum(turns, 2.0 * np.pi - turns) > REVOLUTE_APART_RAD
+    return bool(np.any(turned) or np.any(difference[robot.is_prismatic] > PRISMATIC_APART_M))
