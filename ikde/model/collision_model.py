@@ -6,7 +6,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import Union
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import CollisionArrays
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
@@ -34,12 +34,17 @@ class CollisionModel:
         """Resolve a choice; raises `InputError` for an unknown name, or for what does not fit the robot."""
         if isinstance(choice, CollisionModel):
             if choice.robot is not robot:
-                raise InputError(f"this is the model of another Robot object ({choice.robot.name})", ("collision",))
+                other = f"this is a model of another Robot object ({choice.robot.name}), not of this {robot.name}"
+                raise InputError(other, ("collision",))
+            if choice.detector is not None:
+                check_detector(robot, choice.detector, ("collision", "detector"))
             return choice
         if isinstance(choice, Detector):
             check_detector(robot, choice, ("detector",))
             return cls(robot=robot, detector=choice)
         name = robot.default_detector if choice is None else choice
+        if not isinstance(name, str):
+            raise InputError(f"expected a name, a Detector or a CollisionModel, got {quoted(name)}", ("collision",))
         if name == NO_DETECTOR:
             return cls(robot=robot, detector=None)
         if name not in robot.detectors:
@@ -100,6 +105,8 @@ class CollisionModel:
 
 def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
     """Raise `InputError` unless the detector's names exist, and it compares pairs that its approximation describes."""
+    if not isinstance(detector, Detector):
+        raise InputError(f"expected a Detector, got {quoted(detector)}", where)
     for key, what, name, known in (
         ("spheres", "approximation", detector.spheres, robot.approximations),
         ("pairs", "pair list", detector.pairs, robot.pair_lists),

@@ -129,7 +129,12 @@ class SolveSettings:
         given: dict[str, Any] = {name: value for name, value in changes.items() if value is not None}
         if isinstance(given.get("de"), Mapping):
             part = given.pop("de")
+            if unknown := [name for name in part if name not in DE_RULES]:
+                hint = nearest(unknown[0], DE_RULES)
+                raise InputError(f"no setting of the DE is called {unknown[0]!r}{hint}", ("settings", "de"))
             given |= {"de": replace(self.evolution, **part)} if part else {}
+        elif given.get("method", "de") != "de" and self.de == DeSettings():
+            given |= {"de": None}  # its defaults come with the method `de`, and go with it
         return replace(self, **given)
 
 

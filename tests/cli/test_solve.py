@@ -345,3 +345,7 @@ def test_a_figure_that_cannot_be_written_is_refused_before_the_search(refuse, mo
 def test_an_unknown_convention_is_refused_before_the_search(refuse, monkeypatch):
     monkeypatch.setattr("ikde.solver.distinct.solve_distinct", None)
     refuse(*SOLVE, "--convention", "dh")
+
+
+def test_an_order_that_is_none_is_refused_also_of_one_solution(refuse):
+    assert "rank: expected one of motion, clearance, found, got 'nonsense'" in refuse(*SOLVE, "--rank", "nonsense")

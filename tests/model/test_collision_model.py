@@ -38,10 +38,26 @@ def test_an_unknown_name_is_refused_with_those_known(qiao):
 
 def test_a_model_of_another_robot_is_refused(qiao):
     narrow = replace(qiao, joints=(replace(qiao.joints[0], upper=1.0), *qiao.joints[1:]))
-    with pytest.raises(InputError, match=r"^collision: this is the model of another Robot object \(qiao2021\)$"):
+    with pytest.raises(InputError, match=r"^collision: this is a model of another Robot object \(qiao2021\)"):
         CollisionModel.of(narrow, CollisionModel.of(qiao))
     with pytest.raises(InputError, match="another Robot object"):
         ikde.check(narrow, narrow.home, CollisionModel.of(qiao))
+
+
+def test_a_model_made_by_hand_is_checked_when_it_is_used(qiao):
+    improved = qiao.detectors["improved"]
+    for detector, message in (
+        (replace(improved, safe_distance_m=-1.0), r"^collision\.detector\.safe_distance: expected a distance"),
+        (replace(improved, spheres="imporved"), r"^collision\.detector\.spheres: no approximation"),
+        ("improved", r"^collision\.detector: expected a Detector, got 'improved'"),
+    ):
+        with pytest.raises(InputError, match=message):
+            ikde.check(qiao, qiao.home, CollisionModel(robot=qiao, detector=detector))
+
+
+def test_what_is_no_choice_is_refused_in_a_line(qiao):
+    with pytest.raises(InputError, match=r"^collision: expected a name, a Detector or a CollisionModel, got Robot\("):
+        ikde.check(qiao, qiao.home, qiao)
 
 
 def test_the_public_calls_take_a_model(qiao):
@@ -110,6 +126,8 @@ def test_a_detector_compares_so_many_pairs_at_most(monkeypatch):
     message = "expected at most 1 pairs of components, got 2"
     pairs = {"some": (("G", "A"), ("G", "B"))}
     reject(message, "detectors", "d", "pairs", pair_lists=pairs, detectors=make_detector())
+    monkeypatch.setattr(collision_model, "MAX_PAIRS", 2)
+    assert len(CollisionModel.of(check_robot(make_draft(pair_lists=pairs, detectors=make_detector()))).pairs) == 2
 
 
 @pytest.mark.parametrize("distance", ["1", None, True, np.nan, np.inf, -0.1, 1.01e5])

@@ -140,3 +140,17 @@ def test_a_fixed_arm_falls_back_on_its_closed_form():
     assert choose_engines(robot, AUTO, {"pose", "axis"}) == ["lm", "memetic"]
     target = make_target(robot, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
     assert ikde.solve(robot, target).method == "lm"
+
+
+def test_no_more_attempts_are_made_than_the_settings_allow(rng):
+    panda = ikde.load_robot("panda")
+    once, harder = AUTO.with_changes(method="lm", restarts=1), 0
+    for stream in range(40):
+        target = make_target(panda, free_q(panda, rng), "pose")
+        usual = solve_quick(panda, target, 4, stream)
+        if usual is None or usual.attempts == 1:
+            continue
+        quick = Quick(CollisionModel.of(panda), once, "pose")
+        assert quick.solve(target, 4, stream) is None
+        harder += 1
+    assert harder > 0

@@ -9,7 +9,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.settings import choose_settings
+from ikde.solver.settings import SolveSettings, choose_settings
 
 PAPER = ikde.DeSettings(collision="reject", update="generation")
 GOOD = {
@@ -151,3 +151,15 @@ def test_settings_cannot_be_changed_in_place():
         ikde.SolveSettings().restarts = 1
     with pytest.raises(FrozenInstanceError):
         ikde.DeSettings().weight = 1.0
+
+
+def test_defaults_of_the_de_come_and_go_with_the_method():
+    paper = SolveSettings(method="de")
+    assert paper.with_changes(method="auto") == SolveSettings()
+    with pytest.raises(InputError, match="`population` is a setting of the method de; lm does not use it"):
+        paper.with_changes(de={"population": 80}).with_changes(method="lm")
+
+
+def test_an_unknown_setting_of_the_de_is_a_line():
+    with pytest.raises(InputError, match=r"no setting of the DE is called 'popul' \(did you mean 'population'\?\)"):
+        SolveSettings(method="de").with_changes(de={"popul": 80})

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import DescentArrays
+from ikde.kernels.flat_arguments import flatten_search
 from ikde.kernels.tables import LANES
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble
@@ -26,6 +27,7 @@ from tests.collision_robots import (
     two_arms,
 )
 from tests.conftest import random_q
+from tests.kernels.seeding import no_seeds
 from tests.random_robots import random_robot
 from tests.targets import make_targets
 from tests.uncompiled import quietly, run_text
@@ -212,3 +214,11 @@ def test_lanes_step_as_one_at_a_time(seed, kind, rng):
             assert q[lane::LANES].tobytes() == after.tobytes()
             met += after.tobytes() == Q[lane].tobytes()
     assert met < LANES - 1
+
+
+def test_straight_line_code_takes_the_safe_distance_of_both_models(qiao):
+    """By name in bulk, from the front of the block for one target."""
+    module = run_text(f"from ikde.kernels.arrays import SafeDistance\n\n\n{NO_TABLES}")
+    models = pack_robot(qiao), CollisionModel.of(qiao).arrays._replace(safe_distance=0.25)
+    block = flatten_search(*models, np.zeros((3, 9)), DescentArrays(), no_seeds(qiao, 0.125))
+    assert module.use_models(*models)[1].safe_distance == module.unpack_used(*block[:2])[1].safe_distance == 0.25
