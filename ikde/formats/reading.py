@@ -37,7 +37,7 @@ def max_bytes(share: float = 1.0) -> int:
 
 
 def read_bytes(path: Path, share: float = 1.0, *, follow: bool = True) -> bytes:
-    """A whole file, of at most `share` of the limit `$IKDE_MAX_FILE_MB`; a link may lead elsewhere if told to `follow`.
+    """A whole file, of at most `share` of the limit `$IKDE_MAX_FILE_MB`; with `follow` a link may lead elsewhere.
 
     Raises:
         FileError: for what is missing, no regular file (a folder, pipe, device or socket), too large or unreadable.

@@ -36,8 +36,7 @@ class CollisionModel:
             if choice.robot is not robot:
                 other = f"this is a model of another Robot object ({choice.robot.name}), not of this {robot.name}"
                 raise InputError(other, ("collision",))
-            if choice.detector is not None:
-                check_detector(robot, choice.detector, ("collision", "detector"))
+            _ = choice.is_checked
             return choice
         if isinstance(choice, Detector):
             check_detector(robot, choice, ("detector",))
@@ -51,6 +50,13 @@ class CollisionModel:
             known = ", ".join([*robot.detectors, NO_DETECTOR])
             raise InputError(f"{robot.name} has no detector {name!r}; it has {known}")
         return cls(robot=robot, detector=robot.detectors[name])
+
+    @cached_property
+    def is_checked(self) -> bool:
+        """True, found out once: checking walks all pairs; raises `InputError` for what does not fit the robot."""
+        if self.detector is not None:
+            check_detector(self.robot, self.detector, ("collision", "detector"))
+        return True
 
     def __getstate__(self) -> dict[str, object]:
         """Without the packed arrays: pickled ones come back writable, which numba takes for another type."""

@@ -75,9 +75,6 @@ def _excess_rad(turns: _Turns, direction: Floats, wanted: Floats) -> float:
     low = high = float(angle_between(turns.own[-1], here))
     for axis, before in zip(turns.axes[:0:-1], turns.own[-2::-1], strict=True):
         between = float(angle_between(before, axis))
-        low, high = (
-            max(0.0, low - between, between - high),
-            min(np.pi, high + between, 2.0 * np.pi - between - low),
-        )
+        low, high = (max(0.0, low - between, between - high), min(np.pi, high + between, 2.0 * np.pi - between - low))
     asked = float(angle_between(turns.axes[0], wanted))
     return max(low - asked, asked - high)

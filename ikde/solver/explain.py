@@ -33,8 +33,7 @@ COUNTED = 64  # attempts whose collisions are counted pair by pair
 MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and looks into what is in the way"
 
 _OUT_OF_REACH, _COLLISION, _BUDGET, _TIMED_OUT = map(
-    STOP_REASONS.index,
-    (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT),
+    STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT)
 )
 
 
@@ -168,10 +167,7 @@ def _timed_out(
     attempts, colliding = found.counts[0, [ATTEMPTS, COLLIDING]].tolist()
     reason = reason_from_counts(StopReason.TIMED_OUT, 0.0, attempts, colliding, timeout_s)
     return Explanation(
-        stop_reason=StopReason.TIMED_OUT,
-        reason=f"{reason}; {_best(graded)}",
-        hint=MORE_TIME,
-        blocking_pairs=blocking,
+        stop_reason=StopReason.TIMED_OUT, reason=f"{reason}; {_best(graded)}", hint=MORE_TIME, blocking_pairs=blocking
     )
 
 

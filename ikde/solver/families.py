@@ -1,4 +1,4 @@
-"""Which of the eight ways a UR-type arm holds itself: shoulder, elbow and wrist, told by its geometry.
+"""Which of the eight ways a UR-type arm holds itself: shoulder, elbow and wrist, by its geometry.
 
 Stand at the shoulder, the first axis pointing up, and look to the wrist centre, where the last two axes meet:
 

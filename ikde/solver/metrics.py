@@ -96,7 +96,7 @@ def make_metrics(count: int) -> Metrics:
 def pack_grader(
     collision: CollisionModel, settings: SolveSettings | None, limits: Limits | None = None
 ) -> tuple[Floats, Ints]:
-    """What the grader is told beside targets and configurations; without settings there are no tolerances."""
+    """What the grader takes beside targets and configurations; without settings there are no tolerances."""
     terms = Terms(
         limits=np.array(limits or (collision.robot.lower, collision.robot.upper)),
         position_tolerance=float(settings.position_tolerance_m) if settings else np.inf,

@@ -67,7 +67,7 @@ class SolveResult:
     method: str
     """The engine that answered."""
     settings: SolveSettings
-    """What the engine was told; with the seed and the stream it repeats the search bit for bit."""
+    """What the engine was asked; with the seed and the stream it repeats the search bit for bit."""
     detector: str
     seed: int
     stream: int
@@ -97,14 +97,14 @@ class SolveResult:
 
 
 class ResultMaker:
-    """Makes the results of one problem from what an engine found and a grader saw; unless told otherwise, reached ones.
+    """Makes the results of one problem from what an engine found and a grader saw: reached, unless `others` differ.
 
     All fields go in at once: a frozen dataclass sets them one by one, which takes five times as long.
     """
 
     def __init__(self, problem: Problem, **others: Any) -> None:
         collision, settings = problem.collision, problem.settings
-        self._pairs = (*collision.pairs, None)  # the last, number -1, is none
+        self._pairs = collision.pairs
         self._shared = {
             "reached": True,
             "stop_reason": StopReason.REACHED,
@@ -143,7 +143,7 @@ class ResultMaker:
             position_error_m=position,
             orientation_error_rad=orientation,
             clearance_m=clearance if pair >= 0 else None,
-            closest_pair=self._pairs[pair],
+            closest_pair=self._pairs[pair] if pair >= 0 else None,
             attempts=attempts,
             evaluations=evaluations,
             rejected=rejected,

@@ -110,10 +110,7 @@ def verify(
 
 
 def verify_many(
-    collision: CollisionModel,
-    targets: Targets | Sequence[Target],
-    Q: Floats,
-    settings: SolveSettings,
+    collision: CollisionModel, targets: Targets | Sequence[Target], Q: Floats, settings: SolveSettings
 ) -> Grades:
     """Grade configurations `Q` [T, N] in the robot's own convention, a target each; as `verify`, in bulk."""
     robot = collision.robot

@@ -75,8 +75,8 @@ class Expression:
             InputError: with the first k where there is none, or if all of them would take too long.
         """
         if self.operations * len(k) > BUDGET:
-            told = f"{self.operations} operations at {len(k):,} places, samples and half-way between them"
-            raise InputError(f"{_quote(self.text)} takes too long: {told}; expected at most {BUDGET:,} in all")
+            cost = f"{self.operations} operations at {len(k):,} places, samples and half-way between them"
+            raise InputError(f"{_quote(self.text)} takes too long: {cost}; expected at most {BUDGET:,} in all")
         values = np.empty(len(k))
         with np.errstate(all="ignore"):
             for first in range(0, len(k), PIECE):
