@@ -4,7 +4,7 @@ A named tuple is unpacked field by field, in Python, on every call: the 27 array
 five times as long as the search. The two `flatten_` functions lay named tuples end to end; kernels unpack them free.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
@@ -42,6 +42,15 @@ def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms)
     joints = np.array([terms.limits.shape[1]])
     numbers, whole = _flatten(*_list_models(robot, collision), *terms, joints)
     return _freeze(numbers), _freeze(whole)
+
+
+def flatten_answer(search: Sequence[Any], grader: tuple[Floats, Ints], kind: int) -> tuple[Floats, Ints]:
+    """What `unpack_answer` takes: the block of a search, which stands first, and that of the grader.
+
+    Writable: numba takes twice as long to see the type of an array that is read-only.
+    """
+    where = [kind, len(search[0]), len(search[1])]
+    return np.concatenate([search[0], grader[0]]), np.concatenate([search[1], grader[1], where])
 
 
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
@@ -130,3 +139,10 @@ def unpack_grader(numbers, whole):
     joints, end = whole[whole.size - 1], numbers.size - 2
     limits = numbers[end - 2 * joints : end].reshape((2, joints))
     return robot, collision, Terms(limits, numbers[end], numbers[end + 1])
+
+
+@inline_view_kernel
+def unpack_answer(numbers, whole):
+    """The grader's numbers and whole numbers, and the kind of target [1], as views."""
+    end = whole.size - 3
+    return numbers[whole[end + 1] :], whole[whole[end + 2] : end], whole[end : end + 1]

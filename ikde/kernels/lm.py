@@ -7,8 +7,9 @@ them side by side and gives a lane that has finished the next target. Both make 
 
 import numpy as np
 
+from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
-from ikde.kernels.flat_arguments import unpack_search
+from ikde.kernels.flat_arguments import unpack_answer, unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_uniform, seed_stream
 from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
@@ -88,6 +89,21 @@ def solve_target(
         pair = find_collision(robot, collision, q, buffers) if verdict == MET else -1
         if record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
             return
+
+
+@kernel
+def answer_target(numbers, whole, pool, pool_T, T_world_tool, seed, stream, first, last, out):
+    """`solve_target` on one target [3, 4], and the grade of what it reaches, from one call of Python.
+
+    `numbers` and `whole` are those of `unpack_answer`, `out` is the row of `kernels/answer.py`; with `first` above 0 it
+    goes on with what stands there. Returns True if the target is reached and the grader accepts it.
+    """
+    grader, terms, kinds = unpack_answer(numbers, whole)
+    targets, joints = T_world_tool.reshape((1, 3, 4)), whole[0]
+    out_q, out_score, out_counts, out_pairs = open_row(joints, first, out)
+    question = (numbers, whole, pool, pool_T, kinds, targets, 0, np.uint64(seed), stream, first, last)
+    solve_target(*question, out_q, out_score, out_counts, out_pairs)
+    return grade_row(grader, terms, kinds, targets, joints, out)
 
 
 @inline_kernel

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
-from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
@@ -23,7 +22,7 @@ from ikde.solver.hints import (
 )
 from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, StopReason
+from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.touching import find_always_touching
 from ikde.solver.verify import Grade
@@ -53,12 +52,6 @@ class _Met:
 
     colliding: int
     blocking: Mapping[tuple[str, str], int]
-
-
-def count_blocking_pairs(pairs: Pairs, pair_counts: np.ndarray) -> dict[tuple[str, str], int]:
-    """Pairs that blocked, with how often, most often first."""
-    blocking = {pairs[k]: int(pair_counts[k]) for k in np.flatnonzero(pair_counts)}
-    return dict(sorted(blocking.items(), key=lambda item: -item[1]))
 
 
 def stop_from_counts(found: SearchState, timeout_s: float | None) -> Ints:
@@ -128,6 +121,13 @@ def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | Non
         hint=hint if is_enough else None,
         blocking_pairs=met.blocking,
     )
+
+
+def explain_reach(problem: Problem, target: Target) -> Explanation:
+    """Why a target is out of reach that a bound has excluded."""
+    proof = _prove(problem, target)
+    assert proof is not None
+    return proof
 
 
 def _prove(problem: Problem, target: Target) -> Explanation | None:

@@ -5,7 +5,7 @@ every row or a sample, and must agree to 1e-11. What each shares with the search
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -102,9 +102,7 @@ def confirm(robot: Robot, result: SolveResult) -> SolveResult:
     if not gap <= AGREEMENT or (result.reached and plain.outside_limits):
         raise _disagreement(gap, result.q)
     split = {"reached": False, "stop_reason": StopReason.BUDGET, "reason": SPLIT, "hint": None}
-    confirmed = replace(result, verified=True, **(split if result.reached and not plain.accepted else {}))
-    confirmed.__dict__["grade"] = plain  # else it would be computed once more
-    return confirmed
+    return result.with_changes(verified=True, grade=plain, **(split if result.reached and not plain.accepted else {}))
 
 
 def _choose(bulk: BulkOptions, streams: Ints) -> Bools:

@@ -4,73 +4,77 @@ The answer is that of the long way (`solver.results`), bit for bit; what this wa
 """
 
 import time
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 
-from ikde.kernels.arrays import COLLIDING, COUNTS, REACHED
-from ikde.kernels.grade_one import grade_one
+from ikde.kernels.answer import FIRST_COUNT, METRICS, size_of
+from ikde.kernels.arrays import REACHED
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Robot
-from ikde.model.target import KINDS, Target
+from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.lm import prepare_search
+from ikde.solver.engines.lm import prepare_answer
 from ikde.solver.engines.pool import runs_on_tables
-from ikde.solver.explain import count_blocking_pairs
-from ikde.solver.metrics import pack_grader
+from ikde.solver.explain import explain_reach
 from ikde.solver.problem import make_problem
-from ikde.solver.result import ResultMaker, SolveResult
+from ikde.solver.result import ResultMaker, SolveResult, StopReason
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings, choose_settings
 
 ENGINE = "lm"
+HALF_WORDS = 2**63
+OUT_OF_REACH = {"reached": False, "stop_reason": StopReason.OUT_OF_REACH, "_explain": explain_reach}
 
 
 class Quick:
     """The engine `lm` and the grader, for one collision model, settings and kind of target."""
 
-    def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str) -> None:
-        problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-        self._kind = np.array([KINDS.index(kind)])
-        self._kind.setflags(write=False)
-        self._search = prepare_search(problem, kind)
-        self._grade = partial(grade_one, *pack_grader(collision, settings))
-        self._last = min(ENGINES[ENGINE].attempts_before_proof, int(settings.budget(ENGINE)))
-        self._joints, self._pairs = len(collision.robot.joints), collision.pairs
-        self._no_score, self._results = np.full(2, np.inf), ResultMaker(problem, method=ENGINE)
+    def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str, is_last: bool = False) -> None:
+        self._problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
+        self._answer, self._results = prepare_answer(self._problem, kind), ResultMaker(self._problem, ENGINE)
+        joints = len(collision.robot.joints)
+        self._size, self._reached = size_of(joints, len(collision.pairs)), joints + METRICS + FIRST_COUNT + REACHED
+        row, budget = ENGINES[ENGINE], settings.budget(ENGINE)
+        self._few = min(row.attempts_before_proof, budget)
+        self._all = budget if is_last or row.attempts_before_next is None else row.attempts_before_next
+        if settings.timeout_s is not None:
+            self._all = self._few
         self._is_ready = False
 
-    def solve(self, target: Target, seed: int, stream: int) -> SolveResult | None:
-        """A graded solution, or None if this target needs another engine, more attempts, or a reason."""
-        if self._is_ready:
-            return self._try(target, seed, stream)
-        with compile_clock() as clock:
-            self._try(target, seed, stream)
-            result = self._try(target, seed, stream)
-        if result is not None:
-            result.__dict__["compile_seconds"] = clock.seconds
-        self._is_ready = True
-        return result
+    def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
+        """A graded solution or a proof that there is none, or None if this target needs another engine, or a reason.
 
-    def _try(self, target: Target, seed: int, stream: int) -> SolveResult | None:
-        started = time.perf_counter()
-        kind, T_world_tool = self._kind, target.T_world_tool[None]
-        q, score = np.empty(self._joints), self._no_score.copy()
-        counts, blocked = np.zeros(COUNTS, dtype=np.int64), np.zeros(len(self._pairs), dtype=np.int64)
-        self._search(kind, T_world_tool, 0, np.uint64(seed), stream, 0, self._last, q, score, counts, blocked)
-        if not counts[REACHED]:
+        `started`: when the caller began to wait, by `time.perf_counter`.
+        """
+        row, word = np.empty(self._size), seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
+        if not self._is_ready:
+            return self._compile(target, seed, stream)
+        if self._answer(target.T_world_tool, word, stream, 0, self._few, row):
+            return self._results.make(row, target, seed, stream, time.perf_counter() - started)
+        if row.view(np.int64)[self._reached]:
             return None
-        seconds = time.perf_counter() - started
-        q.setflags(write=False)
-        metrics = self._grade(kind, T_world_tool, q)
-        if not metrics[-1]:
-            return None
-        counted = counts.tolist()
-        if not counted[COLLIDING]:
-            return self._results.make(target, q, metrics, counted, seed, stream, seconds)
-        blocking = {"blocking_pairs": count_blocking_pairs(self._pairs, blocked)}
-        return self._results.make(target, q, metrics, counted, seed, stream, seconds, blocking)
+        if self._is_out_of_reach(target):
+            made = self._results.make(row, target, seed, stream, time.perf_counter() - started)
+            return made.with_changes(**OUT_OF_REACH)
+        if self._all > self._few and self._answer(target.T_world_tool, word, stream, self._few, self._all, row):
+            return self._results.make(row, target, seed, stream, time.perf_counter() - started)
+        return None
+
+    def _compile(self, target: Target, seed: int, stream: int) -> SolveResult | None:
+        """The first answer, whose time is that of a second try."""
+        self._is_ready = True
+        with compile_clock() as clock:
+            self.solve(target, seed, stream, 0.0)
+        result = self.solve(target, seed, stream, time.perf_counter())
+        return result and result.with_changes(compile_seconds=clock.seconds)
+
+    def _is_out_of_reach(self, target: Target) -> bool:
+        problem = self._problem
+        excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
+        return bool(excess > problem.settings.position_tolerance_m)
 
 
 @lru_cache(maxsize=64)
@@ -85,4 +89,4 @@ def find_quick(
     engines = choose_engines(robot, chosen, {kind})
     if engines[0] != ENGINE or runs_on_tables():
         return None
-    return Quick(collision, chosen, kind)
+    return Quick(collision, chosen, kind, is_last=len(engines) == 1)

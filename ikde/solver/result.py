@@ -1,13 +1,17 @@
 """What a solve gives back: joint values, their graded metrics, what it cost, and the reason it stopped."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property, partial
 from typing import Any
 
-from ikde.kernels.arrays import Floats
+import numpy as np
+from numpy.typing import NDArray
+
+from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, PAIR
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats
 from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
@@ -32,58 +36,169 @@ class StopReason(StrEnum):
     """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
 
 
+Parts = tuple["ResultMaker", Floats, Target, int, int, float]
+"""Maker, row of numbers (`kernels/answer.py`), target, seed, stream, seconds of the search."""
+NOT_FIELDS = ("with_changes", "grade", "family")
+
 STOP_REASONS = tuple(StopReason)  # in the order of their numbers in `SolveResults.stop_reasons`
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class SolveResult:
-    """One configuration and everything known about it. The metrics are graded on exactly this `q`."""
+    """One configuration and everything known about it. The metrics are graded on exactly this `q`.
 
-    reached: bool
-    """Within tolerance, inside the limits, and free of self-collision if that was checked: with the detector `"none"`
-    it is not. The kernels' grader decides; where plain numpy graded as well (`verified`) both must accept."""
-    stop_reason: StopReason
-    reason: str
-    """One line: what happened."""
-    hint: str | None
-    """One line: what would help, proved by a bound or found by trying it; None if nothing was, or nothing is needed."""
-    q: Floats
-    """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
-    joint_names: tuple[str, ...]
-    target: Target
-    position_error_m: float
-    """Distance of the tool from the target, m."""
-    orientation_error_rad: float
-    """Rotation-vector norm between tool and target, rad."""
-    clearance_m: float | None
-    """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
-    closest_pair: tuple[str, str] | None
-    """The two components that the clearance lies between."""
-    collision: bool | None
-    """True if the clearance is not above the safe distance; None: not checked, there is no detector."""
-    verified: bool | None
-    """True: plain numpy graded exactly this `q` and agrees with the metrics to 1e-11. False: it does not, a bug, which
-    raises, or in bulk is recorded here. None: it was not asked; asking for `grade` later does not change it."""
-    method: str
-    """The engine that answered."""
-    settings: SolveSettings
-    """What the engine was asked; with the seed and the stream it repeats the search bit for bit."""
-    detector: str
-    seed: int
-    stream: int
-    """Index of the target in its batch."""
-    attempts: int
-    evaluations: int
-    """Forward kinematics with pose error."""
-    rejected: int
-    """Attempts that met the pose but collided."""
-    blocking_pairs: Mapping[tuple[str, str], int]
-    """How often each pair blocked a pose that was met, most often first."""
-    solve_seconds: float
-    """Wall time of this search, without compilation; in bulk, very short searches share a call and its time evenly."""
-    compile_seconds: float
-    verify: Callable[[Target, Floats], Grade] = field(repr=False)
-    """Grades any target and configuration as this one was graded, by plain numpy."""
+    Made from a row of numbers (`kernels/answer.py`); what is asked for is read from it then, and kept.
+    """
+
+    __slots__ = ("__dict__", "_parts")
+
+    def __repr__(self) -> str:
+        return f"SolveResult({', '.join(f'{name}={getattr(self, name)!r}' for name in FIELDS if name != 'verify')})"
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"cannot assign to {name!r}: a result stays as it is")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (self._parts, self.__dict__)
+
+    def with_changes(self, **changes: Any) -> "SolveResult":
+        """A copy of which something else is known; its grade, unless given, is made anew."""
+        known = {name: value for name, value in self.__dict__.items() if name != "grade"}
+        return _restore(self._parts, {**known, **changes})
+
+    @cached_property
+    def reached(self) -> bool:
+        """Within tolerance, inside the limits, and free of self-collision if that was checked: with the detector
+        `"none"` it is not. The kernels' grader decides; where plain numpy graded as well (`verified`) both must
+        accept."""
+        return True
+
+    @cached_property
+    def stop_reason(self) -> StopReason:
+        """Why the search ended."""
+        return StopReason.REACHED
+
+    @cached_property
+    def reason(self) -> str:
+        """One line: what happened."""
+        return reached_reason(self._maker.problem.collision) if self.reached else self._explanation.reason
+
+    @cached_property
+    def hint(self) -> str | None:
+        """One line: what would help, proved by a bound or found by trying it; None if nothing was, or nothing is
+        needed."""
+        return None if self.reached else self._explanation.hint
+
+    @cached_property
+    def q(self) -> Floats:
+        """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
+        q = self._row[: self._maker.joints]
+        q.setflags(write=False)
+        return q
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """In the order of `q`."""
+        return self._maker.problem.robot.joint_names
+
+    @cached_property
+    def target(self) -> Target:
+        """What was asked for."""
+        return self._parts[2]
+
+    @cached_property
+    def position_error_m(self) -> float:
+        """Distance of the tool from the target, m."""
+        return self._row.item(self._maker.joints)
+
+    @cached_property
+    def orientation_error_rad(self) -> float:
+        """Rotation-vector norm between tool and target, rad."""
+        return self._row.item(self._maker.joints + 1)
+
+    @cached_property
+    def clearance_m(self) -> float | None:
+        """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
+        return self._row.item(self._maker.joints + 2) if self._counted[PAIR] >= 0 else None
+
+    @cached_property
+    def closest_pair(self) -> tuple[str, str] | None:
+        """The two components that the clearance lies between."""
+        pair = self._counted[PAIR]
+        return self._maker.problem.collision.pairs[pair] if pair >= 0 else None
+
+    @cached_property
+    def collision(self) -> bool | None:
+        """True if the clearance is not above the safe distance; None: not checked, there is no detector."""
+        return None if self.clearance_m is None else not self.clearance_m > self._maker.problem.collision.limit_m
+
+    @cached_property
+    def verified(self) -> bool | None:
+        """True: plain numpy graded exactly this `q` and agrees with the metrics to 1e-11. False: it does not, a bug,
+        which raises, or in bulk is recorded here. None: it was not asked; asking for `grade` later does not change
+        it."""
+        return None
+
+    @cached_property
+    def method(self) -> str:
+        """The engine that answered."""
+        return self._maker.method
+
+    @cached_property
+    def settings(self) -> SolveSettings:
+        """What the engine was asked; with the seed and the stream it repeats the search bit for bit."""
+        return self._maker.problem.settings
+
+    @cached_property
+    def detector(self) -> str:
+        """Its name, or `"none"`."""
+        return self._maker.problem.collision.name
+
+    @cached_property
+    def seed(self) -> int:
+        """Of the random numbers."""
+        return self._parts[3]
+
+    @cached_property
+    def stream(self) -> int:
+        """Index of the target in its batch."""
+        return self._parts[4]
+
+    @cached_property
+    def attempts(self) -> int:
+        """Starts made: seeds, populations, or places of the base."""
+        return self._counted[FIRST_COUNT + ATTEMPTS]
+
+    @cached_property
+    def evaluations(self) -> int:
+        """Forward kinematics with pose error."""
+        return self._counted[FIRST_COUNT + EVALUATIONS]
+
+    @cached_property
+    def rejected(self) -> int:
+        """Attempts that met the pose but collided."""
+        return self._counted[FIRST_COUNT + COLLIDING]
+
+    @cached_property
+    def blocking_pairs(self) -> Mapping[tuple[str, str], int]:
+        """How often each pair blocked a pose that was met, most often first."""
+        return count_blocking_pairs(self._maker.problem.collision.pairs, self._counted[BLOCKED:])
+
+    @cached_property
+    def solve_seconds(self) -> float:
+        """Wall time of this search, without compilation; in bulk, very short searches share a call and its time
+        evenly."""
+        return self._parts[5]
+
+    @cached_property
+    def compile_seconds(self) -> float:
+        """Of what had to be compiled first."""
+        return 0.0
+
+    @cached_property
+    def verify(self) -> Callable[[Target, Floats], Grade]:
+        """Grades any target and configuration as this one was graded, by plain numpy."""
+        problem = self._maker.problem
+        return partial(verify, problem.robot, settings=problem.settings, collision=problem.collision)
 
     @cached_property
     def grade(self) -> Grade:
@@ -95,65 +210,58 @@ class SolveResult:
         """How a UR-type arm holds itself, such as `left/up/no flip`; None for other arms and what is not reached."""
         return self.grade.family if self.reached else None
 
+    @cached_property
+    def _explanation(self) -> Any:
+        """Why it was not reached, where that was not put into words before."""
+        return self.__dict__["_explain"](self._maker.problem, self.target)
+
+    @property
+    def _maker(self) -> "ResultMaker":
+        return self._parts[0]
+
+    @property
+    def _row(self) -> Floats:
+        return self._parts[1]
+
+    @cached_property
+    def _counted(self) -> list[int]:
+        """The whole numbers of the row."""
+        return self._row[self._maker.joints + METRICS :].view(np.int64).tolist()
+
+
+FIELDS = tuple(name for name in vars(SolveResult) if not name.startswith("_") and name not in NOT_FIELDS)
+"""All that a result says of itself, in its order."""
+_new, _set_parts = object.__new__, vars(SolveResult)["_parts"].__set__
+
 
 class ResultMaker:
-    """Makes the results of one problem from what an engine found and a grader saw: reached, unless `others` differ.
+    """Makes the results of one problem from rows of numbers (`kernels/answer.py`): reached, unless it is told others.
 
-    All fields go in at once: a frozen dataclass sets them one by one, which takes five times as long.
+    Nothing is computed: the words, names and pairs of a result are made when they are asked for (1.6 us of 9).
     """
 
-    def __init__(self, problem: Problem, **others: Any) -> None:
-        collision, settings = problem.collision, problem.settings
-        self._pairs = collision.pairs
-        self._shared = {
-            "reached": True,
-            "stop_reason": StopReason.REACHED,
-            "reason": reached_reason(collision),
-            "hint": None,
-            "joint_names": collision.robot.joint_names,
-            "collision": False if collision.pairs else None,
-            "verified": None,
-            "settings": settings,
-            "detector": collision.name,
-            "blocking_pairs": {},
-            "compile_seconds": 0.0,
-            "verify": partial(verify, collision.robot, settings=settings, collision=collision),
-            **others,
-        }
+    def __init__(self, problem: Problem, method: str) -> None:
+        self.problem, self.method, self.joints = problem, method, len(problem.robot.joints)
 
-    def make(
-        self,
-        target: Target,
-        q: Floats,
-        metrics: tuple[Any, ...],
-        counts: Sequence[int],
-        seed: int,
-        stream: int,
-        solve_seconds: float,
-        others: Mapping[str, Any] | None = None,
-    ) -> SolveResult:
-        """One result; `metrics` as `grade_one` gives them, `counts` [COUNTS] as an engine does, `others` by field."""
-        position, orientation, clearance, pair, _ = metrics
-        _, attempts, evaluations, rejected, _ = counts
-        result = object.__new__(SolveResult)
-        result.__dict__.update(
-            self._shared,
-            q=q,
-            target=target,
-            position_error_m=position,
-            orientation_error_rad=orientation,
-            clearance_m=clearance if pair >= 0 else None,
-            closest_pair=self._pairs[pair] if pair >= 0 else None,
-            attempts=attempts,
-            evaluations=evaluations,
-            rejected=rejected,
-            seed=seed,
-            stream=stream,
-            solve_seconds=solve_seconds,
-        )
-        if others:
-            result.__dict__.update(others)
+    def make(self, row: Floats, target: Target, seed: int, stream: int, solve_seconds: float) -> SolveResult:
+        """A result that was reached, of a row that nothing else will write to."""
+        result = _new(SolveResult)
+        _set_parts(result, (self, row, target, seed, stream, solve_seconds))
         return result
+
+
+def _restore(parts: Parts, known: Mapping[str, Any]) -> SolveResult:
+    """A result from its parts, and what is known of it beside them."""
+    result = _new(SolveResult)
+    _set_parts(result, parts)
+    result.__dict__.update(known)
+    return result
+
+
+def count_blocking_pairs(pairs: Pairs, counts: Sequence[int] | NDArray[np.int64]) -> dict[tuple[str, str], int]:
+    """Pairs that blocked, with how often, most often first; `counts` may go on behind the last pair."""
+    blocking = {pair: int(count) for pair, count in zip(pairs, counts, strict=False) if count}
+    return dict(sorted(blocking.items(), key=lambda item: -item[1]))
 
 
 def reached_reason(collision: CollisionModel) -> str:

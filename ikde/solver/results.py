@@ -5,20 +5,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
-from ikde.solver.explain import Explanation, count_blocking_pairs, reason_from_counts
+from ikde.solver.explain import Explanation, reason_from_counts
 from ikde.solver.grade import Outcomes, grade
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, reached_reason
+from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, count_blocking_pairs, reached_reason
 from ikde.solver.search import search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, MaskedBools
 
-METRICS = ("position_error_m", "orientation_error_rad", "clearance_m", "closest_pair", "accepted")
+MEASURED = ("position_error_m", "orientation_error_rad", "clearance_m")
 EVERY_ROW = BulkOptions(verify="all")
 
 
@@ -139,22 +140,23 @@ class SolveResults:
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
         story, metrics, found = self.explanation(index), self.outcomes.metrics, self.found
-        q = self.q[index].copy()
-        q.setflags(write=False)
-        own = {
-            "method": NAMES[self.engines[index]],
-            "reached": story.stop_reason is StopReason.REACHED,
-            "stop_reason": story.stop_reason,
-            "reason": story.reason,
-            "hint": story.hint,
-            "blocking_pairs": story.blocking_pairs,
-            "collision": _verdict(self.collision, index),
-            "verified": _verdict(self.verified, index),
-            "compile_seconds": self.compile_seconds,
-        }
-        seen = tuple(getattr(metrics, name)[index].item() for name in METRICS)
-        cost, stream, seconds = found.counts[index].tolist(), self.first_stream + index, float(found.seconds[index])
-        return ResultMaker(self.problem).make(self.targets[index], q, seen, cost, self.seed, stream, seconds, own)
+        measured = [getattr(metrics, name)[index] for name in MEASURED]
+        row = pack_row(
+            found.q[index], measured, metrics.closest_pair[index], found.counts[index], found.pair_counts[index]
+        )
+        result = ResultMaker(self.problem, NAMES[self.engines[index]]).make(
+            row, self.targets[index], self.seed, self.first_stream + index, float(found.seconds[index])
+        )
+        return result.with_changes(
+            reached=story.stop_reason is StopReason.REACHED,
+            stop_reason=story.stop_reason,
+            reason=story.reason,
+            hint=story.hint,
+            blocking_pairs=story.blocking_pairs,
+            collision=_verdict(self.collision, index),
+            verified=_verdict(self.verified, index),
+            compile_seconds=self.compile_seconds,
+        )
 
 
 def _verdict(column: MaskedBools, index: int) -> bool | None:

@@ -1,6 +1,7 @@
 """`solve` and `solve_many`: search, grade, explain."""
 
 from collections.abc import Sequence
+from time import perf_counter
 
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionChoice
@@ -49,10 +50,11 @@ def solve(
         InputError: for what does not fit the robot.
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
+    started = perf_counter()
     seed, stream = check_seed(seed), check_stream(stream)
     if near is None and freeze is None:
         quick = find_quick(robot, settings, method, collision, target.kind)
-        result = quick.solve(target, seed, stream) if quick else None
+        result = quick.solve(target, seed, stream, started) if quick else None
         if result is not None:
             return result
     problem = make_problem(robot, choose_settings(settings, method), collision=collision, near=near, freeze=freeze)

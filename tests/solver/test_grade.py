@@ -123,16 +123,16 @@ def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
     assert (result.verified, confirm(qiao, result).verified) == (None, True)
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         with pytest.raises(VerificationError, match="disagree by"):
-            confirm(qiao, replace(result, **{name: getattr(result, name) + 1e-9}))
+            confirm(qiao, result.with_changes(**{name: getattr(result, name) + 1e-9}))
     with pytest.raises(VerificationError, match="disagree by"):
-        confirm(qiao, replace(result, q=result.q + 1e-3))
+        confirm(qiao, result.with_changes(q=result.q + 1e-3))
 
 
 def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no_bug(qiao):
     result = ikde.solve_many(qiao, TARGETS[:1], seed=7, bulk=BulkOptions(verify="none"))[0]
     tolerance = np.nextafter(result.grade.position_error_m, 0.0)
     strict = partial(verify, qiao, settings=replace(result.settings, position_tolerance_m=tolerance))
-    confirmed = confirm(qiao, replace(result, verify=strict))
+    confirmed = confirm(qiao, result.with_changes(verify=strict))
     assert (confirmed.reached, confirmed.verified, confirmed.stop_reason) == (False, True, "budget")
     assert "rounding" in confirmed.reason
 

@@ -1,6 +1,7 @@
 """The quick way gives the bits of the long way, and leaves to it what it cannot answer."""
 
 import os
+import pickle
 import subprocess
 import sys
 
@@ -8,11 +9,13 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.grade_one import grade_one
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
+from ikde.solver.engine_table import ENGINES
+from ikde.solver.engines.lm import prepare_answer
 from ikde.solver.grade import confirm
 from ikde.solver.quick import Quick, find_quick
+from ikde.solver.result import FIELDS
 from ikde.solver.results import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
@@ -24,9 +27,7 @@ AUTO = SolveSettings.for_method("auto")
 
 def solve_quick(robot, target, seed, stream, detector=None):
     """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
-    quick = Quick(CollisionModel.of(robot, detector), AUTO, target.kind)
-    quick.solve(target, seed, stream)
-    return quick.solve(target, seed, stream)
+    return Quick(CollisionModel.of(robot, detector), AUTO, target.kind).solve(target, seed, stream, 0.0)
 
 
 def solve_long(robot, target, settings, seed, stream):
@@ -41,11 +42,9 @@ def test_quick_and_long_give_the_same_result(qiao, rng, kind):
         quick, long = solve_quick(qiao, target, 4, stream), solve_long(qiao, target, AUTO, 4, stream)
         assert quick.q.tobytes() == long.q.tobytes()
         assert quick.grade == long.grade
-        told = [vars(result) for result in (quick, long)]
-        assert told[0].keys() == told[1].keys()
-        own = {"q", "target", "solve_seconds", "compile_seconds", "verify", "grade", "verified"}
-        for name in told[0].keys() - own:
-            assert told[0][name] == told[1][name], name
+        own = {"q", "target", "solve_seconds", "compile_seconds", "verify", "verified"}
+        for name in set(FIELDS) - own:
+            assert getattr(quick, name) == getattr(long, name), name
         assert (quick.target.p_world_tool == long.target.p_world_tool).all()
 
 
@@ -89,15 +88,44 @@ def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
 
 
 def test_what_the_grader_does_not_accept_goes_the_long_way(qiao, substitute):
-    substitute(grade_one, lambda *question: (*grade_one(*question)[:4], False))
+    substitute(prepare_answer, refuse)
     assert solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0) is None
 
 
-def test_what_is_not_reached_goes_the_long_way(qiao):
-    assert solve_quick(qiao, ikde.Target((0.0, 0.0, 9.0)), 0, 0) is None
-    result = ikde.solve(qiao, ikde.Target((0.0, 0.0, 9.0)))
-    assert (result.reached, result.stop_reason) == (False, "out_of_reach")
-    assert result.hint
+def refuse(problem, kind):
+    """The call, with a grader that accepts nothing."""
+    answer = prepare_answer(problem, kind)
+    return lambda *question: answer(*question) and False
+
+
+def test_what_is_not_reached_and_may_be_in_reach_goes_the_long_way(rng):
+    panda, wanted = ikde.load_robot("panda"), 0
+    once = Quick(CollisionModel.of(panda), AUTO.with_changes(method="lm", restarts=1), "pose", is_last=True)
+    for stream in range(60):
+        target = make_target(panda, free_q(panda, rng), "pose")
+        wanted += once.solve(target, 4, stream, 0.0) is None
+    assert wanted > 0
+
+
+@pytest.mark.parametrize("seed", [0, 2**63, 2**64 - 1])
+def test_all_seeds_have_a_quick_way(qiao, seed):
+    target = ikde.Target((0.8, 0.5, 1.0))
+    quick, long = solve_quick(qiao, target, seed, 7), solve_long(qiao, target, AUTO, seed, 7)
+    assert (quick.q.tobytes(), quick.seed) == (long.q.tobytes(), seed)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_a_bound_excludes_is_known_at_once_and_put_into_words_when_asked(qiao, kind):
+    target = make_target(qiao, qiao.home, kind)
+    far = ikde.Target.packed(kind, target.T_world_tool + np.array([0.0, 0.0, 0.0, 9.0]))
+    quick, long = solve_quick(qiao, far, 0, 0), solve_long(qiao, far, AUTO, 0, 0)
+    assert (quick.reached, quick.stop_reason) == (False, "out_of_reach")
+    assert "_explanation" not in vars(quick)
+    assert (quick.reason, quick.hint) == (long.reason, long.hint)
+    assert quick.q.tobytes() == long.q.tobytes()
+    assert (quick.attempts, quick.collision, quick.grade) == (long.attempts, long.collision, long.grade)
+    again = pickle.loads(pickle.dumps(quick))
+    assert (again.reason, again.q.tobytes()) == (quick.reason, quick.q.tobytes())
 
 
 @pytest.mark.parametrize("settings", [SolveSettings(method="memetic"), SolveSettings(method="de")])
@@ -145,12 +173,32 @@ def test_a_fixed_arm_falls_back_on_its_closed_form():
 def test_no_more_attempts_are_made_than_the_settings_allow(rng):
     panda = ikde.load_robot("panda")
     once, harder = AUTO.with_changes(method="lm", restarts=1), 0
+    quick, way = (
+        Quick(CollisionModel.of(panda), once, "pose", is_last=True),
+        Quick(CollisionModel.of(panda), AUTO, "pose"),
+    )
     for stream in range(40):
         target = make_target(panda, free_q(panda, rng), "pose")
-        usual = solve_quick(panda, target, 4, stream)
+        usual = way.solve(target, 4, stream, 0.0)
         if usual is None or usual.attempts == 1:
             continue
-        quick = Quick(CollisionModel.of(panda), once, "pose")
-        assert quick.solve(target, 4, stream) is None
+        assert quick.solve(target, 4, stream, 0.0) is None
         harder += 1
     assert harder > 0
+
+
+def test_a_search_that_is_begun_goes_on_where_it_stopped(rng):
+    """Attempts 0 to 15, a bound, and then the others: together those of one search."""
+    panda, on = ikde.load_robot("panda"), 0
+    way = Quick(CollisionModel.of(panda), AUTO, "pose")
+    for stream in range(300):
+        corner = np.where(rng.random(7) < 0.5, panda.lower, panda.upper) + rng.uniform(-0.02, 0.02, 7)
+        target = make_target(panda, corner.clip(panda.lower, panda.upper), "pose")
+        quick = way.solve(target, 4, stream, 0.0)
+        if quick is None or quick.attempts <= ENGINES["lm"].attempts_before_proof:
+            continue
+        long = solve_long(panda, target, AUTO, 4, stream)
+        assert (quick.q.tobytes(), quick.attempts, quick.rejected) == (long.q.tobytes(), long.attempts, long.rejected)
+        assert quick.blocking_pairs == long.blocking_pairs
+        on += 1
+    assert on > 0

@@ -5,22 +5,34 @@ from functools import partial
 
 import numpy as np
 
-from ikde.kernels.arrays import Ints
-from ikde.kernels.flat_arguments import flatten_search
+from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.flat_arguments import flatten_answer, flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
+from ikde.solver.metrics import pack_grader
 from ikde.solver.problem import Problem, pack_searched
 
 ONE_BY_ONE = ENGINES["lm"].one_by_one
 
 
+def pack_block(problem: Problem, kind: str) -> tuple[Floats, Ints, Floats, Floats]:
+    """All that stays from target to target, as `solve_target` takes it."""
+    models, seeds = pack_searched(problem.collision), make_seeds(problem, kind)
+    return flatten_search(*models, make_ranges(problem), make_descent(problem, kind), seeds)
+
+
 def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
     """Damped least squares on one target: `search(*targets, row, seed, stream, begin, end, *outputs)`."""
-    models, seeds = pack_searched(problem.collision), make_seeds(problem, kind)
-    block = flatten_search(*models, make_ranges(problem), make_descent(problem, kind), seeds)
-    return partial(load_kernels(problem.collision, kind).solve_target, *block)
+    return partial(load_kernels(problem.collision, kind).solve_target, *pack_block(problem, kind))
+
+
+def prepare_answer(problem: Problem, kind: str) -> Callable[..., bool]:
+    """The same and the grade in one call: `answer(T_world_tool, seed, stream, begin, end, out)` (`answer_target`)."""
+    *search, pool, pool_T = pack_block(problem, kind)
+    block = flatten_answer(search, pack_grader(problem.collision, problem.settings), KINDS.index(kind))
+    return partial(load_kernels(problem.collision, kind).answer_target, *block, pool, pool_T)
 
 
 class DampedLeastSquares:
