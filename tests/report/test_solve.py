@@ -1,7 +1,6 @@
 """A result as text and as JSON: nothing is lost, units and convention are the user's."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -89,7 +88,7 @@ def test_text_says_the_verdict_first(qiao, result, blocked):
     assert format_solve(qiao, result, Units()).startswith("reached: ")
     text = format_solve(qiao, blocked, Units())
     assert text.startswith("not reached: only colliding solutions")
-    helped, helpless = (format_solve(qiao, replace(blocked, hint=hint), Units()) for hint in ("free d_x: so", None))
+    helped, helpless = (format_solve(qiao, blocked.with_changes(hint=hint), Units()) for hint in ("free d_x: so", None))
     assert "what would help: free d_x: so" in helped
     assert "what would help" not in helpless
 
