@@ -35,7 +35,7 @@ class Quick:
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
         self._search = prepare_search(problem, kind)
-        self._grade = partial(grade_one, *pack_grader(collision, settings))
+        self._grade = partial(grade_one.compiled, *pack_grader(collision, settings))
         self._last = min(ENGINES[ENGINE].attempts_before_proof, int(settings.budget(ENGINE)))
         self._joints, self._pairs = len(collision.robot.joints), collision.pairs
         self._no_score, self._results = np.full(2, np.inf), ResultMaker(problem, method=ENGINE)

@@ -17,6 +17,7 @@ from ikde.solver.results import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
 from tests.problems import problem_of
+from tests.substitutes import BothWays
 from tests.targets import free_q, make_target
 
 AUTO = SolveSettings.for_method("auto")
@@ -89,7 +90,7 @@ def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
 
 
 def test_what_the_grader_does_not_accept_goes_the_long_way(qiao, substitute):
-    substitute(grade_one, lambda *question: (*grade_one(*question)[:4], False))
+    substitute(grade_one, BothWays(lambda *question: (*grade_one(*question)[:4], False)))
     assert solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0) is None
 
 

@@ -20,7 +20,7 @@ def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
     """Damped least squares on one target: `search(*targets, row, seed, stream, begin, end, *outputs)`."""
     models, seeds = pack_searched(problem.collision), make_seeds(problem, kind)
     block = flatten_search(*models, make_ranges(problem), make_descent(problem, kind), seeds)
-    return partial(load_kernels(problem.collision, kind).solve_target, *block)
+    return partial(load_kernels(problem.collision, kind).solve_target.compiled, *block)
 
 
 class DampedLeastSquares:
