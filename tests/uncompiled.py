@@ -10,15 +10,11 @@ from ikde.kernels.tables import LANES
 from ikde.kernels.trig import sin_cos
 
 DECORATOR = re.compile(r"^@(?:inline_|leaf_)?kernel\n", flags=re.MULTILINE)
-_SPACES = {}
 
 
 def plain(kernel):
     """A kernel without its compiler, and so are all that it calls; anything else as it is."""
-    function = getattr(kernel, "py_func", None)
-    if function is None:
-        return kernel
-    return FunctionType(function.__code__, _plain_space(function.__globals__), function.__name__)
+    return getattr(kernel, "plain", kernel)
 
 
 def plain_module(module):
@@ -65,13 +61,3 @@ def joint_names(q):
     for k, value in enumerate(q):
         named |= {f"q{k}": float(value), f"s{k}": math.sin(value), f"c{k}": math.cos(value)}
     return named
-
-
-def _plain_space(space):
-    """A module's names with its kernels replaced."""
-    key = id(space)
-    if key not in _SPACES:
-        _SPACES[key] = twin = dict(space)
-        for name, value in space.items():
-            twin[name] = plain(value)
-    return _SPACES[key]

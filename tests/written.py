@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED
 from ikde.solver.engines import pool
 from ikde.solver.quick import find_quick
-from tests.substitutes import substituted
+from tests.substitutes import BothWays, substituted
 
 
 @contextmanager
@@ -39,7 +39,7 @@ class Liar:
 
     def change(self, module):
         """The module with its solvers exchanged; its seeds are honest."""
-        solvers = {"solve_target": self.solve_target, "solve_targets": self.solve_many(3)}
+        solvers = {"solve_target": BothWays(self.solve_target), "solve_targets": self.solve_many(3)}
         if hasattr(module, "solve_branches"):
             solvers["solve_branches"] = self.solve_many(5)
         return SimpleNamespace(**{**vars(module), **solvers})

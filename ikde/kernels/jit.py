@@ -1,61 +1,105 @@
-"""One numba set-up for every kernel: cached on disk, strict IEEE arithmetic, compile time on the record.
+"""What makes a kernel of a function: machine code by numba when it is called, or the same function in plain Python.
 
-Two facts shape this file:
-
-* numba does not notice an edited callee in another file, so the cache folder carries a hash of all kernels;
-* `fastmath` stays off: it moved the last bit and bought nothing (168 against 166 us for 90 candidates).
+numba and LLVM are imported when the first machine code is asked for, not before: that takes 0.2 s, and loading the code
+as much again, where one target is solved in plain Python in two milliseconds. Both ways give the same bits.
+`fastmath` stays off: it moved the last bit and bought nothing (168 against 166 us for 90 candidates).
 """
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar
-
-import numba
-from numba.core import event
-
-from ikde.kernels import cache_folder
-from ikde.kernels.machine_code import MachineCode, hash_source
-
-F = TypeVar("F", bound=Callable[..., Any])
+from functools import cached_property, lru_cache, update_wrapper
+from types import FunctionType
+from typing import Any
 
 
-def kernel(function: F) -> F:
+class Kernel:
+    """A function with two ways to run it; numba takes it for the compiled one, wherever another kernel calls it."""
+
+    def __init__(self, function: FunctionType, **options: Any) -> None:
+        update_wrapper(self, function)
+        self.py_func, self._options = function, options
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run machine code: compiled, or loaded, when it is needed first. Hot loops hold on to `compiled` itself."""
+        return self.compiled(*arguments)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """A dispatcher of numba's; under `NUMBA_DISABLE_JIT` there is none, and it is `plain`."""
+        compiled = _load_compiler()(self.py_func, self._options)
+        return self.plain if compiled is self.py_func else compiled
+
+    @cached_property
+    def plain(self) -> FunctionType:
+        """The function as Python runs it, and so are all kernels that it calls.
+
+        Random streams wrap around, of which numpy's scalars would warn: it is called under `np.errstate`.
+        """
+        function = self.py_func
+        space = _find_twin(function.__globals__)
+        return FunctionType(function.__code__, space, function.__name__, function.__defaults__, function.__closure__)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.compiled._numba_type_
+
+
+def kernel(function: Callable[..., Any]) -> Kernel:
     """Compile `function` on its first call and keep the machine code on disk. It runs without Python's lock."""
-    return _compile(function, nogil=True)
+    return _make(function, nogil=True)
 
 
-def leaf_kernel(function: F) -> F:
+def leaf_kernel(function: Callable[..., Any]) -> Kernel:
     """Like `kernel`, for what allocates nothing: numba then counts no references to the arrays that it is given.
 
     Counting them costs atomic instructions at every branch: a seed took 0.60 us with them and 0.23 us without.
     """
-    return _compile(function, nogil=True, _nrt=False)
+    return _make(function, nogil=True, _nrt=False)
 
 
-def inline_kernel(function: F) -> F:
+def inline_kernel(function: Callable[..., Any]) -> Kernel:
     """Like `leaf_kernel`, but pasted into its callers: passing the packed arrays costs more than most kernels do.
 
     Measured on qiao2021: 0.97 against 4.6 us for one trial of the differential evolution.
     """
-    return _compile(function, forceinline=True, _nrt=False)
+    return _make(function, forceinline=True, _nrt=False)
 
 
-def inline_view_kernel(function: F) -> F:
+def inline_view_kernel(function: Callable[..., Any]) -> Kernel:
     """Like `inline_kernel`, for what gives back views of its arrays: references are counted (1.95 us for 2.07)."""
-    return _compile(function, forceinline=True)
+    return _make(function, forceinline=True)
 
 
-def _compile(function: F, **options: Any) -> F:
-    """Machine code is kept for what stands in a file, and without a compiler there is none."""
-    compiled: Any = numba.njit(error_model="numpy", **options)(function)
-    source = hash_source(function.__code__.co_filename) if cache_folder.CACHE_IS_WRITABLE else None
-    if source and not function.__closure__ and compiled is not function:
-        compiled._cache = MachineCode(function, source, cache_folder.CACHE_FOLDER / cache_folder.MACHINE_CODE)
-    return compiled
+def _make(function: Any, **options: Any) -> Kernel:
+    return Kernel(function, error_model="numpy", **options)
 
 
-class CompileClock(event.Listener):
+_LOCK = threading.RLock()
+_TWINS: dict[int, tuple[dict[str, Any], dict[str, Any]]] = {}
+
+
+def _find_twin(space: dict[str, Any]) -> dict[str, Any]:
+    """A module's names with the plain way in place of each kernel; copied once, and again what was defined since."""
+    with _LOCK:
+        _, twin = _TWINS.setdefault(id(space), (space, {}))  # the module's own is held on to, so that its id stays its
+        news = {name: value for name, value in space.items() if name not in twin}
+        twin.update(news)  # first, so that kernels which call each other find them
+        twin.update({name: value.plain for name, value in news.items() if isinstance(value, Kernel)})
+    return twin
+
+
+@lru_cache(maxsize=1)
+def _load_compiler() -> Callable[[FunctionType, dict[str, Any]], Any]:
+    """Import numba; from here on it tells the clocks."""
+    from ikde.kernels.machine_code import compile_function, listen
+
+    listen(CLOCKS)
+    return compile_function
+
+
+class CompileClock:
     """Adds up the seconds that numba spends compiling, on any thread; loading from the cache does not count.
 
     `announce` is called once, when the first compilation begins.
@@ -73,7 +117,7 @@ class CompileClock(event.Listener):
         """Wall time since the clock was made, without compiling."""
         return time.perf_counter() - self._made - self.seconds
 
-    def on_start(self, event: Any) -> None:
+    def start(self) -> None:
         """Start the clock at the outermost compilation: callees compile inside their callers."""
         if self._depth == 0:
             self._started = time.perf_counter()
@@ -82,16 +126,23 @@ class CompileClock(event.Listener):
                 self._announce = None
         self._depth += 1
 
-    def on_end(self, event: Any) -> None:
+    def end(self) -> None:
         """Stop the clock when the outermost compilation ends."""
-        self._depth -= 1
-        if self._depth == 0:
+        if self._depth == 1:
             self.seconds += time.perf_counter() - self._started
+        self._depth = max(self._depth - 1, 0)  # what another thread began before the clock was made
 
 
 @contextmanager
 def compile_clock(announce: Callable[[], None] | None = None) -> Iterator[CompileClock]:
     """Measure the compile time spent inside the block, and call `announce` once if kernels must be compiled there."""
     clock = CompileClock(announce)
-    with event.install_listener("numba:compile", clock):
+    CLOCKS.append(clock)
+    try:
         yield clock
+    finally:
+        CLOCKS.remove(clock)
+
+
+CLOCKS: list[CompileClock] = []
+"""Those that run: numba need not be there for one to start."""

@@ -1,27 +1,43 @@
-"""The machine code of kernels on disk, one file a kernel and types of its arguments.
+"""One numba set-up for every kernel, and the machine code on disk, one file a kernel and types of its arguments.
 
-It takes the place of numba's own cache, which loads what lies in its folder as it is: a file that was cut raises errors
-of many kinds from every later call, and a flipped bit is run. Here a checksum stands in front of every file, and
-whatever cannot be loaded is removed and compiled again.
+numba does not notice an edited callee in another file, so the cache folder carries a hash of all kernels. `MachineCode`
+takes the place of numba's own cache, which loads what lies in its folder as it is: a file that was cut raises errors of
+many kinds from every later call, and a flipped bit is run. Here a checksum stands in front of every file, and whatever
+cannot be loaded is removed and compiled again.
 """
 
 import hashlib
 import pickle
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from types import FunctionType
+from typing import Any, Protocol
 
 import llvmlite
 import numba
+from numba.core import event
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
+from ikde.kernels import cache_folder
 from ikde.kernels.cache_files import discard, read_sealed, write_sealed
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__)
+
+
+class Clock(Protocol):
+    """What is told of each compilation."""
+
+    def start(self) -> None:
+        """One begins, perhaps inside another."""
+        ...
+
+    def end(self) -> None:
+        """One ends."""
+        ...
 
 
 class MachineCode(NullCache):
@@ -58,6 +74,35 @@ class MachineCode(NullCache):
         """Where code for these types and this processor is kept, and what it is for."""
         key = (sig, target_context.codegen().magic_tuple(), self._identity)
         return self._folder / f"{self._name}.{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}.nbc", key
+
+
+def compile_function(function: FunctionType, options: dict[str, Any]) -> Any:
+    """A dispatcher of numba's, whose machine code is kept if the function stands in a file; without a JIT itself."""
+    compiled: Any = numba.njit(**options)(function)
+    source = hash_source(function.__code__.co_filename) if cache_folder.CACHE_IS_WRITABLE else None
+    if source and not function.__closure__ and compiled is not function:
+        compiled._cache = MachineCode(function, source, cache_folder.CACHE_FOLDER / cache_folder.MACHINE_CODE)
+    return compiled
+
+
+class _Relay(event.Listener):
+    """Tells clocks of compilations, on any thread; loading from the cache is none."""
+
+    def __init__(self, clocks: Sequence[Clock]) -> None:
+        self._clocks = clocks
+
+    def on_start(self, event: Any) -> None:
+        for clock in tuple(self._clocks):
+            clock.start()
+
+    def on_end(self, event: Any) -> None:
+        for clock in tuple(self._clocks):
+            clock.end()
+
+
+def listen(clocks: Sequence[Clock]) -> None:
+    """Tell the clocks that are in the list from now on of every compilation."""
+    event.register("numba:compile", _Relay(clocks))
 
 
 @lru_cache(maxsize=1024)

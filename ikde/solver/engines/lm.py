@@ -25,14 +25,14 @@ def pack_block(problem: Problem, kind: str) -> tuple[Floats, Ints, Floats, Float
 
 def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
     """Damped least squares on one target: `search(*targets, row, seed, stream, begin, end, *outputs)`."""
-    return partial(load_kernels(problem.collision, kind).solve_target, *pack_block(problem, kind))
+    return partial(load_kernels(problem.collision, kind).solve_target.compiled, *pack_block(problem, kind))
 
 
 def prepare_answer(problem: Problem, kind: str) -> Callable[..., bool]:
     """The same and the grade in one call: `answer(T_world_tool, seed, stream, begin, end, out)` (`answer_target`)."""
     *search, pool, pool_T = pack_block(problem, kind)
     block = flatten_answer(search, pack_grader(problem.collision, problem.settings), KINDS.index(kind))
-    return partial(load_kernels(problem.collision, kind).answer_target, *block, pool, pool_T)
+    return partial(load_kernels(problem.collision, kind).answer_target.compiled, *block, pool, pool_T)
 
 
 class DampedLeastSquares:
