@@ -38,6 +38,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble as generator
 from ikde.model.pack import pack_targets
 from ikde.solver.engines import pool
+from ikde.solver.engines.draws import draw, draw_free
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.pool import NO_BASE, make_seeds
 from ikde.solver.problem import make_problem, pack_searched
@@ -226,16 +227,15 @@ def draw_whole_pool(seeds: SeedArrays) -> SeedArrays:
     robot, rng = ikde.load_robot("qiao2021"), np.random.default_rng(0)
     q = seeds.q.copy()
     q[:, seeds.base] = rng.uniform(robot.lower, robot.upper, q.shape)[:, seeds.base]
-    return pool.sort_pool(robot, "pose", q, NO_BASE, 1.0)
+    return pool.sort_pool(robot, q, NO_BASE, np.array(pool.GRIDS["pose"]))
 
 
 def draw_evenly(count: int) -> SeedArrays:
     """As many as are kept of each cell, but from the first that are free."""
-    robot = ikde.load_robot("qiao2021")
-    kept, pool.PER_CELL = pool.PER_CELL, count
-    seeds = pool.draw_pool(CollisionModel.of(robot), "pose", robot.lower, robot.upper, count)
-    pool.PER_CELL = kept
-    return seeds
+    collision = CollisionModel.of(ikde.load_robot("qiao2021"))
+    whole = pool.make_whole_pool(collision, "pose")
+    numbers = draw_free(*pack_searched(collision), whole.lower, whole.upper, count)
+    return pool.sort_pool(collision.robot, draw(numbers, whole.lower, whole.upper), whole.base, whole.grid)
 
 
 def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: Variant) -> dict[str, Callable[[], Any]]:

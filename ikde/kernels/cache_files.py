@@ -55,23 +55,29 @@ def write_file(path: Path, content: bytes) -> bool:
 
 def read_sealed(path: Path) -> bytes | None:
     """What `write_sealed` wrote, or None; a file that has changed since is removed."""
-    content = read_file(path)
-    if content is None:
+    sealed = read_file(path)
+    if sealed is None:
         return None
-    seal, content = content[:SEAL], content[SEAL:]
-    if _seal(path, content) == seal:
-        return content
-    discard(path, "is damaged")
-    return None
+    content = unseal(path, sealed)
+    if content is None:
+        discard(path, "is damaged")
+    return content
+
+
+def seal(path: Path, content: bytes) -> bytes:
+    """A file's content behind its checksum: of its name and content, so that no other file passes for it."""
+    return hashlib.sha256(path.name.encode() + b"\0" + content).digest() + content
+
+
+def unseal(path: Path, sealed: bytes) -> bytes | None:
+    """The content of what `seal` made, or None if it has changed since."""
+    content = sealed[SEAL:]
+    return content if seal(path, content) == sealed else None
 
 
 def write_sealed(path: Path, content: bytes) -> None:
-    """Write a file with its checksum in front: of its name and content, so that no other file passes for it."""
-    write_file(path, _seal(path, content) + content)
-
-
-def _seal(path: Path, content: bytes) -> bytes:
-    return hashlib.sha256(path.name.encode() + b"\0" + content).digest()
+    """Write a file with its checksum in front."""
+    write_file(path, seal(path, content))
 
 
 def discard(path: Path, fault: str) -> None:

@@ -11,8 +11,8 @@ from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
 from ikde.kernels.flat_arguments import unpack_answer, unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.rng import next_uniform, seed_stream
-from ikde.kernels.seeds import POOL_DRAWS, POOL_STREAM, draw_seed
+from ikde.kernels.rng import seed_stream
+from ikde.kernels.seeds import draw_seed
 from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used
 
 GO_ON, MET, GIVE_UP = range(3)
@@ -187,21 +187,3 @@ def solve_targets(
         if busy == 0:
             return
         take_steps(robot, target, row, ranges, descent, q, T, errors, trial, buffers)
-
-
-@kernel
-def fill_pool(robot, collision, lower, upper, out_q):
-    """Draw configurations within [lower, upper] [N] that are free of collision into `out_q` [K, N].
-
-    Returns how many were found before the draws were spent; the same whatever the seed of a solve.
-    """
-    state, buffers = np.empty(1, dtype=np.uint64), make_buffers(robot, collision, lower.size)
-    seed_stream(POOL_STREAM, 0, 0, state)
-    found = 0
-    for _ in range(POOL_DRAWS * out_q.shape[0]):
-        if found == out_q.shape[0]:
-            break
-        for k in range(lower.size):
-            out_q[found, k] = lower[k] + next_uniform(state) * (upper[k] - lower[k])
-        found += find_collision(robot, collision, out_q[found], buffers) < 0
-    return found

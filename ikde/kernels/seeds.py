@@ -11,14 +11,11 @@ import math
 import numpy as np
 
 from ikde.kernels.arrays import AXIS, POSE, POSITION
-from ikde.kernels.frames import compute_bodies, compute_tool
-from ikde.kernels.jit import inline_kernel, kernel
+from ikde.kernels.jit import inline_kernel
 from ikde.kernels.rng import next_index, next_uniform
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
 X, Y, Z = 3, 7, 11  # rows of `SeedArrays.T_world_tool`, a transform [3, 4] row by row
-POOL_STREAM = np.uint64(2**64 - 2)  # in place of a user's seed: the pool is the same for all solves
-POOL_DRAWS = 50  # for each configuration of the pool, before there seem to be none that are free
 WINDOW = 32  # configurations around the target's cell that a seed is chosen from; doubled with every attempt
 COMPARED = 16  # of the window, by their poses
 LUCKY_ATTEMPTS = 6  # after as many failures the nearest ones are stuck: any configuration will do
@@ -143,15 +140,3 @@ def set_base(seeds, target, index, ranges, state, best, q):
     q[turn] = angle
     q[x] = min(max(T[0, 3] - c * P[X, best] + s * P[Y, best], ranges[0, x]), ranges[1, x])
     q[y] = min(max(T[1, 3] - s * P[X, best] - c * P[Y, best], ranges[0, y]), ranges[1, y])
-
-
-@kernel
-def fill_poses(robot, q, out_T):
-    """Pose of the tool at each row of `q` [K, N], into `out_T` [12, K], row by row of the transform [3, 4]."""
-    T_world_body, T_world_tool = np.empty((robot.bodies.shape[0], 3, 4)), np.empty((3, 4))
-    for row in range(q.shape[0]):
-        compute_bodies(robot, q[row], T_world_body)
-        compute_tool(robot, T_world_body, T_world_tool)
-        for i in range(3):
-            for j in range(4):
-                out_T[4 * i + j, row] = T_world_tool[i, j]

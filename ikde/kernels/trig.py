@@ -21,8 +21,11 @@ HALF_PI = 1.5707963267948966
 
 
 @inline_kernel
-def sin_cos(x):
-    """Return (sin x, cos x) for an angle in rad."""
+def fold_angle(x):
+    """Sine and cosine of what is left of an angle in rad beside whole quarter turns, and how many these are.
+
+    Arithmetic alone: the same text runs on arrays (`solver/engines/draws.py`).
+    """
     k = np.rint(x * TWO_OVER_PI)
     r = ((x - k * HALF_PI_HIGH) - k * HALF_PI_MIDDLE) - k * HALF_PI_LOW
     u = r * r
@@ -34,7 +37,13 @@ def sin_cos(x):
     half = 0.5 * u
     top = 1.0 - half
     c = top + (((1.0 - top) - half) + u * u * p)  # the bracket is what rounding took from 1 - u/2
-    quadrant = np.int64(k)
+    return s, c, np.int64(k)
+
+
+@inline_kernel
+def sin_cos(x):
+    """Return (sin x, cos x) for an angle in rad."""
+    s, c, quadrant = fold_angle(x)
     if quadrant & 1:  # no branch on the quadrant's signs: a misprediction costs more than a product
         s, c = c, s
     return s * np.float64(1 - (quadrant & 2)), c * np.float64(1 - ((quadrant + 1) & 2))

@@ -36,7 +36,7 @@ def test_it_is_the_grader_in_lanes_bit_for_bit(robot, rng):
 def test_it_shares_no_code_with_what_searches_by_written_kernels(robot, kind):
     """Sines, cosines and arc tangents excepted; arguments are taken apart by functions that compute nothing."""
     module = run_text(format_module(CollisionModel.of(robot), kind))
-    search = reachable(module.solve_target) | reachable(module.solve_targets) | reachable(module.fill_pool)
+    search = reachable(module.solve_target) | reachable(module.solve_targets)
     shared = {name.rpartition(".")[0] for name in reachable(grade_one) & search}
     assert shared <= {"ikde.kernels.trig", "ikde.kernels.flat_arguments"}
     assert {"ikde.kernels.seeds.draw_seed", "ikde.kernels.trig.sin_cos"} <= search

@@ -16,7 +16,7 @@ from ikde.kernels.tables import LANES
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.assemble import format_module
 from ikde.model.generate.module import load_module
-from ikde.model.pack import pack_robot, pack_targets
+from ikde.model.pack import pack_targets
 from ikde.model.reach import arm_length_m
 from ikde.model.target import KINDS, Targets
 from ikde.solver.plain import compute_frames
@@ -256,37 +256,6 @@ def test_compiled_tables_give_the_same_bits():
 @each_kind
 def test_compiled_kernels_of_a_large_robot_give_the_same_bits(kind):
     assert_compiled_like_plain(ROBOTS[0], kind)
-
-
-# ---- the pool
-
-
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
-def test_the_pool_is_free_and_the_same_every_time(robot):
-    module, models = generated(robot, "position"), pack_searched(CollisionModel.of(robot))
-    pools = [np.full((40, len(robot.joints)), np.nan) for _ in range(2)]
-    with quietly():
-        found = [module.fill_pool(*models, robot.lower, robot.upper, pool) for pool in pools]
-    assert found == [40, 40]
-    assert pools[0].tobytes() == pools[1].tobytes()
-    assert np.all((robot.lower <= pools[0]) & (pools[0] <= robot.upper))
-    assert (find_gaps(robot, CollisionModel.of(robot).detector, pools[0]) > models[1].safe_distance).all()
-
-
-def test_a_pool_that_cannot_be_filled_says_how_far_it_came(qiao):
-    module = generated(qiao, "position")
-    out_q = np.full((2, 9), np.nan)
-    with quietly():
-        assert module.fill_pool(*models_within(qiao, 0.0999), qiao.lower, qiao.upper, out_q) <= 2
-        stuck = np.full(9, 0.0)
-        draws = random_q(qiao, np.random.default_rng(2), 50)
-        stuck[:] = next(q for q in draws if module.find_collision(*models_within(qiao, 0.0), q, 0) >= 0)
-        assert module.fill_pool(*models_within(qiao, 0.0), stuck, stuck, out_q) == 0
-
-
-def models_within(robot, safe_distance):
-    """Packed robot and collision model, with a safe distance in m."""
-    return pack_robot(robot), CollisionModel.of(robot).arrays._replace(safe_distance=safe_distance)
 
 
 # ---- the rules of an attempt

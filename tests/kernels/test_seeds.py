@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from ikde.kernels import seeds
 from ikde.kernels.rng import seed_stream
-from ikde.model.pack import pack_robot, pack_targets
+from ikde.model.pack import pack_targets
 from ikde.model.target import Target
 from ikde.solver.plain import compute_frames
 from tests.conftest import random_q
@@ -198,13 +198,3 @@ def test_without_a_pool_starts_are_uniform(qiao):
     assert share.min() >= 0.0
     assert share.max() <= 1.0
     np.testing.assert_allclose(share.mean(axis=0), 0.5, atol=0.08)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_poses_of_the_pool_are_those_of_numpy(seed, rng):
-    robot = random_robot(seed)
-    Q = random_q(robot, rng, 5)
-    out_T = np.full((12, 5), np.nan)
-    PLAIN.fill_poses(pack_robot(robot), Q, out_T)
-    expected = compute_frames(robot, Q)[robot.tool][:, :3].reshape(5, 12).T
-    np.testing.assert_allclose(out_T, expected, rtol=0, atol=1e-14)

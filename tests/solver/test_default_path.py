@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.solver.engines import pool
 from tests.conftest import random_q
 from tests.problems import are_apart
 from tests.three_joints import KINDS, ROBOT, free_q, is_met, meet
@@ -98,9 +97,6 @@ def test_out_of_reach_is_told(kind):
 def test_a_closed_form_meets_poses(rng, monkeypatch):
     """By its module as plain Python: six joints take long to compile."""
     arm, settings = ikde.load_robot("ur5"), settings_of("analytic")
-    monkeypatch.setattr(pool, "DRAWN", 32)
-    monkeypatch.setattr(pool, "load_pool", lambda path: None)
-    monkeypatch.setattr(pool, "save_pool", lambda path, seeds: None)
     free = [q for q in random_q(arm, rng, 12) if is_met(arm, meet(arm, q, "pose"), q, settings)]
     targets = [meet(arm, q, "pose") for q in free]
     assert len(targets) > 4

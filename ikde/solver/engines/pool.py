@@ -1,25 +1,26 @@
 """The seeds of the engines `lm` and `analytic`: collision-free configurations drawn once for a robot and its ranges."""
 
 import hashlib
-import io
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels import cache_folder
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
-from ikde.kernels.cache_files import read_sealed, write_sealed
-from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
+from ikde.kernels.seeds import COMPARED, X, Y, Z
 from ikde.model.base_motion import NO_BASE, find_planar_base
 from ikde.model.collision_model import CollisionModel
-from ikde.model.generate.module import digest_inputs, kernel_kind, load_module, robots_folder
+from ikde.model.generate.module import kernel_kind, load_module
 from ikde.model.pack import pack_robot
 from ikde.model.reach import arm_length_m
 from ikde.model.robot import Robot
-from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem, pack_searched
+from ikde.solver.engines import draws, grids
+from ikde.solver.engines.draws import DRAWS, draw, draw_free, place_tools
+from ikde.solver.engines.grids import find_cells, keep_few, scale_grid
+from ikde.solver.engines.pool_files import Kept, load_cached, load_shipped, save_cached
+from ikde.solver.problem import NEAR_FIRST_BOX, Problem, pack_searched
 
 DRAWN, DRAWN_NARROW = 2**16, 2**13  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
@@ -38,6 +39,7 @@ GRIDS = {
 ROOMY_M = 2.0  # a base must have so much room in x and in y for it to be set freely
 FULL_TURN_RAD = 2.0 * np.pi - 0.01
 MIN_LENGTH_M = 1e-3
+DIGITS = 12  # decimals of a robot's numbers that a pool depends on: products of matrices differ from machine to machine
 
 
 def load_kernels(collision: CollisionModel, kind: str) -> Any:
@@ -61,110 +63,121 @@ def _load_tables() -> SimpleNamespace:
 def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     """Where attempts start: about `near` if there is one, else from the pool of the problem's ranges."""
     if problem.near is not None:
-        return sort_pool(problem.robot, kind, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
+        return no_pool(problem.robot, NEAR_FIRST_BOX)
     ranges = tuple(zip(problem.lower.tolist(), problem.upper.tolist(), strict=True))
     return _find_pool(problem.collision, kind, ranges)
 
 
 @lru_cache(maxsize=32)
 def _find_pool(collision: CollisionModel, kind: str, ranges: tuple[tuple[float, float], ...]) -> SeedArrays:
-    """The pool of a collision model and joint ranges; that of the joint limits lies in the cache folder."""
-    robot = collision.robot
+    """The pool of a collision model and joint ranges; that of the joint limits comes with ikde or is kept."""
+    whole = make_whole_pool(collision, kind)
     lower, upper = np.array(ranges).T.copy()
-    whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
-    if not whole or runs_on_tables() or not cache_folder.CACHE_IS_WRITABLE:
-        return draw_pool(collision, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
-    path = robots_folder() / f"{digest_pool(collision, kind)}.pool"
-    seeds = load_pool(path)
-    if seeds is None:
-        seeds = draw_pool(collision, kind, lower, upper, DRAWN)
-        save_pool(path, seeds)
-    return seeds
+    pool = make_pool(collision, kind, lower, upper, DRAWN_NARROW)
+    if not (np.array_equal(pool.lower, whole.lower) and np.array_equal(pool.upper, whole.upper)):
+        return pack_pool(pool, draw_kept(pool, collision))
+    name = f"{digest_pool(whole, collision)}.pool"
+    kept = load_shipped(name, len(whole.grid)) or load_cached(name, len(whole.grid))
+    if kept is None:
+        kept = draw_kept(whole, collision)
+        save_cached(name, kept)
+    return pack_pool(whole, kept)
 
 
-def digest_pool(collision: CollisionModel, kind: str) -> str:
-    """SHA-256, hex, of all that the pool within the joint limits depends on; no name is."""
-    robot = collision.robot
-    base, (_, searched) = find_base(robot, robot.lower, robot.upper), pack_searched(collision)
-    words = (digest_inputs(collision, kind), searched.safe_distance, base.tolist(), rotation_length_m(robot))
-    return hashlib.sha256(repr(words).encode() + _own_source()).hexdigest()
+class Pool(NamedTuple):
+    """What a pool is drawn for: from which ranges, and the grid that it is sorted by."""
+
+    robot: Robot
+    lower: Floats
+    upper: Floats
+    """[N] m or rad; both 0 for a base that is set for each target."""
+    wanted: int
+    base: Ints
+    grid: Ints
+
+
+def make_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats, wanted: int) -> Pool:
+    """The pool of `wanted` free configurations within some ranges, not drawn yet."""
+    base = find_base(collision.robot, lower, upper)
+    drives = base[0] >= 0
+    if drives:
+        lower, upper = lower.copy(), upper.copy()
+        lower[base] = upper[base] = 0.0
+    grid = np.array((GRIDS_DRIVING if drives else GRIDS)[kind])
+    return Pool(robot=collision.robot, lower=lower, upper=upper, wanted=wanted, base=base, grid=grid)
+
+
+def make_whole_pool(collision: CollisionModel, kind: str) -> Pool:
+    """The pool of the joint limits."""
+    return make_pool(collision, kind, collision.robot.lower, collision.robot.upper, DRAWN)
+
+
+def digest_pool(pool: Pool, collision: CollisionModel) -> str:
+    """SHA-256, hex, of all that the draws kept depend on; no name is, nor are the last digits of what is computed."""
+    robot, searched = pack_searched(collision)
+    words = (pool.wanted, DRAWS, PER_CELL, COMPARED, pool.grid.tolist(), pool.lower.tolist(), pool.upper.tolist())
+    digest = hashlib.sha256(repr(words).encode() + _own_source())
+    for array in (*robot, *searched):
+        digest.update(repr(np.shape(array)).encode() + (np.round(array, DIGITS) + 0.0).tobytes())
+    return digest.hexdigest()
 
 
 @lru_cache(maxsize=1)
 def _own_source() -> bytes:
-    """The code that draws and stores pools: other code draws others."""
-    return Path(__file__).read_bytes()
+    """The code that draws and keeps: other code draws others."""
+    return b"".join(Path(str(module.__file__)).read_bytes() for module in (draws, grids))
 
 
-def load_pool(path: Path) -> SeedArrays | None:
-    """What `save_pool` wrote, or None if there is nothing whole: 3 ms, where drawing takes 100."""
-    content = read_sealed(path)
-    if content is None:
-        return None
-    with np.load(io.BytesIO(content)) as arrays:
-        fields: dict[str, Any] = {name: arrays[name] for name in SeedArrays._fields}
-    for name, array in fields.items():
-        array.setflags(write=False)
-        fields[name] = array if array.ndim else float(array)
-    return SeedArrays(**fields)
+def draw_kept(pool: Pool, collision: CollisionModel) -> Kept:
+    """Draw free configurations and keep a few of each cell."""
+    numbers = _draw_free(collision, tuple(pool.lower.tolist()), tuple(pool.upper.tolist()), pool.wanted)
+    if len(numbers) < COMPARED:
+        return Kept(numbers=numbers[:0], scale=np.zeros((len(pool.grid), 2)))
+    values = place_tools(pack_robot(pool.robot), draw(numbers, pool.lower, pool.upper))[pool.grid[:, 0]]
+    scale = scale_grid(pool.grid, values)
+    return Kept(numbers=numbers[keep_few(find_cells(pool.grid, scale, values), PER_CELL)], scale=scale)
 
 
-def save_pool(path: Path, seeds: SeedArrays) -> None:
-    """Write a pool, whole or not at all; not at all if the disk is full: it can be drawn again."""
-    content = io.BytesIO()
-    np.savez(content, allow_pickle=False, **{name: np.asarray(field) for name, field in seeds._asdict().items()})
-    write_sealed(path, content.getvalue())
+@lru_cache(maxsize=4)
+def _draw_free(collision: CollisionModel, lower: tuple[float, ...], upper: tuple[float, ...], count: int) -> Ints:
+    """The numbers of the first free draws: 0.1 to 2 s for 2^16, once for all kinds of target."""
+    return draw_free(*pack_searched(collision), np.array(lower), np.array(upper), count)
 
 
-def draw_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats, count: int) -> SeedArrays:
-    """Draw `count` free configurations; a tenth of a second for 2^16."""
-    robot = collision.robot
-    base = find_base(robot, lower, upper)
-    if base[0] >= 0:
-        lower, upper = lower.copy(), upper.copy()
-        lower[base] = upper[base] = 0.0
-    module = load_kernels(collision, kind)
-    models = module.use_models(*pack_searched(collision))
-    q = np.empty((count, len(lower)))
-    with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-        found = module.fill_pool(*models, lower, upper, q)
-    return sort_pool(robot, kind, q[: found if found >= COMPARED else 0], base, 1.0)
+def pack_pool(pool: Pool, kept: Kept) -> SeedArrays:
+    """The configurations kept, sorted by cell, and where their tools are: 60 ms for 40,000."""
+    q = draw(kept.numbers, pool.lower, pool.upper)
+    return sort_pool(pool.robot, q, pool.base if len(q) else NO_BASE, pool.grid, kept.scale)
 
 
-def sort_pool(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) -> SeedArrays:
-    """Lay a grid over the tool poses of configurations [K, N], and keep a few of each of its cells."""
-    T_world_tool = np.empty((12, len(q)))
-    fill_poses(pack_robot(robot), q, T_world_tool)
-    grid = np.array((GRIDS_DRIVING if base[0] >= 0 else GRIDS)[kind])
-    scale, starts = np.zeros((len(grid), 2)), np.zeros(np.prod(grid[:, 1]) + 1, dtype=np.int64)
-    if len(q):
-        values, bins = T_world_tool[grid[:, 0]], grid[:, 1]
-        scale[:, 0] = values.min(axis=1)
-        scale[:, 1] = bins / np.maximum(values.max(axis=1) - scale[:, 0], ROUNDING)
-        places = ((values.T - scale[:, 0]) * scale[:, 1]).astype(np.int64).clip(0, bins - 1)
-        cells = np.asarray(np.ravel_multi_index(tuple(places.T), tuple(bins)))
-        kept = _keep_few(cells)
-        q, T_world_tool = np.ascontiguousarray(q[kept]), np.ascontiguousarray(T_world_tool[:, kept])
-        starts = np.searchsorted(cells[kept], np.arange(len(starts)))
-    for array in (q, T_world_tool, base, grid, scale, starts):  # as loaded ones are: numba tells the two apart
+def no_pool(robot: Robot, first_box: float) -> SeedArrays:
+    """Seeds that are drawn uniformly, in boxes that grow from this share of each range."""
+    grid = np.array(GRIDS["position"])
+    empty = sort_pool(robot, np.empty((0, len(robot.joints))), NO_BASE, grid, np.zeros((len(grid), 2)))
+    return empty._replace(first_box=first_box)
+
+
+def sort_pool(robot: Robot, q: Floats, base: Ints, grid: Ints, scale: Floats | None = None) -> SeedArrays:
+    """Configurations [K, N] sorted by the cells of a grid over their tool poses; None: one that just holds them."""
+    T_world_tool = place_tools(pack_robot(robot), q)
+    values = T_world_tool[grid[:, 0]]
+    scale = scale_grid(grid, values) if scale is None else scale
+    cells = find_cells(grid, scale, values)
+    order = np.argsort(cells.astype(np.uint16), kind="stable")  # 0.2 ms, as int64 2
+    q, T_world_tool = np.take(q, order, axis=0), np.take(T_world_tool, order, axis=1)
+    starts = np.searchsorted(cells[order], np.arange(np.prod(grid[:, 1]) + 1))
+    for array in (q, T_world_tool, base, grid, scale, starts):  # numba takes what can be written for another type
         array.setflags(write=False)
     return SeedArrays(
         q=q,
         T_world_tool=T_world_tool,
-        base=base if len(q) else NO_BASE,
+        base=base,
         grid=grid,
         grid_scale=scale,
         cell_start=starts,
         rotation_length=rotation_length_m(robot),
-        first_box=first_box,
+        first_box=1.0,
     )
-
-
-def _keep_few(cells: Ints) -> Ints:
-    """Indices of the first PER_CELL of each cell, sorted by cell."""
-    order = np.argsort(cells, kind="stable")
-    rank = np.arange(len(cells)) - np.searchsorted(cells[order], cells[order])
-    return order[rank < PER_CELL]
 
 
 @lru_cache(maxsize=64)

@@ -53,7 +53,7 @@ def test_a_module_is_python_of_one_robot(name, kind):
     names = [function.name for function in functions_of(text)]
     assert names[: len(OWN)] == OWN
     assert len(set(names)) == len(names)
-    assert {"solve_target", "solve_targets", "fill_pool"} <= set(names)
+    assert {"solve_target", "solve_targets"} <= set(names)
     assert ("solve_branches" in names) == (kind == "pose" and find_ur_arm(robot) is not None)
     assert all(ast.get_docstring(function) for function in functions_of(text))
 

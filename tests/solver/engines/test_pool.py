@@ -1,6 +1,6 @@
 """Seeds: free, the same for everybody, drawn where the joints may be."""
 
-import os
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numba
@@ -10,22 +10,26 @@ import pytest
 import ikde
 from ikde.errors import CacheWarning
 from ikde.kernels import analytic, cache_files, cache_folder, lm
-from ikde.kernels.seeds import find_cell
+from ikde.kernels.seeds import COMPARED, find_cell
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.target import KINDS, Targets
 from ikde.solver.engines import pool as module
+from ikde.solver.engines import pool_files
 from ikde.solver.engines.pool import (
     DRAWN,
     PER_CELL,
     digest_pool,
+    draw_kept,
     find_base,
     load_kernels,
-    load_pool,
+    make_whole_pool,
+    pack_pool,
     rotation_length_m,
-    save_pool,
 )
+from ikde.solver.problem import pack_searched
 from tests.hostile_names import rename
+from tests.random_robots import with_ranges
 from tests.solver.engines.questions import make_pool
 
 
@@ -81,49 +85,101 @@ def test_a_radian_counts_as_a_part_of_the_arm(any_robot):
     assert 0.05 < rotation_length_m(any_robot) < 1.0
 
 
+def digest(robot, kind, **changes):
+    """Of the pool within the limits."""
+    collision = CollisionModel.of(robot, **changes)
+    return digest_pool(make_whole_pool(collision, kind), collision)
+
+
 def test_pools_of_other_detectors_are_others(qiao):
     detector = CollisionModel.of(qiao).detector
     wider = replace(detector, safe_distance_m=detector.safe_distance_m + 1e-3)
-    names = {
-        digest_pool(CollisionModel(robot=qiao, detector=each), kind)
-        for each in (None, detector, wider)
-        for kind in KINDS
-    }
+    names = {digest(qiao, kind, choice=each) for each in ("none", detector, wider) for kind in KINDS}
     assert len(names) == 9
 
 
+def test_pools_of_other_ranges_are_others(qiao):
+    arm, base = (with_ranges(qiao, {name: (-1.0, 1.25)}) for name in ("q1", "d_x"))
+    assert digest(arm, "pose") != digest(qiao, "pose")
+    assert digest(base, "pose") == digest(qiao, "pose")  # the base is at zero in either
+
+
+def test_kinds_that_share_a_grid_share_a_pool():
+    ur5 = ikde.load_robot("ur5")
+    assert digest(ur5, "axis") == digest(ur5, "pose") != digest(ur5, "position")
+
+
 def test_wheels_leave_the_pool_alone(qiao, unwheeled):
-    detector = CollisionModel.of(qiao).detector
-    assert digest_pool(CollisionModel(robot=unwheeled, detector=detector), "axis") == digest_pool(
-        CollisionModel(robot=qiao, detector=detector), "axis"
-    )
+    assert digest(unwheeled, "axis") == digest(qiao, "axis")
 
 
 def test_no_name_is_part_of_a_pool(qiao):
-    other = rename(qiao, "other {}".format)
-    assert len({digest_pool(CollisionModel.of(robot), "axis") for robot in (qiao, other)}) == 1
+    assert digest(rename(qiao, "other {}".format), "axis") == digest(qiao, "axis")
 
 
-def test_a_robot_has_one_pool_with_a_cache_and_without(monkeypatch, tmp_path):
-    """Drawn and kept, loaded, and drawn where nothing is kept."""
-    monkeypatch.delenv("IKDE_KERNELS")
+def test_the_last_digits_of_a_product_do_not_make_another_pool(qiao, monkeypatch):
+    """Products of matrices differ from machine to machine."""
+    collision = CollisionModel.of(qiao)
+    pool = make_whole_pool(collision, "pose")
+    names = set()
+    for shift in (0.0, 1e-16, 1e-9):
+        robot, searched = pack_searched(collision)
+        moved = robot._replace(T_parent_body=robot.T_parent_body + shift), searched
+        monkeypatch.setattr(module, "pack_searched", lambda _, moved=moved: moved)
+        names.add(digest_pool(pool, collision))
+        monkeypatch.undo()
+    assert len(names) == 2
+
+
+def test_other_code_draws_other_pools(qiao, monkeypatch):
+    before = digest(qiao, "pose")
+    monkeypatch.setattr(module, "_own_source", lambda: b"other code")
+    assert digest(qiao, "pose") != before
+
+
+def test_a_robot_has_one_pool_however_it_comes_by_it(monkeypatch, tmp_path):
+    """With ikde; drawn and kept, loaded, drawn again for what was damaged; and drawn where nothing is kept."""
     monkeypatch.setattr(cache_folder, "CACHE_FOLDER", tmp_path)
-    load_kernels = "ikde.solver.engines.pool.load_kernels"  # those of tables are compiled already
-    robot = ikde.load_robot("ur5")
-    with monkeypatch.context() as tables:
-        tables.setenv("IKDE_KERNELS", "tables")
-        ready = module.load_kernels(CollisionModel.of(robot), "position")
-    monkeypatch.setattr(load_kernels, lambda *_: ready)
-    bits = []
-    for usable in (True, True, False):
+    monkeypatch.setattr(cache_files, "WARNED", set())
+    robot, drawn = ikde.load_robot("ur5"), []
+    monkeypatch.setattr(module, "draw_kept", lambda *pool: drawn.append(pool) or draw_kept(*pool))
+    bits = [bits_of(robot)]
+    assert not drawn
+    monkeypatch.setattr(pool_files, "SHIPPED", tmp_path)
+    for usable, damaged in ((True, False), (True, False), (True, True), (False, False)):
         monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", usable)
-        for path in () if usable else tmp_path.rglob("*.pool"):
+        for path in tmp_path.rglob("*.pool") if damaged else ():
             path.write_text("somebody else's")
-        module._find_pool.cache_clear()
-        bits.append([np.asarray(field).tobytes() for field in make_pool(robot, "position")])
-    module._find_pool.cache_clear()
-    assert bits[0] == bits[1] == bits[2]
+        with pytest.warns(CacheWarning) if damaged else nullcontext():
+            bits.append(bits_of(robot))
+    assert len(set(bits)) == 1
+    assert len(drawn) == 3
     assert [path.suffix for path in (tmp_path / cache_folder.ROBOTS).iterdir()] == [".pool"]
+
+
+def test_kernels_of_tables_start_from_the_same_pool(monkeypatch):
+    robot, bits = ikde.load_robot("ur5"), set()
+    for kind in ("tables", "written"):
+        monkeypatch.setenv("IKDE_KERNELS", kind)
+        bits.add(bits_of(robot))
+    assert len(bits) == 1
+
+
+def bits_of(robot):
+    """Of a pool that this process has not seen yet."""
+    module._find_pool.cache_clear()
+    seeds = make_pool(robot, "position")
+    module._find_pool.cache_clear()
+    return b"".join(np.asarray(field).tobytes() for field in seeds)
+
+
+def test_a_robot_that_is_hardly_ever_free_has_no_pool(qiao, monkeypatch):
+    monkeypatch.setattr(module, "_draw_free", lambda *_: np.arange(COMPARED - 1))
+    pool = make_whole_pool(CollisionModel.of(qiao), "pose")
+    kept = draw_kept(pool, CollisionModel.of(qiao))
+    assert len(kept.numbers) == 0
+    seeds = pack_pool(pool, kept)
+    assert (len(seeds.q), seeds.base.tolist(), seeds.first_box) == (0, [-1, -1, -1], 1.0)
 
 
 def test_without_a_cache_kernels_are_written_all_the_same(monkeypatch):
@@ -140,52 +196,14 @@ def test_tables_take_the_place_of_modules_if_asked(qiao, monkeypatch):
     assert (kernels.solve_target, kernels.solve_branches) == (lm.solve_target, analytic.solve_branches)
 
 
-# ---- on disk: what was saved comes back bit for bit, and what is damaged is drawn again
+# ---- as kernels take them
 
 
-def test_kernels_take_all_seeds_alike(qiao, tmp_path):
-    """Drawn, loaded, near something or frozen: one type, one compilation."""
-    save_pool(tmp_path / "pool.npz", make_pool(qiao))
-    every = [
-        make_pool(qiao),
-        load_pool(tmp_path / "pool.npz"),
-        make_pool(qiao, near=qiao.home),
-        make_pool(qiao, freeze={"q1": 0.1}),
-    ]
+def test_kernels_take_all_seeds_alike(qiao):
+    """Near something, frozen, or none of either: one type, one compilation."""
+    every = [make_pool(qiao), make_pool(qiao, near=qiao.home), make_pool(qiao, freeze={"q1": 0.1})]
     assert len({numba.typeof(seeds) for seeds in every}) == 1
-
-
-def test_what_was_saved_comes_back(qiao, tmp_path):
-    seeds = make_pool(qiao)
-    save_pool(tmp_path / "pool.npz", seeds)
-    loaded = load_pool(tmp_path / "pool.npz")
-    for ours, theirs in zip(seeds, loaded, strict=True):
-        assert type(ours) is type(theirs)
-        assert np.asarray(ours).tobytes() == np.asarray(theirs).tobytes()
-        assert not isinstance(theirs, np.ndarray) or not theirs.flags.writeable
-
-
-@pytest.mark.parametrize("share", [0.0, 0.5, 0.999])
-def test_a_file_that_was_cut_is_none(qiao, tmp_path, share, monkeypatch):
-    monkeypatch.setattr(cache_files, "WARNED", set())
-    path = tmp_path / "pool.npz"
-    save_pool(path, make_pool(qiao))
-    content = path.read_bytes()
-    path.write_bytes(content[: int(share * len(content))])
-    with pytest.warns(CacheWarning, match="is damaged"):
-        assert load_pool(path) is None
-
-
-def test_a_full_disk_is_no_error(qiao, tmp_path, monkeypatch):
-    def fail(handle):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(cache_files, "WARNED", set())
-    monkeypatch.setattr(os, "fsync", fail)
-    with pytest.warns(CacheWarning, match="No space left on device"):
-        save_pool(tmp_path / "pool.npz", make_pool(qiao))
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_no_file_is_none(tmp_path):
-    assert load_pool(tmp_path / "pool.npz") is None
+    for seeds in every:
+        arrays = [field for field in seeds if isinstance(field, np.ndarray)]
+        assert len(arrays) == 6
+        assert not any(array.flags.writeable for array in arrays)
