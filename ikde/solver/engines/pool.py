@@ -12,7 +12,7 @@ import numpy as np
 from ikde.kernels import cache_folder
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.cache_files import read_sealed, write_sealed
-from ikde.kernels.seeds import COMPARED, X, Y, Z, fill_poses
+from ikde.kernels.seeds import COMPARED, fill_poses
 from ikde.model.base_motion import NO_BASE, find_planar_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import digest_inputs, kernel_kind, load_module, robots_folder
@@ -23,8 +23,14 @@ from ikde.solver.problem import NEAR_FIRST_BOX, ROUNDING, Problem, pack_searched
 
 DRAWN, DRAWN_NARROW = 2**16, 2**13  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
-TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # entries of the transform [3, 4] that a base which turns cannot change, beside Z
+X, Y, Z = 3, 7, 11  # entries of the transform [3, 4], row by row
+TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # those that a base which turns cannot change, beside Z
 AXIS_X, AXIS_Y = 2, 6
+KEPT = {  # what each kind of target asks of the tool, in the order of the columns of `kernels/seeds.py`
+    "position": (X, Y, Z),
+    "axis": (X, Y, Z, AXIS_X, AXIS_Y, TILT_Z),
+    "pose": (X, Y, Z, AXIS_X, AXIS_Y, TILT_Z, 0, 4, TILT_X, 1, 5, TILT_Y),
+}
 GRIDS_DRIVING = {  # entry, bins
     "position": ((Z, 64),),
     "axis": ((Z, 32), (TILT_Z, 16)),
@@ -133,18 +139,18 @@ def draw_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats
 
 def sort_pool(robot: Robot, kind: str, q: Floats, base: Ints, first_box: float) -> SeedArrays:
     """Lay a grid over the tool poses of configurations [K, N], and keep a few of each of its cells."""
-    T_world_tool = np.empty((12, len(q)))
+    T_world_tool = np.empty((len(q), 12))
     fill_poses(pack_robot(robot), q, T_world_tool)
     grid = np.array((GRIDS_DRIVING if base[0] >= 0 else GRIDS)[kind])
     scale, starts = np.zeros((len(grid), 2)), np.zeros(np.prod(grid[:, 1]) + 1, dtype=np.int64)
     if len(q):
-        values, bins = T_world_tool[grid[:, 0]], grid[:, 1]
-        scale[:, 0] = values.min(axis=1)
-        scale[:, 1] = bins / np.maximum(values.max(axis=1) - scale[:, 0], ROUNDING)
-        places = ((values.T - scale[:, 0]) * scale[:, 1]).astype(np.int64).clip(0, bins - 1)
+        values, bins = T_world_tool[:, grid[:, 0]], grid[:, 1]
+        scale[:, 0] = values.min(axis=0)
+        scale[:, 1] = bins / np.maximum(values.max(axis=0) - scale[:, 0], ROUNDING)
+        places = ((values - scale[:, 0]) * scale[:, 1]).astype(np.int64).clip(0, bins - 1)
         cells = np.asarray(np.ravel_multi_index(tuple(places.T), tuple(bins)))
         kept = _keep_few(cells)
-        q, T_world_tool = np.ascontiguousarray(q[kept]), np.ascontiguousarray(T_world_tool[:, kept])
+        q, T_world_tool = q[kept], np.ascontiguousarray(T_world_tool[np.ix_(kept, KEPT[kind])])
         starts = np.searchsorted(cells[kept], np.arange(len(starts)))
     for array in (q, T_world_tool, base, grid, scale, starts):  # as loaded ones are: numba tells the two apart
         array.setflags(write=False)
