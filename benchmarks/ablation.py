@@ -216,7 +216,7 @@ def inline_kernel(function):
 def change_seeds(seeds: SeedArrays, how: str) -> SeedArrays:
     """The pool without the base's help, or none."""
     if how == "uniform":
-        return seeds._replace(q=seeds.q[:0], T_world_tool=seeds.T_world_tool[:, :0].copy(), base=NO_BASE)
+        return seeds._replace(q=seeds.q[:0], T_world_tool=seeds.T_world_tool[:0], base=NO_BASE)
     if how == "pool":
         return draw_whole_pool(seeds)
     return draw_evenly(len(seeds.q)) if how == "even" else seeds

@@ -15,7 +15,8 @@ from ikde.kernels.jit import inline_kernel
 from ikde.kernels.rng import next_index, next_uniform
 from ikde.kernels.trig import angle_from_sides, sin_cos
 
-X, Y, Z = 3, 7, 11  # rows of `SeedArrays.T_world_tool`, a transform [3, 4] row by row
+# Columns of `SeedArrays.T_world_tool`: where the tool is, then its axes z, x and y.
+X, Y, Z, Z_X, Z_Y, Z_Z, X_X, X_Y, X_Z, Y_X, Y_Y, Y_Z = range(12)
 WINDOW = 32  # configurations around the target's cell that a seed is chosen from; doubled with every attempt
 COMPARED = 16  # of the window, by their poses
 LUCKY_ATTEMPTS = 6  # after as many failures the nearest ones are stuck: any configuration will do
@@ -86,12 +87,12 @@ def find_height_and_tilt(seeds, target, index, first, count):
     length = seeds.rotation_length * seeds.rotation_length
     best, smallest = first, np.inf
     for i in range(first, first + count):
-        dz, tilt = P[Z, i] - T[2, 3], 0.0
+        dz, tilt = P[i, Z] - T[2, 3], 0.0
         if kind != POSITION:
-            lean = P[10, i] - T[2, 2]
+            lean = P[i, Z_Z] - T[2, 2]
             tilt = lean * lean  # not lean**2: Python rounds one in 1,000 of its powers otherwise
         if kind == POSE:
-            lean_x, lean_y = P[8, i] - T[2, 0], P[9, i] - T[2, 1]
+            lean_x, lean_y = P[i, X_Z] - T[2, 0], P[i, Y_Z] - T[2, 1]
             tilt += lean_x * lean_x + lean_y * lean_y
         distance = dz * dz + length * tilt
         if distance < smallest:
@@ -106,13 +107,13 @@ def find_pose(seeds, target, index, first, count):
     length = 2.0 * seeds.rotation_length * seeds.rotation_length
     best, smallest = first, np.inf
     for i in range(first, first + count):
-        dx, dy, dz = P[X, i] - T[0, 3], P[Y, i] - T[1, 3], P[Z, i] - T[2, 3]
+        dx, dy, dz = P[i, X] - T[0, 3], P[i, Y] - T[1, 3], P[i, Z] - T[2, 3]
         likeness = 0.0
         if kind != POSITION:
-            likeness = P[2, i] * T[0, 2] + P[6, i] * T[1, 2] + P[10, i] * T[2, 2]
+            likeness = P[i, Z_X] * T[0, 2] + P[i, Z_Y] * T[1, 2] + P[i, Z_Z] * T[2, 2]
         if kind == POSE:
-            likeness += P[0, i] * T[0, 0] + P[4, i] * T[1, 0] + P[8, i] * T[2, 0]
-            likeness += P[1, i] * T[0, 1] + P[5, i] * T[1, 1] + P[9, i] * T[2, 1]
+            likeness += P[i, X_X] * T[0, 0] + P[i, X_Y] * T[1, 0] + P[i, X_Z] * T[2, 0]
+            likeness += P[i, Y_X] * T[0, 1] + P[i, Y_Y] * T[1, 1] + P[i, Y_Z] * T[2, 1]
         distance = dx * dx + dy * dy + dz * dz - length * likeness
         if distance < smallest:
             best, smallest = i, distance
@@ -126,11 +127,11 @@ def set_base(seeds, target, index, ranges, state, best, q):
     x, y, turn = seeds.base[0], seeds.base[1], seeds.base[2]
     across, along = 0.0, 0.0  # sine and cosine of the heading to turn by, times a length
     if kind == AXIS:
-        across, along = P[2, best] * T[1, 2] - P[6, best] * T[0, 2], P[2, best] * T[0, 2] + P[6, best] * T[1, 2]
+        across, along = P[best, Z_X] * T[1, 2] - P[best, Z_Y] * T[0, 2], P[best, Z_X] * T[0, 2] + P[best, Z_Y] * T[1, 2]
     elif kind == POSE:
-        for k in range(3):
-            across += P[k, best] * T[1, k] - P[4 + k, best] * T[0, k]
-            along += P[k, best] * T[0, k] + P[4 + k, best] * T[1, k]
+        for k, x_entry, y_entry in ((0, X_X, X_Y), (1, Y_X, Y_Y), (2, Z_X, Z_Y)):
+            across += P[best, x_entry] * T[1, k] - P[best, y_entry] * T[0, k]
+            along += P[best, x_entry] * T[0, k] + P[best, y_entry] * T[1, k]
     if across == 0.0 and along == 0.0:
         angle = ranges[0, turn] + next_uniform(state) * (ranges[1, turn] - ranges[0, turn])
     else:
@@ -138,5 +139,5 @@ def set_base(seeds, target, index, ranges, state, best, q):
         angle = min(max(angle, ranges[0, turn]), ranges[1, turn])
     s, c = sin_cos(angle)
     q[turn] = angle
-    q[x] = min(max(T[0, 3] - c * P[X, best] + s * P[Y, best], ranges[0, x]), ranges[1, x])
-    q[y] = min(max(T[1, 3] - s * P[X, best] - c * P[Y, best], ranges[0, y]), ranges[1, y])
+    q[x] = min(max(T[0, 3] - c * P[best, X] + s * P[best, Y], ranges[0, x]), ranges[1, x])
+    q[y] = min(max(T[1, 3] - s * P[best, X] - c * P[best, Y], ranges[0, y]), ranges[1, y])

@@ -53,6 +53,12 @@ def spread(robot, rng, count, kind, *, inside=0.6):
     return [target_at(T, kind) for T in tool(robot, Q)]
 
 
+def poses(pool):
+    """Where the tool is in each configuration of a pool for poses [K, 3, 4]: the pool keeps position, then z, x, y."""
+    position, z, x, y = np.moveaxis(pool.T_world_tool.reshape(-1, 4, 3), 1, 0)
+    return np.stack([x, y, z, position], axis=2)
+
+
 @each_kind
 def test_a_choice_hangs_on_the_stream_alone(qiao, pool, kind, rng):
     target, *others = spread(qiao, rng, 3, kind)
@@ -106,8 +112,9 @@ def test_the_cell_of_a_target_is_the_one_that_its_pose_lies_in(qiao, pool, rng):
         T = np.column_stack([target.R_world_tool, target.p_world_tool]).ravel()
         with quietly():
             assert PLAIN.find_cell(pool, pack_targets([target]), 0) == cell_of(T, pool.grid_scale)
+    T_world_tool = poses(pool).reshape(-1, 12)
     for row in range(0, len(pool.q), 97):
-        cell = cell_of(pool.T_world_tool[:, row], pool.grid_scale)
+        cell = cell_of(T_world_tool[row], pool.grid_scale)
         assert pool.cell_start[cell] <= row < pool.cell_start[cell + 1]
 
 
@@ -116,7 +123,7 @@ def test_height_and_tilt_chosen_are_the_nearest_of_those_compared(qiao, pool, ki
     for target in spread(qiao, rng, 15, kind):
         with quietly():
             best = PLAIN.find_height_and_tilt(pool, pack_targets([target]), 0, 100, 50)
-        T = pool.T_world_tool.reshape(3, 4, -1)[:, :, 100:150]
+        T = np.moveaxis(poses(pool)[100:150], 0, 2)
         compared = {"position": [], "axis": [2], "pose": [0, 1, 2]}[kind]
         tilt = np.sum((T[2, compared].T - target.R_world_tool[2, compared]) ** 2, axis=1)
         distance = (T[2, 3] - target.p_world_tool[2]) ** 2 + pool.rotation_length**2 * tilt
@@ -131,7 +138,7 @@ def test_the_pose_chosen_is_the_nearest_of_those_compared(kind, rng):
     for T in tool(robot, random_q(robot, rng, 10)):
         target = target_at(T, kind)
         best = PLAIN.find_pose(pool, pack_targets([target]), 0, 20, 150)
-        Ts = np.moveaxis(pool.T_world_tool.reshape(3, 4, -1), 2, 0)[20:170]
+        Ts = poses(pool)[20:170]
         distance = np.sum((Ts[:, :, 3] - target.p_world_tool) ** 2, axis=1)
         columns = {"position": [], "axis": [2], "pose": [0, 1, 2]}[kind]
         for j in columns:

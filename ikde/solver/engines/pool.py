@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
-from ikde.kernels.seeds import COMPARED, X, Y, Z
+from ikde.kernels.seeds import COMPARED
 from ikde.model.base_motion import NO_BASE, find_planar_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import kernel_kind, load_module
@@ -24,8 +24,14 @@ from ikde.solver.problem import NEAR_FIRST_BOX, Problem, pack_searched
 
 DRAWN, DRAWN_NARROW = 2**16, 2**13  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
-TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # entries of the transform [3, 4] that a base which turns cannot change, beside Z
+X, Y, Z = 3, 7, 11  # entries of the transform [3, 4], row by row
+TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # those that a base which turns cannot change, beside Z
 AXIS_X, AXIS_Y = 2, 6
+KEPT = {  # what each kind of target asks of the tool, in the order of the columns of `kernels/seeds.py`
+    "position": (X, Y, Z),
+    "axis": (X, Y, Z, AXIS_X, AXIS_Y, TILT_Z),
+    "pose": (X, Y, Z, AXIS_X, AXIS_Y, TILT_Z, 0, 4, TILT_X, 1, 5, TILT_Y),
+}
 GRIDS_DRIVING = {  # entry, bins
     "position": ((Z, 64),),
     "axis": ((Z, 32), (TILT_Z, 16)),
@@ -94,6 +100,7 @@ class Pool(NamedTuple):
     wanted: int
     base: Ints
     grid: Ints
+    kind: str
 
 
 def make_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats, wanted: int) -> Pool:
@@ -104,7 +111,7 @@ def make_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats
         lower, upper = lower.copy(), upper.copy()
         lower[base] = upper[base] = 0.0
     grid = np.array((GRIDS_DRIVING if drives else GRIDS)[kind])
-    return Pool(robot=collision.robot, lower=lower, upper=upper, wanted=wanted, base=base, grid=grid)
+    return Pool(robot=collision.robot, lower=lower, upper=upper, wanted=wanted, base=base, grid=grid, kind=kind)
 
 
 def make_whole_pool(collision: CollisionModel, kind: str) -> Pool:
@@ -147,7 +154,7 @@ def _draw_free(collision: CollisionModel, lower: tuple[float, ...], upper: tuple
 def pack_pool(pool: Pool, kept: Kept) -> SeedArrays:
     """The configurations kept, sorted by cell, and where their tools are: 60 ms for 40,000."""
     q = draw(kept.numbers, pool.lower, pool.upper)
-    return sort_pool(pool.robot, q, pool.base if len(q) else NO_BASE, pool.grid, kept.scale)
+    return sort_pool(pool.robot, q, pool.base if len(q) else NO_BASE, pool.grid, kept.scale, pool.kind)
 
 
 def no_pool(robot: Robot, first_box: float) -> SeedArrays:
@@ -157,20 +164,22 @@ def no_pool(robot: Robot, first_box: float) -> SeedArrays:
     return empty._replace(first_box=first_box)
 
 
-def sort_pool(robot: Robot, q: Floats, base: Ints, grid: Ints, scale: Floats | None = None) -> SeedArrays:
+def sort_pool(
+    robot: Robot, q: Floats, base: Ints, grid: Ints, scale: Floats | None = None, kind: str = "pose"
+) -> SeedArrays:
     """Configurations [K, N] sorted by the cells of a grid over their tool poses; None: one that just holds them."""
     T_world_tool = place_tools(pack_robot(robot), q)
     values = T_world_tool[grid[:, 0]]
     scale = scale_grid(grid, values) if scale is None else scale
     cells = find_cells(grid, scale, values)
     order = np.argsort(cells.astype(np.uint16), kind="stable")  # 0.2 ms, as int64 2
-    q, T_world_tool = np.take(q, order, axis=0), np.take(T_world_tool, order, axis=1)
+    q, asked = np.take(q, order, axis=0), np.take(T_world_tool[list(KEPT[kind])], order, axis=1).T.copy()
     starts = np.searchsorted(cells[order], np.arange(np.prod(grid[:, 1]) + 1))
-    for array in (q, T_world_tool, base, grid, scale, starts):  # numba takes what can be written for another type
+    for array in (q, asked, base, grid, scale, starts):  # numba takes what can be written for another type
         array.setflags(write=False)
     return SeedArrays(
         q=q,
-        T_world_tool=T_world_tool,
+        T_world_tool=asked,
         base=base,
         grid=grid,
         grid_scale=scale,

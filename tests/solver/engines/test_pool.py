@@ -38,10 +38,16 @@ def test_the_pool_is_free_and_spread_over_tool_poses(qiao):
     assert 10_000 < len(seeds.q) < DRAWN
     assert (seeds.q[:, :3] == 0.0).all()  # the base is set for each target
     assert not any(ikde.check(qiao, q).collision for q in seeds.q[::512])
-    T_world_tool = ikde.forward(qiao, seeds.q)[qiao.tool]
-    assert np.abs(T_world_tool[:, :3].reshape(-1, 12).T - seeds.T_world_tool).max() < 1e-12
     assert np.diff(seeds.cell_start).max() == PER_CELL
     assert seeds.cell_start[-1] == len(seeds.q)
+
+
+@pytest.mark.parametrize(("kind", "asked"), [("position", 3), ("axis", 6), ("pose", 12)])
+def test_a_pool_holds_what_its_kind_of_target_asks_of_the_tool_and_no_more(qiao, kind, asked):
+    seeds = make_pool(qiao, kind=kind)
+    x, y, z, position = np.moveaxis(ikde.forward(qiao, seeds.q)[qiao.tool][:, :3], 2, 0)
+    assert seeds.T_world_tool.shape == (len(seeds.q), asked)
+    assert np.abs(np.hstack([position, z, x, y])[:, :asked] - seeds.T_world_tool).max() < 1e-12
 
 
 @pytest.mark.parametrize("name", ["qiao2021", "ur5"])
@@ -49,7 +55,8 @@ def test_the_pool_is_free_and_spread_over_tool_poses(qiao):
 def test_every_configuration_lies_in_the_cell_that_it_is_sorted_into(name, kind):
     robot = ikde.load_robot(name)
     seeds = make_pool(robot, kind=kind, freeze={robot.joint_names[-1]: 0.1})
-    targets = Targets.packed(np.zeros(len(seeds.q), dtype=np.int64), seeds.T_world_tool.T.reshape(-1, 3, 4).copy())
+    T_world_tool = ikde.forward(robot, seeds.q)[robot.tool][:, :3].copy()
+    targets = Targets.packed(np.zeros(len(seeds.q), dtype=np.int64), T_world_tool)
     for row in range(0, len(seeds.q), 251):
         cell = find_cell(seeds, pack_targets(targets), row)
         assert seeds.cell_start[cell] <= row < seeds.cell_start[cell + 1]
