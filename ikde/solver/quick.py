@@ -11,6 +11,7 @@ import numpy as np
 from ikde.kernels.arrays import COLLIDING, COUNTS, REACHED
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.jit import compile_clock
+from ikde.kernels.turns import unwind
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target
@@ -34,6 +35,7 @@ class Quick:
         problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
         self._kind = np.array([KINDS.index(kind)])
         self._kind.setflags(write=False)
+        self._turns = problem.turns
         self._search = prepare_search(problem, kind)
         self._grade = partial(grade_one, *pack_grader(collision, settings))
         self._last = min(ENGINES[ENGINE].attempts_before_proof, int(settings.budget(ENGINE)))
@@ -62,6 +64,7 @@ class Quick:
         if not counts[REACHED]:
             return None
         seconds = time.perf_counter() - started
+        unwind(*self._turns, q)
         q.setflags(write=False)
         metrics = self._grade(kind, T_world_tool, q)
         if not metrics[-1]:

@@ -62,7 +62,7 @@ def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     """Where attempts start: about `near` if there is one, else from the pool of the problem's ranges."""
     if problem.near is not None:
         return sort_pool(problem.robot, kind, np.empty((0, len(problem.lower))), NO_BASE, NEAR_FIRST_BOX)
-    ranges = tuple(zip(problem.lower.tolist(), problem.upper.tolist(), strict=True))
+    ranges = tuple(zip(*(bound.tolist() for bound in problem.drawn), strict=True))
     return _find_pool(problem.collision, kind, ranges)
 
 
@@ -71,7 +71,7 @@ def _find_pool(collision: CollisionModel, kind: str, ranges: tuple[tuple[float, 
     """The pool of a collision model and joint ranges; that of the joint limits lies in the cache folder."""
     robot = collision.robot
     lower, upper = np.array(ranges).T.copy()
-    whole = np.array_equal(lower, robot.lower) and np.array_equal(upper, robot.upper)
+    whole = np.array_equal([lower, upper], robot.drawn)
     if not whole or runs_on_tables() or not cache_folder.CACHE_IS_WRITABLE:
         return draw_pool(collision, kind, lower, upper, DRAWN if whole else DRAWN_NARROW)
     path = robots_folder() / f"{digest_pool(collision, kind)}.pool"
@@ -85,7 +85,7 @@ def _find_pool(collision: CollisionModel, kind: str, ranges: tuple[tuple[float, 
 def digest_pool(collision: CollisionModel, kind: str) -> str:
     """SHA-256, hex, of all that the pool within the joint limits depends on; no name is."""
     robot = collision.robot
-    base, (_, searched) = find_base(robot, robot.lower, robot.upper), pack_searched(collision)
+    base, (_, searched) = find_base(robot, *robot.drawn), pack_searched(collision)
     words = (digest_inputs(collision, kind), searched.safe_distance, base.tolist(), rotation_length_m(robot))
     return hashlib.sha256(repr(words).encode() + _own_source()).hexdigest()
 
