@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from importlib import import_module
@@ -16,7 +17,7 @@ OF_TRACKS = ("max_speed", "max_acceleration")  # of joints: a batch solves for p
 
 
 def as_plain(value: Any) -> Any:
-    """Dataclasses, arrays, tuples and mappings as dicts, lists and scalars: what JSON can hold."""
+    """Dataclasses, arrays, tuples and mappings as dicts, lists and scalars: what JSON can hold. Infinities are null."""
     if is_dataclass(value):
         return {field.name: as_plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
@@ -24,8 +25,8 @@ def as_plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [as_plain(item) for item in value]
     if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    return value
+        return as_plain(value.tolist())
+    return None if isinstance(value, float) and math.isinf(value) else value
 
 
 def digest(value: Any) -> str:

@@ -73,8 +73,9 @@ def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
 def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> ReachableSource:
     with prefix_errors("detector"):
         collision = CollisionModel.of(problem.robot, entry.detector)
+    lower, upper = problem.drawn
     source = ReachableSource(
-        collision=collision, lower=problem.lower, upper=problem.upper, goal=entry.goal, count=entry.count, seed=seed
+        collision=collision, lower=lower, upper=upper, goal=entry.goal, count=entry.count, seed=seed
     )
     source.read(0, 1)  # a robot that is never free is found before anything runs
     return source

@@ -25,7 +25,7 @@ def make_detector(name: str, entry: DetectorPartsEntry, units: UnitsEntry) -> De
 
 
 def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEntry) -> Robot:
-    """The robot with other joint limits: narrower or wider."""
+    """The robot with other joint limits: narrower or wider, or some where a continuous joint has none."""
     lower = to_si(robot, "ranges", {name: interval[0] for name, interval in ranges.items()}, units)
     upper = to_si(robot, "ranges", {name: interval[1] for name, interval in ranges.items()}, units)
     for name in ranges:
@@ -35,7 +35,10 @@ def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEnt
         return robot
 
     def narrow(joint: Joint) -> Joint:
-        return replace(joint, lower=lower.get(joint.name, joint.lower), upper=upper.get(joint.name, joint.upper))
+        if joint.name not in ranges:
+            return joint
+        kind = "revolute" if joint.kind == "continuous" else joint.kind
+        return replace(joint, kind=kind, lower=lower[joint.name], upper=upper[joint.name])
 
     return replace(robot, joints=tuple(map(narrow, robot.joints)))
 

@@ -20,7 +20,7 @@ from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import WORLD, Frame, Joint, Robot
 from ikde.model.rotation import quat_wxyz_from_rotation
 
-JOINT_TYPES = {"revolute": "hinge", "prismatic": "slide"}
+JOINT_TYPES = {"revolute": "hinge", "prismatic": "slide", "continuous": "hinge"}
 
 
 def format_mjcf(robot: Robot, *, collision: CollisionChoice = None) -> str:
@@ -74,8 +74,8 @@ def _add_joint(body: ET.Element, frame: Frame, joint: Joint) -> None:
     # MuJoCo refuses an empty range: a joint that cannot move gets the smallest one.
     upper = max(joint.upper, float(np.nextafter(joint.lower, np.inf)))
     axis = format_numbers(frame.axis if frame.axis is not None else ())
-    limits = format_numbers([joint.lower, upper])
-    ET.SubElement(body, "joint", name=joint.name, type=JOINT_TYPES[joint.kind], axis=axis, range=limits)
+    limits = {} if joint.kind == "continuous" else {"range": format_numbers([joint.lower, upper])}
+    ET.SubElement(body, "joint", limits, name=joint.name, type=JOINT_TYPES[joint.kind], axis=axis)
 
 
 def _add_components(root: ET.Element, collision: CollisionModel, bodies: dict[str, ET.Element]) -> None:

@@ -3,7 +3,8 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
 from ikde.errors import InputError, nearest
@@ -21,6 +22,11 @@ Pairs = tuple[tuple[str, str], ...]
 MAX_JOINTS, MAX_ENTRIES, MAX_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
 MAX_SPHERES = 100_000  # of a robot's approximations together
 OfLists = Field(max_length=MAX_LISTS)
+LIMITS_BY_KIND: JsonDict = {
+    "if": {"properties": {"kind": {"const": "continuous"}}},
+    "then": {"properties": {"lower": False, "upper": False}},
+    "else": {"required": ["lower", "upper"]},
+}
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
 
@@ -41,9 +47,12 @@ class SourceEntry(Entry):
 class JointEntry(SourcedEntry):
     """One coordinate of q."""
 
-    kind: Literal["revolute", "prismatic"]
-    lower: Number
-    upper: Number
+    model_config = ConfigDict(json_schema_extra=LIMITS_BY_KIND)
+
+    kind: Literal["revolute", "prismatic", "continuous"]
+    """What it does: a continuous joint turns without end, and has no limits."""
+    lower: Number | None = None
+    upper: Number | None = None
     home: Number = 0.0
     max_speed: Number | None = None
     max_acceleration: Number | None = None
@@ -141,7 +150,7 @@ def parse_robot(document: Document) -> Robot:
 
 def _to_robot(file: RobotFile) -> Robot:
     length, angle = file.units.length_m, file.units.angle_rad
-    unit = {"revolute": angle, "prismatic": length}
+    unit = {"revolute": angle, "prismatic": length, "continuous": angle}
     if sum(entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
         raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
@@ -167,6 +176,9 @@ def _to_robot(file: RobotFile) -> Robot:
 def _to_joint(name: str, entry: JointEntry, unit: float) -> Joint:
     keys = ("lower", "upper", "home", "max_speed", "max_acceleration")
     given = {key: value * unit for key in keys if (value := getattr(entry, key)) is not None}
+    for key in keys[:2]:
+        if key not in given and entry.kind != "continuous":
+            raise InputError("this key is missing", ("joints", name, key))
     return Joint(name=name, kind=entry.kind, **given)
 
 

@@ -77,7 +77,8 @@ def _add_joint(root: ET.Element, robot: Robot, frame: Frame, taken: set[str]) ->
     _add_origin(joint, frame.p_parent_frame, frame.R_parent_frame)
     if moving and frame.axis is not None:
         ET.SubElement(joint, "axis", xyz=format_numbers(frame.axis))
-        limits = {"lower": moving.lower, "upper": moving.upper, "effort": EFFORT, "velocity": VELOCITY}
+        ends = {} if moving.kind == "continuous" else {"lower": moving.lower, "upper": moving.upper}
+        limits = {**ends, "effort": EFFORT, "velocity": VELOCITY}
         ET.SubElement(joint, "limit", {key: format_numbers([value]) for key, value in limits.items()})
 
 

@@ -102,7 +102,9 @@ class SeedArrays(NamedTuple):
     """Where the engine `lm` starts: K configurations that are free of collision, and where the tool is in each."""
 
     q: Floats  # [K, N] m or rad; none: starts are drawn uniformly
-    T_world_tool: Floats  # [K, 3, 6 or 12 columns] what its kind of target asks of the tool, side by side (`kernels/seeds.py`)
+    T_world_tool: (
+        Floats  # [K, 3, 6 or 12 columns] what its kind of target asks of the tool, side by side (`kernels/seeds.py`)
+    )
     base: Ints  # [3] coordinates of a base that drives in the plane and turns, at zero in the pool; -1: there is none
     grid: Ints  # [G, 2] a grid over tool poses: which entry of the transform each direction divides, into how many bins
     grid_scale: Floats  # [G, 2] lowest value, bins per unit

@@ -14,6 +14,8 @@ from ikde.kernels.arrays import CollisionArrays, DescentArrays, Floats, Indices,
 from ikde.kernels.jit import inline_view_kernel, kernel
 
 Value = Floats | Ints | Indices | float
+Turns = tuple[Floats, Floats, Any, Floats]
+"""Lower, upper, turning and centre, each [N], as `kernels.turns.unwind` takes them."""
 
 
 class Terms(NamedTuple):
@@ -44,13 +46,15 @@ def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms)
     return _freeze(numbers), _freeze(whole)
 
 
-def flatten_answer(search: Sequence[Any], grader: tuple[Floats, Ints], kind: int) -> tuple[Floats, Ints]:
-    """What `unpack_answer` takes: the block of a search, which stands first, and that of the grader.
+def flatten_answer(search: Sequence[Any], grader: tuple[Floats, Ints], kind: int, turns: Turns) -> tuple[Floats, Ints]:
+    """What `unpack_answer` takes: the block of a search, which stands first, that of the grader, and of `unwind`.
 
     Writable: numba takes twice as long to see the type of an array that is read-only.
     """
+    *bounds, turning, centre = (np.asarray(part) for part in turns)
     where = [kind, len(search[0]), len(search[1])]
-    return np.concatenate([search[0], grader[0]]), np.concatenate([search[1], grader[1], where])
+    numbers = np.concatenate([search[0], grader[0], *bounds, centre])
+    return numbers, np.concatenate([search[1], grader[1], turning.astype(np.int64), where])
 
 
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
@@ -143,6 +147,8 @@ def unpack_grader(numbers, whole):
 
 @inline_view_kernel
 def unpack_answer(numbers, whole):
-    """The grader's numbers and whole numbers, and the kind of target [1], as views."""
-    end = whole.size - 3
-    return numbers[whole[end + 1] :], whole[whole[end + 2] : end], whole[end : end + 1]
+    """The grader's numbers and whole numbers, the kind of target [1], and what `unwind` takes beside q, as views."""
+    joints, end = whole[0], whole.size - 3
+    grader, bounds = numbers[whole[end + 1] : numbers.size - 3 * joints], numbers[numbers.size - 3 * joints :]
+    turns = bounds[:joints], bounds[joints : 2 * joints], whole[end - joints : end], bounds[2 * joints :]
+    return grader, whole[whole[end + 2] : end - joints], whole[end : end + 1], turns

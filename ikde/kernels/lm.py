@@ -93,17 +93,17 @@ def solve_target(
 
 @kernel
 def answer_target(numbers, whole, pool, pool_T, T_world_tool, seed, stream, first, last, out):
-    """`solve_target` on one target [3, 4], and the grade of what it reaches, from one call of Python.
+    """`solve_target` on one target [3, 4], turned back and graded, from one call of Python.
 
     `numbers` and `whole` are those of `unpack_answer`, `out` is the row of `kernels/answer.py`; with `first` above 0 it
     goes on with what stands there. Returns True if the target is reached and the grader accepts it.
     """
-    grader, terms, kinds = unpack_answer(numbers, whole)
+    grader, terms, kinds, turns = unpack_answer(numbers, whole)
     targets, joints = T_world_tool.reshape((1, 3, 4)), whole[0]
     out_q, out_score, out_counts, out_pairs = open_row(joints, first, out)
     question = (numbers, whole, pool, pool_T, kinds, targets, 0, np.uint64(seed), stream, first, last)
     solve_target(*question, out_q, out_score, out_counts, out_pairs)
-    return grade_row(grader, terms, kinds, targets, joints, out)
+    return grade_row(grader, terms, kinds, targets, turns, joints, out)
 
 
 @inline_kernel

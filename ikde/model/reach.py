@@ -135,7 +135,7 @@ def chain_to_tool(robot: Robot) -> tuple[list[Body], Floats, Floats]:
 
 
 def _is_revolute(robot: Robot, body: Body) -> bool:
-    return body.joint is not None and robot.joints[body.joint].kind == "revolute"
+    return body.joint is not None and robot.joints[body.joint].kind != "prismatic"
 
 
 def _runs(robot: Robot, chain: list[Body], p_body_tool: Floats, lower: Floats, upper: Floats) -> list[_Run]:

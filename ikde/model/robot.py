@@ -14,18 +14,19 @@ NO_DETECTOR = "none"
 TOOL = "tool"  # what the tool's frame is called beside its own name
 MAX_MAGNITUDE = 1e5  # m or rad, of all that a robot is made of: beyond it an angle has lost its last digits
 
-JointKind = Literal["revolute", "prismatic"]
+JointKind = Literal["revolute", "prismatic", "continuous"]
 Spacing = Literal["touching", "even"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """One coordinate of q: its range, home value and how fast it may move, in m (prismatic) or rad (revolute) and s."""
+    """One coordinate of q: its range, home value and how fast it may move, in m (prismatic) or rad (others) and s."""
 
     name: str
     kind: JointKind
-    lower: float
-    upper: float
+    lower: float = -np.inf
+    upper: float = np.inf
+    """Limits: infinite of a continuous joint, which turns without end, and finite of any other."""
     home: float
     max_speed: float | None = None
     """m/s or rad/s; None: the robot's file gives none. No solve depends on it, a track does (`MotionLimits.of`)."""
@@ -150,18 +151,28 @@ class Robot:
 
     @property
     def lower(self) -> Floats:
-        """Lower limits [N], m or rad."""
+        """Lower limits [N], m or rad; -inf of a continuous joint."""
         return np.array([joint.lower for joint in self.joints])
 
     @property
     def upper(self) -> Floats:
-        """Upper limits [N], m or rad."""
+        """Upper limits [N], m or rad; inf of a continuous joint."""
         return np.array([joint.upper for joint in self.joints])
 
     @property
     def home(self) -> Floats:
         """Home configuration [N], m or rad."""
         return np.array([joint.home for joint in self.joints])
+
+    @property
+    def drawn(self) -> tuple[Floats, Floats]:
+        """Ranges [N] to draw configurations from: the limits, or one turn about home."""
+        return self.finite_limits(self.home, 0.5)
+
+    def finite_limits(self, centre: Floats, turns: float) -> tuple[Floats, Floats]:
+        """Limits [N]; those of a continuous joint so many turns on either side of `centre` [N], rad."""
+        lower, upper, reach = self.lower, self.upper, turns * 2.0 * np.pi
+        return np.where(np.isinf(lower), centre - reach, lower), np.where(np.isinf(upper), centre + reach, upper)
 
     @property
     def is_prismatic(self) -> NDArray[np.bool_]:

@@ -88,7 +88,10 @@ def _check_joints(robot: Robot) -> None:
     _check_unique(robot.joint_names, "joints")
     for joint in robot.joints:
         where = ("joints", joint.name)
-        for key in ("lower", "upper", "home"):
+        for key, none in (("lower", -np.inf), ("upper", np.inf)):
+            endless = getattr(joint, key) == none or joint.kind != "continuous"
+            _require(endless, "a continuous joint has no limits; one with limits is revolute", *where, key)
+        for key in ("home",) if joint.kind == "continuous" else ("lower", "upper", "home"):
             _require(bool(abs(getattr(joint, key)) <= MAX_MAGNITUDE), _too_far(joint, getattr(joint, key)), *where, key)
         _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
@@ -230,7 +233,7 @@ def _check_conventions(robot: Robot) -> None:
         _require(name != robot.convention, "this is the convention the file is written in", "conventions", name)
         for joint, offset in offsets.items():
             _check_name(joint, kinds, ("conventions", name, joint), "joint")
-            _require(kinds[joint] == "revolute", "only a revolute joint can be shifted", "conventions", name, joint)
+            _require(kinds[joint] != "prismatic", "only a joint that turns can be shifted", "conventions", name, joint)
             is_near = bool(abs(offset) <= MAX_MAGNITUDE)
             _require(is_near, f"expected at most {MAX_MAGNITUDE:g} rad either way", "conventions", name, joint)
 

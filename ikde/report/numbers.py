@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 from ikde.formats.entries import ANGLES_RAD, LENGTHS_M
 from ikde.model.robot import Joint
@@ -29,6 +30,10 @@ class Units:
     def joint_unit(self, joint: Joint) -> str:
         """Unit of one joint."""
         return self.length if joint.kind == "prismatic" else self.angle
+
+    def format_limit(self, joint: Joint, limit: float, digits: int) -> str:
+        """One end of a joint's range; `none` of a continuous joint."""
+        return f"{self.joint_value(joint, limit):.{digits}g}" if isfinite(limit) else "none"
 
     def joint_value(self, joint: Joint, value: float) -> float:
         """Value of one joint in its unit."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from ikde.formats.entries import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import Robot, Wheels
+from ikde.model.robot import Joint, Robot, Wheels
 from ikde.report.numbers import Units
 from ikde.report.pairs import format_pairs, pairs_json
 from ikde.report.render import make_table, plain, render
@@ -39,7 +39,7 @@ def robot_json(collision: CollisionModel) -> dict[str, Any]:
         "convention": robot.convention,
         "conventions": [robot.convention, *robot.conventions],
         "tool": robot.tool,
-        "joints": [asdict(joint) for joint in robot.joints],
+        "joints": [_joint_json(joint) for joint in robot.joints],
         "frames": [
             {"name": f.name, "parent": f.parent, "p_parent_frame": f.p_parent_frame.tolist(), "joint": f.joint}
             for f in robot.frames
@@ -61,6 +61,12 @@ def robot_json(collision: CollisionModel) -> dict[str, Any]:
     }
 
 
+def _joint_json(joint: Joint) -> dict[str, Any]:
+    """A continuous joint's limits are null: JSON has no infinities."""
+    ends = {"lower": None, "upper": None} if joint.kind == "continuous" else {}
+    return asdict(joint) | ends
+
+
 def format_robot(collision: CollisionModel, units: Units, *, color: bool = False, width: int = 100) -> str:
     """A robot for the terminal: joints, frames, detectors, the pairs of one, and the provenance of its numbers."""
     robot = collision.robot
@@ -77,7 +83,7 @@ def _joint_table(robot: Robot, units: Units) -> Any:
     heads = ("joint", "kind", ">lower", ">home", ">upper", "unit", "limits from")
     table = make_table(*heads, title=f"joints, {robot.convention} convention")
     for joint in robot.joints:
-        values = [f"{units.joint_value(joint, v):.6g}" for v in (joint.lower, joint.home, joint.upper)]
+        values = [units.format_limit(joint, value, 6) for value in (joint.lower, joint.home, joint.upper)]
         source = _source_kind(robot, "joints", joint.name, "lower")
         table.add_row(plain(joint.name), joint.kind, *values, units.joint_unit(joint), source)
     return table

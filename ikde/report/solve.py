@@ -64,10 +64,10 @@ def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: st
     offsets = convention_offsets(robot, convention)
     shown = to_convention(robot, result.q, convention)
     for joint, value, own, offset in zip(robot.joints, shown, result.q, offsets, strict=True):
-        limits = [f"{units.joint_value(joint, limit):.4g}" for limit in (joint.lower, joint.upper)]
+        limits = [units.format_limit(joint, limit, 4) for limit in (joint.lower, joint.upper)]
         lower, upper = ("", "") if offset else limits  # shifted limits, brought to (-pi, pi], are no interval
         number = format_fixed(units.joint_value(joint, value), 6)
-        bar = _bar(own, joint.lower, joint.upper)
+        bar = "" if joint.kind == "continuous" else _bar(own, joint.lower, joint.upper)
         table.add_row(plain(joint.name), number, units.joint_unit(joint), lower, bar, upper)
     return table
 

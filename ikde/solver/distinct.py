@@ -116,9 +116,10 @@ def sort_solutions(problem: Problem, solutions: list[SolveResult], rank: Rank) -
 
 
 def motion_cost(problem: Problem, q: Floats) -> float:
-    """Root mean square of the joints' distances from `near`, else home, as shares of their ranges."""
+    """Root mean square of the joints' distances from `near`, else home, as shares of their ranges, or of a turn."""
     start = problem.robot.home if problem.near is None else problem.near
-    widths = problem.robot.upper - problem.robot.lower
+    lower, upper = problem.robot.drawn
+    widths = upper - lower
     shares = (q - start) / np.where(widths > 0.0, widths, 1.0)
     return float(np.sqrt(np.mean(shares**2)))
 

@@ -121,7 +121,7 @@ def try_freeing(problem: Problem, probe: Probe) -> str | None:
     """Whether a short search finds a solution if frozen joints are free."""
     if not problem.frozen:
         return None
-    free = problem.with_ranges(problem.robot.lower, problem.robot.upper)
+    free = problem.with_ranges(*problem.free_ranges)
     if not probe.confirms(free, probe.run(free)):
         return None
     return f"free {', '.join(problem.frozen)}: a solution was found without freezing"
@@ -142,7 +142,7 @@ def _open_ranges(problem: Problem, freed: Names, widened: Names) -> tuple[Floats
     """The ranges with some frozen joints free, and some of the joints that may move as wide as can be."""
     robot, is_free = problem.robot, np.isin(problem.robot.joint_names, freed)
     is_wide = np.isin(robot.joint_names, widened) & (is_free | ~np.isin(robot.joint_names, problem.frozen))
-    lower, upper = np.where(is_free, robot.lower, problem.lower), np.where(is_free, robot.upper, problem.upper)
+    lower, upper = np.where(is_free, [robot.lower, robot.upper], [problem.lower, problem.upper])
     return np.where(is_wide, -MAX_MAGNITUDE, lower), np.where(is_wide, MAX_MAGNITUDE, upper)
 
 

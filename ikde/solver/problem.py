@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT, CollisionArrays, Floats, RobotArrays, SearchArrays
@@ -17,6 +18,7 @@ from ikde.solver.settings import SolveSettings
 Freeze = Mapping[str, float | None] | Iterable[str]
 
 NEAR_FIRST_BOX = 1.0 / 64.0  # half-width of the first box around `near`, as a share of each joint range
+SEARCHED_TURNS = 2.0  # on either side, of a joint without limits: no attempt of `lm` ends there, and others rarely do
 ROUNDING = 1e-12  # m, rad: the search keeps this far from every bound, so that rounding cannot turn `verify`'s verdict
 
 
@@ -28,7 +30,7 @@ class Problem:
     settings: SolveSettings
     lower: Floats
     upper: Floats
-    """[N] joint ranges; a frozen joint's are equal."""
+    """[N] joint ranges, all finite; a frozen joint's are equal."""
     near: Floats | None
     frozen: tuple[str, ...]
 
@@ -36,6 +38,34 @@ class Problem:
     def robot(self) -> Robot:
         """The robot of the collision model."""
         return self.collision.robot
+
+    @property
+    def centre(self) -> Floats:
+        """[N] what joints are turned to, by whole turns: `near`, else home."""
+        return self.robot.home if self.near is None else self.near
+
+    @property
+    def drawn(self) -> tuple[Floats, Floats]:
+        """Ranges [N] that seeds are drawn from: of a continuous joint one turn about home, wherever it may search."""
+        turns_freely = np.isinf(self.robot.lower) & (self.lower < self.upper)
+        lower, upper = self.robot.drawn
+        return np.where(turns_freely, lower, self.lower), np.where(turns_freely, upper, self.upper)
+
+    @property
+    def free_ranges(self) -> tuple[Floats, Floats]:
+        """The ranges [N] with nothing frozen."""
+        return self.robot.finite_limits(self.centre, SEARCHED_TURNS)
+
+    @property
+    def turns(self) -> tuple[Floats, Floats, NDArray[np.bool_], Floats]:
+        """What `kernels.turns.unwind` takes beside q: lower, upper, turning and centre, each [N].
+
+        Inside the ranges of the problem and the robot's limits: no turn leads beyond them where a probe asks what
+        wider ranges would bring.
+        """
+        robot = self.robot
+        lower, upper = np.maximum(self.lower, robot.lower), np.minimum(self.upper, robot.upper)
+        return lower, upper, ~robot.is_prismatic, self.centre
 
     def with_ranges(self, lower: Floats, upper: Floats) -> "Problem":
         """The same question with other joint ranges and nothing frozen."""
@@ -55,15 +85,17 @@ def make_problem(
     freeze: Freeze | None,
 ) -> Problem:
     """Resolve names and ranges; raises `InputError` for what does not fit the robot."""
-    lower, upper = robot.lower, robot.upper
     start = None if near is None else read_joints(robot, near, default=robot.home)
     if start is not None and start.ndim != 1:
         raise InputError(f"expected one configuration, got shape {start.shape}", ("near",))
-    fixed = _read_freeze(robot, freeze, robot.home if start is None else start)
+    centre = robot.home if start is None else start
+    lower, upper = robot.finite_limits(centre, SEARCHED_TURNS)
+    fixed = _read_freeze(robot, freeze, centre)
     for name, value in fixed.items():
         index = robot.joint_names.index(name)
-        if not lower[index] <= value <= upper[index]:
-            limits = f"[{lower[index]:g}, {upper[index]:g}]"
+        joint = robot.joints[index]
+        if not joint.lower <= value <= joint.upper:
+            limits = f"[{joint.lower:g}, {joint.upper:g}]"
             raise InputError(f"{value:g} is outside the limits {limits}", ("freeze", name))
         lower[index] = upper[index] = value
     return Problem(

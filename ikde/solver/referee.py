@@ -1,12 +1,13 @@
-"""Grades what an engine calls reached, as soon as it says so: what the grader refuses is open again.
+"""Grades what engines found, each joint first in the turn that was meant; a refused answer is searched on.
 
-An engine stops a hair inside the tolerances, so a refusal is rare: a tolerance near the rounding limit of a far target,
-or a bug. The next attempt, or the next engine, then goes on with that row.
+A full turn moves no body, but for rounding, and an engine stops a hair inside the tolerances, so a refusal is rare: a
+tolerance near the rounding limit of a far target, or a bug. The next attempt, or engine, then goes on with that row.
 """
 
 import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, REACHED, Ints
+from ikde.kernels.turns import unwind_rows
 from ikde.model.target import Targets
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.metrics import Limits, compute_metrics
@@ -20,7 +21,7 @@ class Referee:
 
     def __init__(self, problem: Problem, targets: Targets, found: SearchState) -> None:
         self._targets, self._found = targets, found
-        self._problem, self._limits = problem, _widest(problem)
+        self._problem, self._limits, self._turns = problem, _widest(problem), problem.turns
         self._graded = np.full(len(targets), -1)  # attempts of each row when it was graded: without a new one, no new q
 
     def refuse(self) -> Ints:
@@ -37,7 +38,10 @@ class Referee:
     def _grade(self, rows: Ints) -> None:
         found, problem, targets = self._found, self._problem, self._targets
         some = rows if len(rows) < len(targets) else slice(None)  # mostly all at once, without a copy
-        asked = problem.collision, targets.take(some), found.q[some], problem.settings
+        Q = found.q[some]
+        unwind_rows(*self._turns, Q)
+        found.q[some] = Q
+        asked = problem.collision, targets.take(some), Q, problem.settings
         found.metrics.put(some, compute_metrics(*asked, limits=self._limits))
         self._graded[some] = found.counts[some, ATTEMPTS]
 

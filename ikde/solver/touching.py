@@ -42,7 +42,7 @@ def find_always_touching(collision: CollisionModel) -> AlwaysTouching | None:
     robot, detector = collision.robot, collision.detector
     if detector is None:
         return None
-    drawn = np.random.default_rng(0).uniform(robot.lower, robot.upper, (CONFIGURATIONS, len(robot.joints)))
+    drawn = np.random.default_rng(0).uniform(*robot.drawn, (CONFIGURATIONS, len(robot.joints)))
     pairs, done = collision.pairs, 0
     while pairs and done < CONFIGURATIONS:
         piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]

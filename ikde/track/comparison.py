@@ -156,7 +156,7 @@ def draw_random_starts(plan: TrackPlan, count: int, seed: int) -> Floats:
     robot, target = plan.robot, plan.path.targets()[0]
     rng, found, prismatic = np.random.default_rng(seed), [], robot.is_prismatic
     options = {"collision": plan.collision, "bulk": BulkOptions(threads=1, explain=False)}
-    place, lower, upper = np.resize(target.p_world_tool, prismatic.sum()), robot.lower, robot.upper
+    place, (lower, upper) = np.resize(target.p_world_tool, prismatic.sum()), robot.drawn
     for _ in range(DRAWS_PER_START * count):
         near = rng.uniform(lower, upper)
         shifted = place + rng.uniform(-1.0, 1.0, len(place))

@@ -167,7 +167,7 @@ def pack_track(collision: CollisionModel, limits: MotionLimits) -> TrackArrays:
     ranges = np.array([robot.lower, robot.upper])
     if limits.ranges:
         inside = np.minimum(ROUNDING, 0.5 * (ranges[1] - ranges[0]))
-        ranges = ranges + np.array([inside, -inside])
+        ranges = np.clip(ranges + np.array([inside, -inside]), -MAX_MAGNITUDE, MAX_MAGNITUDE)
     else:
         ranges = np.array([np.full_like(robot.lower, -MAX_MAGNITUDE), np.full_like(robot.upper, MAX_MAGNITUDE)])
     return TrackArrays(

@@ -11,7 +11,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD, Robot
 from ikde.solver.settings import SolveSettings
 
-DEFAULT_SPEED = {"prismatic": 0.5, "revolute": 0.5 * np.pi}
+DEFAULT_SPEED = {"prismatic": 0.5, "revolute": 0.5 * np.pi, "continuous": 0.5 * np.pi}
 """m/s and rad/s where a robot gives none: the print's 10 as 10 mm in a sample of 20 ms [Qiao2022, section 4]."""
 
 
@@ -63,7 +63,7 @@ class MotionLimits:
     def of(cls, robot: Robot, **changes: object) -> Self:
         """The joints' own speeds and accelerations, as the robot's file gives them.
 
-        Where it gives none: 0.5 m/s for a prismatic joint, pi/2 rad/s for a revolute one [Qiao2022], any acceleration.
+        Where it gives none: 0.5 m/s for a prismatic joint, pi/2 rad/s for one that turns [Qiao2022], any acceleration.
         """
         speed = [joint.max_speed or DEFAULT_SPEED[joint.kind] for joint in robot.joints]
         acceleration = np.array([joint.max_acceleration or np.inf for joint in robot.joints])

@@ -113,7 +113,8 @@ def _by_joint(
             raise InputError(f"{robot.name} has no joint {name!r}{known}; or say prismatic or revolute", (key, name))
     row = np.full(len(robot.joints), np.inf) if usual is None else usual.copy()
     for index, joint in enumerate(robot.joints):
-        name = joint.name if joint.name in given else joint.kind
+        kind = "prismatic" if joint.kind == "prismatic" else "revolute"
+        name = joint.name if joint.name in given else kind
         if name in given:
             value = given[name]
             unit = units.length_m if joint.kind == "prismatic" else units.angle_rad

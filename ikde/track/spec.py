@@ -157,7 +157,8 @@ class LimitsEntry(Entry):
     ranges: bool = Field(default=True, strict=True)
     """Whether joints must stay in their ranges."""
     speed: dict[Name, NotNegative | None] = {}
-    """Joint, or `prismatic` or `revolute` for all others of that kind: units a second; 0: frozen, null: no limit."""
+    """Joint, or `prismatic` or `revolute` for all others that slide or turn: units a second; 0: frozen, null: no limit.
+    """
     acceleration: dict[Name, Positive | None] = {}
     """Likewise, units a second squared (default: no limits)."""
     wheel_speed: Positive | None = None

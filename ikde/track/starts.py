@@ -32,7 +32,7 @@ def draw_starts(plan: TrackPlan, draws: int = DRAWS) -> tuple[Floats, SolveResul
     rng = np.random.default_rng(seed)
     quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")
     for stream in range(draws):
-        near = np.where(robot.is_prismatic, robot.home, rng.uniform(robot.lower, robot.upper))
+        near = np.where(robot.is_prismatic, robot.home, rng.uniform(*robot.drawn))
         row = solve_many(robot, [target], quick, seed=stream, near=near, **question)
         found.append(row.q[row.reached])
     q = np.concatenate(found)

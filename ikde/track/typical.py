@@ -47,9 +47,9 @@ def _evolve_samples(follower: Follower, start: Floats) -> Evolved:
 
 
 def bound_sample(follower: Follower, settings: TypicalSettings, q: Floats) -> tuple[Floats, Floats]:
-    """Ranges [N] of the sample after `q` [N]: those of the joints; of a base, about where it is."""
+    """Ranges [N] of the sample after `q` [N]: those of the joints; of a base, or without limits, about where it is."""
     robot = follower.robot
-    lower, upper = robot.lower.copy(), robot.upper.copy()
+    lower, upper = robot.finite_limits(q, 0.5)
     xy = find_planar_base(robot)[:2]
     if xy[0] >= 0:
         lower[xy] = np.maximum(lower[xy], q[xy] - settings.base_range_m)

@@ -50,7 +50,7 @@ def test_the_call_gives_the_bits_of_search_and_grader_one_after_the_other(qiao, 
     problem = problem_of(qiao, ikde.SolveSettings())
     *search, pool, pool_T = pack_block(problem, kind)
     grader, pairs = pack_grader(problem.collision, problem.settings), len(problem.collision.pairs)
-    block = flatten_answer(search, grader, KINDS.index(kind))
+    block = flatten_answer(search, grader, KINDS.index(kind), problem.turns)
     for stream in range(4):
         target = make_target(qiao, free_q(qiao, rng), kind)
         row, packed = np.empty(size_of(9, pairs)), pack_targets([target])

@@ -68,7 +68,7 @@ def format_module(collision: CollisionModel, kind: str) -> str:
 
 def _format_tests(arrays: RobotArrays, collision: CollisionModel) -> list[str]:
     """What is left out, in words; then `make_buffers` and `find_collision` as straight-line code."""
-    margin, limits = proof_margin(collision), (collision.robot.lower, collision.robot.upper)
+    margin, limits = proof_margin(collision), collision.robot.drawn  # one turn of a joint is as good as many
     every = list_tests(collision.arrays)
     needed = drop_implied(every)
     tests = drop_proved(arrays, needed, margin, *limits) if np.isfinite(margin) else needed

@@ -31,7 +31,7 @@ def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
 def prepare_answer(problem: Problem, kind: str) -> Callable[..., bool]:
     """The same and the grade in one call: `answer(T_world_tool, seed, stream, begin, end, out)` (`answer_target`)."""
     *search, pool, pool_T = pack_block(problem, kind)
-    block = flatten_answer(search, pack_grader(problem.collision, problem.settings), KINDS.index(kind))
+    block = flatten_answer(search, pack_grader(problem.collision, problem.settings), KINDS.index(kind), problem.turns)
     return partial(load_kernels(problem.collision, kind).answer_target.compiled, *block, pool, pool_T)
 
 

@@ -70,7 +70,7 @@ def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     """Where attempts start: about `near` if there is one, else from the pool of the problem's ranges."""
     if problem.near is not None:
         return no_pool(problem.robot, NEAR_FIRST_BOX)
-    ranges = tuple(zip(problem.lower.tolist(), problem.upper.tolist(), strict=True))
+    ranges = tuple(zip(*(bound.tolist() for bound in problem.drawn), strict=True))
     return _find_pool(problem.collision, kind, ranges)
 
 
@@ -116,7 +116,7 @@ def make_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats
 
 def make_whole_pool(collision: CollisionModel, kind: str) -> Pool:
     """The pool of the joint limits."""
-    return make_pool(collision, kind, collision.robot.lower, collision.robot.upper, DRAWN)
+    return make_pool(collision, kind, *collision.robot.drawn, DRAWN)
 
 
 def digest_pool(pool: Pool, collision: CollisionModel) -> str:
