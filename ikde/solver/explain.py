@@ -12,7 +12,6 @@ from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.hints import (
     Probe,
-    excess_of_bounds,
     hint_at_bounds,
     hint_at_stream,
     hint_at_tolerance,
@@ -22,6 +21,7 @@ from ikde.solver.hints import (
 )
 from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
+from ikde.solver.proof import prove
 from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.touching import find_always_touching
@@ -59,15 +59,11 @@ def stop_from_counts(found: SearchState, timeout_s: float | None) -> Ints:
     stops = np.where(found.counts[:, COLLIDING] > 0, _COLLISION, _BUDGET)
     if timeout_s is not None:
         stops[found.seconds >= timeout_s] = _TIMED_OUT
-    return np.where(found.excess_m > 0.0, _OUT_OF_REACH, stops)
+    return np.where(found.is_excluded(), _OUT_OF_REACH, stops)
 
 
-def reason_from_counts(
-    stop: StopReason, excess_m: float, attempts: int, colliding: int, timeout_s: float | None
-) -> str:
-    """One line that says it."""
-    if stop is StopReason.OUT_OF_REACH:
-        return _out_of_reach(excess_m)
+def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_s: float | None) -> str:
+    """One line that says it, of what is not proved to be out of reach."""
     if stop is StopReason.COLLISION:
         return f"only colliding solutions found, {colliding} of them"
     if stop is StopReason.TIMED_OUT:
@@ -80,9 +76,8 @@ def explain(
     problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
 ) -> Explanation:
     """Explain an unreached target from its counts, proved bounds, and short searches that change one thing."""
-    proof = _prove(problem, target)
-    if proof is not None:
-        return proof
+    if prove(problem, target) != (0.0, 0.0):
+        return explain_reach(problem, target)
     met, timeout_s = _read_counts(problem, found), problem.settings.timeout_s
     if stop_from_counts(found, timeout_s)[0] == _TIMED_OUT:
         return _timed_out(found, graded, timeout_s, met.blocking)
@@ -92,6 +87,23 @@ def explain(
     if hint:
         return _spent(found, graded, hint)
     return _never_free(problem, met, graded) or _explain_by_remedies(problem, target, probe, met, found, graded)
+
+
+def explain_reach(problem: Problem, target: Target) -> Explanation:
+    """Why a target is out of reach that a bound has excluded: no search, but bounds for wider ranges."""
+    return Explanation(
+        stop_reason=StopReason.OUT_OF_REACH,
+        reason=tell_out_of_reach(*prove(problem, target)),
+        hint=hint_at_bounds(problem, target),
+        blocking_pairs={},
+    )
+
+
+def tell_out_of_reach(far_m: float, off_rad: float) -> str:
+    """One line for what `prove` has found."""
+    words = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
+    words += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
+    return f"out of reach: at least {' and '.join(words)}, whatever the joints do"
 
 
 def _explain_by_remedies(
@@ -123,28 +135,6 @@ def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | Non
     )
 
 
-def explain_reach(problem: Problem, target: Target) -> Explanation:
-    """Why a target is out of reach that a bound has excluded."""
-    proof = _prove(problem, target)
-    assert proof is not None
-    return proof
-
-
-def _prove(problem: Problem, target: Target) -> Explanation | None:
-    """That no joint values bring the tool there, if bounds say so."""
-    far_m, off_rad = excess_of_bounds(problem, target, problem.lower, problem.upper)
-    if far_m == 0.0 and off_rad == 0.0:
-        return None
-    reason, hint = _out_of_reach(far_m, off_rad), hint_at_bounds(problem, target)
-    return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
-
-
-def _out_of_reach(far_m: float, off_rad: float = 0.0) -> str:
-    words = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
-    words += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
-    return f"out of reach: at least {' and '.join(words)}, whatever the joints do"
-
-
 def _colliding(met: _Met, remedy: str | None) -> Explanation:
     worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
     collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
@@ -165,7 +155,7 @@ def _timed_out(
     found: SearchState, graded: Grade, timeout_s: float | None, blocking: Mapping[tuple[str, str], int]
 ) -> Explanation:
     attempts, colliding = found.counts[0, [ATTEMPTS, COLLIDING]].tolist()
-    reason = reason_from_counts(StopReason.TIMED_OUT, 0.0, attempts, colliding, timeout_s)
+    reason = reason_from_counts(StopReason.TIMED_OUT, attempts, colliding, timeout_s)
     return Explanation(
         stop_reason=StopReason.TIMED_OUT, reason=f"{reason}; {_best(graded)}", hint=MORE_TIME, blocking_pairs=blocking
     )

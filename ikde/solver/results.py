@@ -11,7 +11,7 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
-from ikde.solver.explain import Explanation, reason_from_counts
+from ikde.solver.explain import Explanation, reason_from_counts, tell_out_of_reach
 from ikde.solver.grade import Outcomes, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, count_blocking_pairs, reached_reason
@@ -122,9 +122,10 @@ class SolveResults:
         stop = STOP_REASONS[self.stop_reasons[index]]
         if stop is StopReason.REACHED:
             return reached_reason(self.problem.collision)
-        excess_m = float(self.found.excess_m[index])
+        if stop is StopReason.OUT_OF_REACH:
+            return tell_out_of_reach(float(self.found.excess_m[index]), float(self.found.excess_rad[index]))
         counts = int(self.attempts[index]), int(self.rejected[index])
-        return reason_from_counts(stop, excess_m, *counts, self.problem.settings.timeout_s)
+        return reason_from_counts(stop, *counts, self.problem.settings.timeout_s)
 
     def explanation(self, index: int) -> Explanation:
         """Why, and what would help: of a row that was not explained what its counts say, made now."""
