@@ -10,7 +10,7 @@ from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
-from ikde.solver.engine_table import ENGINES
+from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
 if TYPE_CHECKING:
     from ikde.model.robot import Robot
@@ -165,4 +165,5 @@ def _print(
             pages = [f"solution {number} of {len(results)}\n{page}" for number, page in enumerate(pages, 1)]
         print_result("\n\n".join(pages))
     if results[0].reached and len(results) < count:
-        print_note(f"found {len(results)} distinct solutions of {count}; more --restarts may find more")
+        more = "no joint may move" if results[0].method == NO_ENGINE else "more --restarts may find more"
+        print_note(f"found {len(results)} distinct solutions of {count}; {more}")

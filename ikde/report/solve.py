@@ -10,7 +10,7 @@ from ikde.model.robot import Robot
 from ikde.report.geometry import joints_json
 from ikde.report.numbers import Units, format_fixed, seconds
 from ikde.report.render import make_table, plain, render
-from ikde.solver.engine_table import ENGINES
+from ikde.solver.engine_table import label_engine
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
@@ -104,7 +104,7 @@ def _grade_table(result: SolveResult, units: Units) -> Any:
     table.add_row("cost", f"{seconds(result.solve_seconds)}, {result.evaluations} evaluations in {attempts}")
     if result.compile_seconds:
         table.add_row("compiled first", f"{result.compile_seconds:.1f} s")
-    table.add_row("engine", ENGINES[result.method].label.format(de=result.settings.evolution))
+    table.add_row("engine", label_engine(result.method).format(de=result.settings.evolution))
     if result.family:
         table.add_row("family", f"{result.family} (shoulder, elbow, wrist)")
     table.add_row("repeat with", f"the same command, seed {result.seed}: the same bits")

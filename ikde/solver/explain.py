@@ -10,6 +10,7 @@ from ikde.model.target import Target
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
+from ikde.solver.fixed import tell_fixed
 from ikde.solver.hints import (
     Probe,
     hint_at_bounds,
@@ -54,8 +55,9 @@ class _Met:
     blocking: Mapping[tuple[str, str], int]
 
 
-def stop_from_counts(found: SearchState, timeout_s: float | None) -> Ints:
+def stop_from_counts(problem: Problem, found: SearchState) -> Ints:
     """What the counts of the search alone tell, at no cost: index [T] into `STOP_REASONS` of rows not reached."""
+    timeout_s = None if problem.is_fixed else problem.settings.timeout_s
     stops = np.where(found.counts[:, COLLIDING] > 0, _COLLISION, _BUDGET)
     if timeout_s is not None:
         stops[found.seconds >= timeout_s] = _TIMED_OUT
@@ -76,10 +78,12 @@ def explain(
     problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
 ) -> Explanation:
     """Explain an unreached target from its counts, proved bounds, and short searches that change one thing."""
+    if problem.is_fixed:
+        return _explain_fixed(problem, target, found, graded)
     if prove(problem, target) != (0.0, 0.0):
         return explain_reach(problem, target)
     met, timeout_s = _read_counts(problem, found), problem.settings.timeout_s
-    if stop_from_counts(found, timeout_s)[0] == _TIMED_OUT:
+    if stop_from_counts(problem, found)[0] == _TIMED_OUT:
         return _timed_out(found, graded, timeout_s, met.blocking)
     probe = Probe(target, seed, stream, float(found.seconds[0]))
     met, hint = _look_closer(problem, probe, met)
@@ -87,6 +91,20 @@ def explain(
     if hint:
         return _spent(found, graded, hint)
     return _never_free(problem, met, graded) or _explain_by_remedies(problem, target, probe, met, found, graded)
+
+
+def _explain_fixed(problem: Problem, target: Target, found: SearchState, graded: Grade) -> Explanation:
+    """Where no joint may move all is known: no search, but bounds for joints that would be free."""
+    stop = STOP_REASONS[stop_from_counts(problem, found)[0]]
+    if stop is StopReason.BUDGET:  # met by the last digit, which the graders see differently
+        return _spent(found, graded, None)
+    pair = graded.closest_pair if graded.collision else None
+    return Explanation(
+        stop_reason=stop,
+        reason=tell_fixed(float(found.excess_m[0]), float(found.excess_rad[0]), pair),
+        hint=hint_at_bounds(problem, target) if prove(problem, target) != (0.0, 0.0) else None,
+        blocking_pairs=_read_counts(problem, found).blocking,
+    )
 
 
 def explain_reach(problem: Problem, target: Target) -> Explanation:

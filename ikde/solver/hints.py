@@ -7,7 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import REACHED, Floats
 from ikde.model.bounds import find_bounds
-from ikde.model.robot import MAX_MAGNITUDE
+from ikde.model.robot import MAX_MAGNITUDE, Joint
 from ikde.model.target import Target
 from ikde.solver.digits import round_up
 from ikde.solver.engine_table import ENGINES
@@ -58,13 +58,10 @@ def meets(problem: Problem, target: Target, q: Floats) -> bool:
 
 def hint_at_bounds(problem: Problem, target: Target) -> str:
     """What opens the bounds that exclude a target, or that nothing does."""
-    frozen, slides = problem.frozen, [joint.name for joint in problem.robot.joints if joint.kind == "prismatic"]
-
-    def excess(freed: Names, widened: Names) -> tuple[float, float]:
-        return prove(problem.with_ranges(*_open_ranges(problem, freed, widened)), target)
+    frozen, slides = problem.frozen, [joint.name for joint in problem.robot.joints if _limits_bounds(joint)]
 
     def is_open(freed: Names, widened: Names) -> bool:
-        return excess(freed, widened) == (0.0, 0.0)
+        return prove(problem.with_ranges(*_open_ranges(problem, freed, widened)), target) == (0.0, 0.0)
 
     ways = [f"free {_name(freed)}" for freed in _find_fewest(frozen, lambda names: is_open(names, ()))]
     if not ways:
@@ -75,9 +72,10 @@ def hint_at_bounds(problem: Problem, target: Target) -> str:
             ways.append(f"free {_name(freed)} and a larger range for {_name(wide)}")
     if ways:
         return f"{', or '.join(ways)}: then the bound no longer excludes the target"
-    far_m, off_rad = excess(frozen, slides)
+    widest = problem.with_ranges(*_open_ranges(problem, frozen, slides))
+    far_m, off_rad = prove(widest, target)
     asked = ["a target closer to the robot"] if far_m > 0.0 else []
-    asked += [f"another orientation ({_name_cone(problem, target)})"] if off_rad > 0.0 else []
+    asked += [f"another orientation ({_name_cone(widest, target)})"] if off_rad > 0.0 else []
     return f"{' and '.join(asked)}; no joint range brings the tool there"
 
 
@@ -133,6 +131,11 @@ def try_widening(problem: Problem, probe: Probe) -> str | None:
     return f"a wider range for {', '.join(names)}: a solution was found beyond the limits"
 
 
+def _limits_bounds(joint: Joint) -> bool:
+    """Whether a wider range may open a bound: the range of a turn does not count, unless it is a point."""
+    return joint.kind == "prismatic" or joint.lower == joint.upper
+
+
 def _open_ranges(problem: Problem, freed: Names, widened: Names) -> tuple[Floats, Floats]:
     """The ranges with some frozen joints free, and some of the joints that may move as wide as can be."""
     robot, is_free = problem.robot, np.isin(problem.robot.joint_names, freed)
@@ -151,8 +154,8 @@ def _widen(problem: Problem) -> tuple[Floats, Floats]:
 
 
 def _name_cone(problem: Problem, target: Target) -> str:
-    """What the joints keep, all of them free, and the target asks for otherwise."""
-    cone = find_bounds(problem.robot, problem.robot.lower, problem.robot.upper).turning.find_worst(target)
+    """What the joints keep, however they turn, and the target asks for otherwise."""
+    cone = find_bounds(problem.robot, problem.lower, problem.upper).turning.find_worst(target)
     direction = TOOL_AXES.get(cone.tool, f"direction {_numbers(cone.tool)}")
     angles = " to ".join(dict.fromkeys(f"{angle:.3f}" for angle in (cone.low, cone.high)))
     return f"the tool's {direction} stays {angles} rad from {_numbers(cone.world)} of the world"

@@ -37,6 +37,11 @@ class Problem:
         """The robot of the collision model."""
         return self.collision.robot
 
+    @property
+    def is_fixed(self) -> bool:
+        """Whether no joint may move."""
+        return bool((self.lower == self.upper).all())
+
     def with_ranges(self, lower: Floats, upper: Floats) -> "Problem":
         """The same question with other joint ranges and nothing frozen."""
         return replace(self, lower=lower, upper=upper, frozen=())

@@ -82,6 +82,7 @@ def find_quick(
     """
     chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
     engines = choose_engines(robot, chosen, {kind})
-    if engines[0] != ENGINE or runs_on_tables():
+    may_move = bool((robot.lower < robot.upper).any())
+    if engines[0] != ENGINE or runs_on_tables() or not may_move:
         return None
     return Quick(collision, chosen, kind, is_last=len(engines) == 1)

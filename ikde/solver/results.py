@@ -12,6 +12,7 @@ from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, reason_from_counts, tell_out_of_reach
+from ikde.solver.fixed import tell_fixed
 from ikde.solver.grade import Outcomes, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, count_blocking_pairs, reached_reason
@@ -122,8 +123,12 @@ class SolveResults:
         stop = STOP_REASONS[self.stop_reasons[index]]
         if stop is StopReason.REACHED:
             return reached_reason(self.problem.collision)
+        excess = float(self.found.excess_m[index]), float(self.found.excess_rad[index])
+        if self.problem.is_fixed and stop is not StopReason.BUDGET:
+            closest = self.problem.collision.pairs[self.closest_pair[index]] if self.collision[index] else None
+            return tell_fixed(*excess, closest)
         if stop is StopReason.OUT_OF_REACH:
-            return tell_out_of_reach(float(self.found.excess_m[index]), float(self.found.excess_rad[index]))
+            return tell_out_of_reach(*excess)
         counts = int(self.attempts[index]), int(self.rejected[index])
         return reason_from_counts(stop, *counts, self.problem.settings.timeout_s)
 

@@ -196,8 +196,22 @@ def test_fewer_solutions_than_asked_for_exit_with_1(cli, qiao):
     tool = ikde.forward(qiao, qiao.home)["tool"][:3, 3]
     outcome = cli("solve", "--position", *tool, "--freeze", frozen, "--count", 2, "--restarts", 2, "--json")
     assert outcome.code == 1
+    assert outcome.err == "found 1 distinct solutions of 2; no joint may move\n"
     assert outcome.data["reached"] is True
     assert len(outcome.data["solutions"]) == 1
+    narrow = ("--freeze", "d_x,d_y,q_z,q1,q2,q3,q4,q5", "--restarts", 2)
+    outcome = cli("solve", "--position", *tool, *narrow, "--count", 99)
+    assert (outcome.code, outcome.err.endswith("; more --restarts may find more\n")) == (1, True)
+
+
+def test_where_no_joint_may_move_the_answer_says_so(cli, qiao):
+    outcome = cli(*SOLVE, "--freeze", ",".join(qiao.joint_names))
+    assert outcome.code == 1
+    assert outcome.out.startswith("not reached: no joint may move: the tool stays 0.703 m off\nwhat would help: free ")
+    assert "none: no joint may move" in outcome.out
+    data = cli(*SOLVE, "--freeze", ",".join(qiao.joint_names), "--json").data
+    assert (data["method"], data["attempts"], data["evaluations"]) == ("none", 1, 1)
+    assert data["verified"] is True
 
 
 def test_frozen_joints_keep_their_values(cli):
