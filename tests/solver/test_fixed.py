@@ -154,7 +154,7 @@ def test_the_quick_way_is_not_prepared_for_it(qiao, substitute):
     """Which would draw a pool of seeds and compile an engine."""
     robot = replace(qiao, joints=tuple(replace(joint, lower=joint.home, upper=joint.home) for joint in qiao.joints))
     substitute(runs_on_tables, lambda: False)
-    substitute(Quick, never)
+    substitute(Quick, lambda *arguments: never())
     assert find_quick(robot, None, "auto", None, "position") is None
 
 
