@@ -188,7 +188,12 @@ def test_several_solutions_are_distinct_and_numbered(cli, qiao):
     assert solutions[0] == list(outcome.data["q"].values())
     for i, q in enumerate(solutions):
         assert all(are_apart(qiao, q, other) for other in solutions[:i])
-    assert "solution 3 of 3" in cli(*SOLVE, "--count", 3).out
+    assert outcome.data["solve_seconds"] > 0.0
+    assert not any({"solve_seconds", "compile_seconds"} & set(entry) for entry in outcome.data["solutions"])
+    text = cli(*SOLVE, "--count", 3).out
+    assert "solution 3 of 3" in text
+    assert text.splitlines()[-1].startswith("together ")
+    assert text.count("together ") == 1
 
 
 def test_fewer_solutions_than_asked_for_exit_with_1(cli, qiao):
