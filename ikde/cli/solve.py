@@ -147,13 +147,15 @@ def _read_settings(
     options.check_positive(tolerance, "--tolerance")
     options.check_positive(orientation_tolerance, "--orientation-tolerance", pi / angle_rad)
     options.check_positive(timeout, "--timeout")
-    return SolveSettings.for_method(method).with_changes(
-        position_tolerance_m=None if tolerance is None else tolerance * length_m,
-        orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * angle_rad,
-        restarts=restarts,
-        timeout_s=timeout,
-        de=options.read_de(de),
-    )
+    own, of_de = SolveSettings.for_method(method), options.read_de(de)
+    with options.named_as_typed():
+        return own.with_changes(
+            position_tolerance_m=None if tolerance is None else tolerance * length_m,
+            orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * angle_rad,
+            restarts=restarts,
+            timeout_s=timeout,
+            de=of_de,
+        )
 
 
 def _print(robot: "Robot", result: "SolveResult", units: "Units", convention: str | None, as_json: bool) -> None:

@@ -144,7 +144,7 @@ def test_settings_of_the_de_are_laid_over_its_own_defaults(cli):
 def test_other_methods_refuse_settings_of_the_de(cli, method):
     refused = cli(*SOLVE, "--de", "population=40", "--method", method)
     assert (refused.code, refused.out) == (2, "")
-    told = f"ikde: settings.de.population: `population` is a setting of the method de; {method} does not use it"
+    told = f"ikde: --de population: `population` is a setting of the method de; {method} does not use it"
     assert refused.err.startswith(told)
     assert refused.err.count("\n") == 1
 
@@ -329,15 +329,15 @@ def test_a_figure_is_written(cli, tmp_path):
         ("--count -2", "count"),
         ("--method ga", "method"),
         ("--restarts 0", "settings.restarts"),
-        ("--method de --de collision=no", "settings.de.collision: expected one of reject, feasibility, got 'no'"),
-        ("--method de --de strategy=rand/9", "settings.de.strategy"),
-        ("--method de --de bounds=wrap", "settings.de.bounds"),
-        ("--method de --de update=never", "settings.de.update"),
-        ("--method de --de population=5", "settings.de.population: expected a whole number of at least 6"),
-        ("--method de --de generations=0", "settings.de.generations"),
-        ("--method de --de weight=nan", "settings.de.weight"),
-        ("--method de --de crossover=1.5", "settings.de.crossover: expected 0 to 1, got 1.5"),
-        ("--method de --de start_share=0", "settings.de.start_share"),
+        ("--method de --de collision=no", "--de collision: expected one of reject, feasibility, got 'no'"),
+        ("--method de --de strategy=rand/9", "--de strategy"),
+        ("--method de --de bounds=wrap", "--de bounds"),
+        ("--method de --de update=never", "--de update"),
+        ("--method de --de population=5", "--de population: expected a whole number of at least 6"),
+        ("--method de --de generations=0", "--de generations"),
+        ("--method de --de weight=nan", "--de weight"),
+        ("--method de --de crossover=1.5", "--de crossover: expected 0 to 1, got 1.5"),
+        ("--method de --de start_share=0", "--de start_share"),
         ("--freeze d_z", "did you mean 'q_z'"),
         ("--freeze d_x=a", "freeze.d_x"),
         ("--freeze d_x=9", "outside the limits"),
