@@ -108,7 +108,10 @@ def _reasons(rows: SolveResults, missed: Ints) -> tuple[Ints, list[str]]:
     own = np.array([row if row in stories else -1 for row in missed.tolist()] if stories else np.full(len(missed), -1))
     facts = (own, rows.stop_reasons[missed], found.engine[missed], rows.attempts[missed], rows.rejected[missed])
     _, first, which = np.unique(
-        np.column_stack([*facts, found.excess_m[missed]]), axis=0, return_index=True, return_inverse=True
+        np.column_stack([*facts, found.excess_m[missed], found.excess_rad[missed]]),
+        axis=0,
+        return_index=True,
+        return_inverse=True,
     )
     words, codes = _words_and_codes([rows.reason(int(missed[row])) for row in first])
     return np.array(codes, dtype=np.int64)[which.ravel()], words

@@ -12,6 +12,7 @@ from ikde.batch.manifest import (
     MANIFEST,
     REPORT,
     REPORT_FILES,
+    Manifest,
     describe_difference,
     make_manifest,
     read_manifest,
@@ -36,16 +37,32 @@ def claim_folder(folder: Path, batch: Batch, *, overwrite: bool) -> Iterator[Non
             `overwrite`), or is being written by another process.
     """
     with ExitStack() as held:
-        try:
+        with _errors_of(folder):
             folder.mkdir(parents=True, exist_ok=True)
             _check_ours(folder)
             held.enter_context(_lock(folder))
             _prepare(folder, batch, overwrite)
-        except (FileExistsError, NotADirectoryError):
-            raise FileError(folder, "is a file or lies below one; expected a folder") from None
-        except OSError as error:
-            raise FileError(folder, f"cannot be used: {error.strerror or error}") from None
         yield
+
+
+def check_folder(folder: Path, batch: Batch, *, overwrite: bool) -> None:
+    """Raise `FileError` where `claim_folder` would, as far as looking tells: nothing is written."""
+    with _errors_of(folder):
+        if folder.exists():
+            _check_ours(folder)
+            _find_run(folder, batch, overwrite)
+        elif any(parent.exists() and not parent.is_dir() for parent in folder.parents):
+            raise NotADirectoryError
+
+
+@contextmanager
+def _errors_of(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except (FileExistsError, NotADirectoryError):
+        raise FileError(folder, "is a file or lies below one; expected a folder") from None
+    except OSError as error:
+        raise FileError(folder, f"cannot be used: {error.strerror or error}") from None
 
 
 @contextmanager
@@ -78,11 +95,7 @@ def _sync_names(folder: Path) -> None:
 
 def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
     """Leave the manifest of this batch and finished parts, nothing else of ours; it is ours at every moment."""
-    refuse_links(folder, REPORT)
-    there = read_manifest(folder) if (folder / MANIFEST).exists() else None
-    if there and there.hash != batch.hash and not overwrite:
-        difference = describe_difference(there.recipe, batch.recipe)
-        raise FileError(folder, f"holds another run (--overwrite replaces it): {difference}")
+    there = _find_run(folder, batch, overwrite)
     if there is None:
         write_manifest(folder, make_manifest(batch))
     for kind in (SOLUTIONS, TIMING):
@@ -97,6 +110,16 @@ def _prepare(folder: Path, batch: Batch, overwrite: bool) -> None:
     if there and overwrite:
         write_manifest(folder, make_manifest(batch))
     sync_folder(folder)
+
+
+def _find_run(folder: Path, batch: Batch, overwrite: bool) -> Manifest | None:
+    """The run that is in a folder of ours; it must be of this batch, unless it is replaced."""
+    refuse_links(folder, REPORT)
+    there = read_manifest(folder) if (folder / MANIFEST).exists() else None
+    if there and there.hash != batch.hash and not overwrite:
+        difference = describe_difference(there.recipe, batch.recipe)
+        raise FileError(folder, f"holds another run (--overwrite replaces it): {difference}")
+    return there
 
 
 def _check_ours(folder: Path) -> None:

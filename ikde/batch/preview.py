@@ -1,15 +1,20 @@
-"""What a batch would do, and how long it would take: measured by solving a sample of each arm, writing nothing."""
+"""What a batch would do, and how long it would take: measured by solving a sample of each arm, writing nothing.
 
-import time
+Compiling is no part of that time: it is done first, told apart, and on the same machine need not be done again.
+"""
+
 from dataclasses import dataclass, replace
 
 import pyarrow as pa
 
 from ikde.batch.options import check_options
-from ikde.batch.parts import Part, serialize
+from ikde.batch.parts import Part, seal_part, serialize
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.sources import ListSource
 from ikde.batch.task import Answer, Task, make_task, solve_task
+from ikde.kernels.cache_folder import CACHE_IS_WRITABLE
+from ikde.kernels.jit import compile_clock
+from ikde.solver.engine_table import SEVERAL
 from ikde.solver.search import usable_cores
 
 SAMPLE_SECONDS = 2.0  # of all arms together, about
@@ -27,7 +32,11 @@ class ArmPreview:
     """Solves that were timed."""
     sample_reached: int
     seconds: float
-    """What all its solves would take, on all threads together."""
+    """What all its solves would take, on all threads together, without compiling."""
+    load_seconds: float
+    """What loading its kernels and seeds took, which a run does once, too."""
+    compile_seconds: float
+    """What the sample took to compile; 0 if it was compiled already."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,10 +57,18 @@ class Preview:
     bytes: int
     """On the disk, about."""
 
+    compiles_again: bool
+    """No cache folder can be used: the run itself compiles as much once more."""
+
     @property
     def seconds(self) -> float:
-        """Of all arms, about."""
-        return sum(arm.seconds for arm in self.arms)
+        """Of all arms, about, with loading, without compiling."""
+        return sum(arm.seconds + arm.load_seconds for arm in self.arms)
+
+    @property
+    def compile_seconds(self) -> float:
+        """What the samples of all arms took to compile."""
+        return sum(arm.compile_seconds for arm in self.arms)
 
 
 def preview_batch(batch: Batch, *, threads: int | None = None) -> Preview:
@@ -71,21 +88,30 @@ def preview_batch(batch: Batch, *, threads: int | None = None) -> Preview:
         parts=parts * len(batch.arms),
         threads=cores,
         columns=tuple(samples[0][1].solutions.column_names),
+        compiles_again=not CACHE_IS_WRITABLE,
         bytes=sum(_estimate_bytes(answer, batch.solves, parts) for _, answer in samples),
     )
 
 
 def _time_arm(batch: Batch, arm: Arm, threads: int, budget: float) -> tuple[ArmPreview, Answer]:
-    """Solve larger and larger samples until one fills about the budget."""
-    solve_task(_take_sample(batch, arm, 1), threads)  # compiles or loads the kernels
-    size = min(threads, batch.solves)
-    while True:
-        started = time.perf_counter()
-        answer = solve_task(_take_sample(batch, arm, size), threads)
-        seconds = time.perf_counter() - started
-        if seconds > budget / GROWTH or size == batch.solves:
-            break
-        size = min(size * GROWTH, batch.solves)
+    """Solve larger and larger samples until one fills about the budget.
+
+    As many targets as are solved side by side come first, untimed: they compile or load what the others need, too. What
+    a harder one needs beyond is compiled when that comes, and left out.
+    """
+    with compile_clock() as all_clock:
+        solve_task(_take_sample(batch, arm, min(SEVERAL, batch.solves)), threads)
+        load_seconds = all_clock.run_seconds
+        size = min(max(SEVERAL, threads), batch.solves)
+        while True:
+            sample = _take_sample(batch, arm, size)
+            with compile_clock() as clock:
+                answer = solve_task(sample, threads)
+                seal_part(sample.part, answer.solutions, answer.timing, recipe="")
+            seconds = clock.run_seconds
+            if seconds > budget / GROWTH or size == batch.solves:
+                break
+            size = min(size * GROWTH, batch.solves)
     facts = ArmPreview(
         name=arm.name,
         method=arm.method,
@@ -93,6 +119,8 @@ def _time_arm(batch: Batch, arm: Arm, threads: int, budget: float) -> tuple[ArmP
         sample=size,
         sample_reached=sum(answer.solutions["reached"].to_pylist()),
         seconds=seconds / size * batch.solves,
+        load_seconds=load_seconds,
+        compile_seconds=all_clock.seconds,
     )
     return facts, answer
 

@@ -55,7 +55,7 @@ def batch(
     if not all(arm.problem.collision.pairs for arm in plan.arms):
         note_unchecked(plan.robot)
     if out is None or dry_run:
-        _preview(plan, as_json, **solving)
+        _preview(plan, out, as_json, overwrite=overwrite, **solving)
         return
     summary = _run(plan, out, overwrite=overwrite, **solving)
     if as_json:
@@ -65,12 +65,17 @@ def batch(
     raise typer.Exit(ExitCode.NOT_REACHED if summary.unreached else ExitCode.OK)
 
 
-def _preview(plan: "Batch", as_json: bool, *, threads: int | None, **cluster: Any) -> None:
+def _preview(
+    plan: "Batch", out: Path | None, as_json: bool, *, overwrite: bool, threads: int | None, **cluster: Any
+) -> None:
+    from ikde.batch.folder import check_folder
     from ikde.batch.options import check_options
     from ikde.batch.preview import preview_batch
     from ikde.report.batch import format_preview, preview_json
 
     check_options(threads, **cluster)
+    if out is not None:
+        check_folder(out, plan, overwrite=overwrite)
     if cluster["dask"] is not None:
         print_note("a dry run solves its sample on this machine: the cluster is left alone")
     with note_compile():

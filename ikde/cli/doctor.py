@@ -3,6 +3,7 @@
 import os
 import platform
 import time
+from collections.abc import Mapping
 from importlib.metadata import version
 from typing import Any
 
@@ -14,6 +15,7 @@ PACKAGES = ("numpy", "numba", "pydantic", "pyarrow", "matplotlib", "typer", "ric
 
 def doctor(as_json: JsonOption = False) -> None:
     """Say what ikde runs on, and time one solve."""
+    from ikde.report.numbers import seconds
     from ikde.report.render import make_table, plain, render
 
     facts = describe_machine()
@@ -22,8 +24,21 @@ def doctor(as_json: JsonOption = False) -> None:
         return
     table = make_table("ikde doctor", "")
     for name, value in facts.items():
-        table.add_row(name.replace("_", " "), f"{value:.3f}" if isinstance(value, float) else plain(str(value)))
-    print_result(render(table, color=use_color(), width=140))
+        words = seconds(value) if isinstance(value, float) else str(value)
+        table.add_row(name.removesuffix("_seconds").replace("_", " "), plain(words))
+    print_result(render(table, judge(facts), color=use_color(), width=140))
+
+
+def judge(facts: Mapping[str, Any]) -> str:
+    """One line: whether ikde works here, and what to wait for."""
+    from ikde.report.numbers import seconds
+
+    if not facts["solve_reached"]:
+        return "not well: a target that every robot of this kind reaches was not reached; please report it"
+    if not facts["cache_is_writable"]:
+        return "works, but the cache folder cannot be used: every process compiles anew; set IKDE_CACHE_DIR"
+    compiled = "is compiled now, and need not be again" if facts["compile_seconds"] else "was compiled before"
+    return f"all well: what this solve needs {compiled}, and the next one takes {seconds(facts['solve_seconds'])}"
 
 
 def describe_machine() -> dict[str, Any]:

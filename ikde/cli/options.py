@@ -1,7 +1,8 @@
 """Options that several commands share, and how they become objects."""
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -171,13 +172,26 @@ def read_de(text: str | None) -> dict[str, Any]:
                 f"unknown key {quoted(name)}{nearest(name, kinds)}; expected {', '.join(kinds)}", ("--de",)
             )
         if name in given:
-            raise InputError("this key is given twice", ("--de", name))
+            raise InputError("this key is given twice", (f"--de {name}",))
         try:
             given[name] = kinds[name](value)
         except ValueError:
             number = "a whole number" if kinds[name] is int else "a number"
-            raise InputError(f"expected {name}={number}, got {quoted(word)}", ("--de", name)) from None
+            raise InputError(f"expected {name}={number}, got {quoted(word)}", (f"--de {name}",)) from None
     return given
+
+
+@contextmanager
+def named_as_typed() -> Iterator[None]:
+    """An error about a setting of the DE names the option that it came with: `--de population`, as `read_de` does."""
+    from ikde.errors import InputError
+
+    try:
+        yield
+    except InputError as error:
+        if error.where[:2] != ("settings", "de"):
+            raise
+        raise InputError(error.message, (" ".join(["--de", *map(str, error.where[2:])]),)) from None
 
 
 def check_drawable(path: Path | None) -> None:

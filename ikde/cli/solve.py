@@ -10,7 +10,7 @@ from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
-from ikde.solver.engine_table import ENGINES
+from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
 if TYPE_CHECKING:
     from ikde.model.robot import Robot
@@ -114,13 +114,18 @@ def solve(
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
-    with working("searching ..."), note_compile():
+    with working("searching ..."), note_compile() as clock:
         question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen}
         if count == 1:
             results = [confirm(model, solve_one(model, target, settings, **question))]
         else:
             results = solve_distinct(model, target, count, settings, rank=rank, **question)  # type: ignore[arg-type]
-    _print(model, results, count, units, convention, as_json)
+        spent = {"solve_seconds": clock.run_seconds, "compile_seconds": clock.seconds}
+    if count == 1:
+        _print(model, results[0], units, convention, as_json)
+    else:
+        _print_several(model, results, units, convention, as_json, **spent)
+        _note_fewer(results, count)
     options.draw(plot, checked, results[0].q, target)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)
 
@@ -142,27 +147,44 @@ def _read_settings(
     options.check_positive(tolerance, "--tolerance")
     options.check_positive(orientation_tolerance, "--orientation-tolerance", pi / angle_rad)
     options.check_positive(timeout, "--timeout")
-    return SolveSettings.for_method(method).with_changes(
-        position_tolerance_m=None if tolerance is None else tolerance * length_m,
-        orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * angle_rad,
-        restarts=restarts,
-        timeout_s=timeout,
-        de=options.read_de(de),
-    )
+    own, of_de = SolveSettings.for_method(method), options.read_de(de)
+    with options.named_as_typed():
+        return own.with_changes(
+            position_tolerance_m=None if tolerance is None else tolerance * length_m,
+            orientation_tolerance_rad=None if orientation_tolerance is None else orientation_tolerance * angle_rad,
+            restarts=restarts,
+            timeout_s=timeout,
+            de=of_de,
+        )
 
 
-def _print(
-    robot: "Robot", results: "list[SolveResult]", count: int, units: "Units", convention: str | None, as_json: bool
-) -> None:
+def _print(robot: "Robot", result: "SolveResult", units: "Units", convention: str | None, as_json: bool) -> None:
     from ikde.report.solve import format_solve, solve_json
 
     if as_json:
-        objects = [solve_json(robot, result, convention) for result in results]
-        print_json(objects[0] if count == 1 else {**objects[0], "solutions": objects})
+        print_json(solve_json(robot, result, convention))
     else:
-        pages = [format_solve(robot, result, units, convention=convention, color=use_color()) for result in results]
-        if count > 1:
-            pages = [f"solution {number} of {len(results)}\n{page}" for number, page in enumerate(pages, 1)]
-        print_result("\n\n".join(pages))
+        print_result(format_solve(robot, result, units, convention=convention, color=use_color()))
+
+
+def _print_several(
+    robot: "Robot",
+    results: "list[SolveResult]",
+    units: "Units",
+    convention: str | None,
+    as_json: bool,
+    **spent: float,
+) -> None:
+    from ikde.report.solve import Spent, format_solutions, solutions_json
+
+    if as_json:
+        print_json(solutions_json(robot, results, Spent(**spent), convention))
+    else:
+        page = format_solutions(robot, results, units, Spent(**spent), convention=convention, color=use_color())
+        print_result(page)
+
+
+def _note_fewer(results: "list[SolveResult]", count: int) -> None:
     if results[0].reached and len(results) < count:
-        print_note(f"found {len(results)} distinct solutions of {count}; more --restarts may find more")
+        more = "no joint may move" if results[0].method == NO_ENGINE else "more --restarts may find more"
+        print_note(f"found {len(results)} distinct solutions of {count}; {more}")

@@ -5,76 +5,134 @@ before, that angle lies in an interval, given by the angle between the two axes;
 axis does not move. Ranges of joints do not count, but a joint that may not turn at all is part of its link.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
-from ikde.model.reach import SKEW, chain_to_tool
-from ikde.model.robot import Robot
-from ikde.model.rotation import angle_between, measure_skew, rotation_about
-from ikde.model.target import Target
+from ikde.kernels.arrays import AXIS, POSE, Floats
+from ikde.model.chain import Chain
+from ikde.model.reach import SKEW, Vector, as_vector
+from ikde.model.rotation import measure_skew
+from ikde.model.target import Target, Targets
 
 ROUNDING_RAD = 1e-14  # of each joint
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Turns:
-    """The joints that turn the tool, from the world on."""
+class Cone(NamedTuple):
+    """Directions of the tool and of the world, [3] each: the angle between them stays from `low` to `high`, rad."""
 
-    axes: list[Floats]
-    """Of each joint [3], in the frame that the one before moves."""
-    own: list[Floats]
-    """The same [3], in the frame that the joint itself moves."""
-    R_last_tool: Floats
-    """[3, 3] from the frame that the last of them moves to the tool."""
+    tool: Vector
+    world: Vector
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Turning:
+    """All orientations of the tool lie in these cones; there are none for a tool that can be turned any way."""
+
+    of_axis: tuple[Cone, ...]
+    """Of the tool's z axis."""
+    of_pose: tuple[Cone, ...]
     slack_rad: float
     """What rounding, and matrices that are no exact rotations, may add up to."""
 
+    def excess_rad(self, target: Target) -> float:
+        """At least how far off the tool's orientation stays, rad."""
+        cones = self._find_cones(target)
+        if not cones:
+            return 0.0
+        rows = target.R_world_tool.tolist()
+        excess = max(_leave_one(cone, rows) for cone in cones)
+        if excess <= self.slack_rad:
+            return 0.0
+        return max(0.0, excess - self.slack_rad - SKEW * float(measure_skew(target.R_world_tool[None])[0]))
 
-def orientation_excess_rad(robot: Robot, target: Target, lower: Floats, upper: Floats) -> float:
-    """By how much the tool's orientation must miss a target at least, in rad, or 0 where this bound cannot tell.
+    def find_worst(self, target: Target) -> Cone:
+        """The cone that a target asks the tool to leave the farthest; there must be one."""
+        rows = target.R_world_tool.tolist()
+        return max(self._find_cones(target), key=lambda cone: _leave_one(cone, rows))
 
-    `lower`, `upper` [N]: the joint ranges that hold, after `freeze`; of turns it only counts whether they are points.
+    def _find_cones(self, target: Target) -> tuple[Cone, ...]:
+        return {"position": (), "axis": self.of_axis, "pose": self.of_pose}[target.kind]
+
+    def excess_of_many_rad(self, targets: Targets) -> Floats:
+        """At least how far off the tool's orientation stays from each target [T], rad."""
+        excess = np.zeros(len(targets))
+        for kind, cones in ((AXIS, self.of_axis), (POSE, self.of_pose)):
+            rows = np.flatnonzero(targets.kind == kind) if cones else ()
+            if not len(rows):
+                continue
+            R = targets.R_world_tool[rows]
+            wanted = [[_dot(row, cone.tool) for row in np.moveaxis(R, 0, -1)] for cone in cones]
+            off = np.max([_leave(cone, w) for cone, w in zip(cones, wanted, strict=True)], axis=0)
+            excess[rows] = np.maximum(0.0, off - self.slack_rad - SKEW * measure_skew(R))
+        return excess
+
+
+def bound_turning(chain: Chain) -> Turning:
+    """The bound, ready to be asked about targets."""
+    axes, own, R_last_tool = _find_axes(chain)
+    slack = SKEW * chain.skew + ROUNDING_RAD * chain.skews
+    every = _enclose(axes, own, R_last_tool)
+    cones = [cone for cone in every if cone.low > slack or cone.high < np.pi - slack]
+    return Turning(of_axis=tuple(cones[: every[0] in cones]), of_pose=tuple(cones), slack_rad=slack)
+
+
+def _find_axes(chain: Chain) -> tuple[list[Floats], list[Floats], Floats]:
+    """Axes [3] of the joints that turn the tool, from the world on, each as the joint before moves it and as the joint
+    itself does; and the rotation [3, 3] from what the last of them moves to the tool."""
+    axes, own, R = [], [], np.eye(3)
+    for link in chain.links:
+        R = R @ link.R_before_link
+        if link.is_revolute:
+            axes.append(R @ link.axis)
+            own.append(link.axis)
+            R = np.eye(3)
+    return axes, own, R @ chain.R_link_tool
+
+
+def _enclose(axes: Sequence[Floats], own: Sequence[Floats], R_last_tool: Floats) -> list[Cone]:
+    """The cones of the tool's z, x, y and what its last joint turns about, around the first joint's axis.
+
+    A direction of a tool that nothing turns stays where it is.
     """
-    if target.kind == "position":
-        return 0.0
-    turns = _find_turns(robot, lower, upper)
-    directions = [np.array([0.0, 0.0, 1.0])]
-    if target.kind == "pose":
-        last = [turns.R_last_tool.T @ turns.own[-1]] if turns.own else []
-        directions += [*np.eye(3)[:2], *last]
-    excess = max(_excess_rad(turns, direction, target.R_world_tool @ direction) for direction in directions)
-    return max(0.0, excess - turns.slack_rad - SKEW * float(measure_skew(target.R_world_tool)))
+    directions = [*np.eye(3)[[2, 0, 1]], *([R_last_tool.T @ own[-1]] if own else [])]
+    between = [_angle(before, axis) for axis, before in zip(axes[:0:-1], own[-2::-1], strict=True)]
+    cones = []
+    for direction in directions:
+        here = R_last_tool @ direction
+        low = high = _angle(own[-1], here) if own else 0.0
+        for apart in between:
+            low, high = max(0.0, low - apart, apart - high), min(np.pi, high + apart, 2.0 * np.pi - apart - low)
+        cones.append(Cone(as_vector(direction), as_vector(axes[0] if axes else here), low, high))
+    return cones
 
 
-def _find_turns(robot: Robot, lower: Floats, upper: Floats) -> _Turns:
-    chain, _, R_body_tool = chain_to_tool(robot)
-    axes, own, R, slack = [], [], np.eye(3), 0.0
-    for body in chain:
-        slack += ROUNDING_RAD + SKEW * float(measure_skew(body.T_parent_body[:3, :3]))
-        R = R @ body.T_parent_body[:3, :3]
-        joint = body.joint
-        if joint is None or robot.joints[joint].kind == "prismatic":
-            continue
-        if lower[joint] == upper[joint]:
-            R = R @ rotation_about(body.axis, lower[joint])
-            continue
-        axes.append(R @ body.axis)
-        own.append(body.axis)
-        R = np.eye(3)
-    slack += SKEW * float(measure_skew(R_body_tool))
-    return _Turns(axes=axes, own=own, R_last_tool=R @ R_body_tool, slack_rad=slack)
+def _angle(a: Floats, b: Floats) -> float:
+    """Between vectors [3] of length 1, in [0, pi] rad."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    across = math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+    return math.atan2(across, ax * bx + ay * by + az * bz)
 
 
-def _excess_rad(turns: _Turns, direction: Floats, wanted: Floats) -> float:
-    """How far off a `direction` [3] of the tool stays from one in the world that is `wanted` [3], in rad."""
-    here = turns.R_last_tool @ direction
-    if not turns.axes:
-        return float(angle_between(here, wanted))
-    low = high = float(angle_between(turns.own[-1], here))
-    for axis, before in zip(turns.axes[:0:-1], turns.own[-2::-1], strict=True):
-        between = float(angle_between(before, axis))
-        low, high = (max(0.0, low - between, between - high), min(np.pi, high + between, 2.0 * np.pi - between - low))
-    asked = float(angle_between(turns.axes[0], wanted))
-    return max(low - asked, asked - high)
+def _leave_one(cone: Cone, rows: Sequence[Sequence[float]]) -> float:
+    """How far out of a cone a rotation of the tool, given by its rows, takes it, rad; below 0 inside."""
+    return float(_leave(cone, [_dot(row, cone.tool) for row in rows], math.sqrt, max))
+
+
+def _leave(cone: Cone, wanted: Sequence[Any], root: Any = np.sqrt, most: Any = np.maximum) -> Any:
+    """How far out of a cone directions [3, ...] in the world are [...], rad; below 0 inside."""
+    ax, ay, az = cone.world
+    x, y, z = wanted
+    cx, cy, cz = ay * z - az * y, az * x - ax * z, ax * y - ay * x
+    # numpy's for floats, too: the last bits of `math.atan2` are others.
+    angle = np.arctan2(root(cx * cx + cy * cy + cz * cz), ax * x + ay * y + az * z)
+    return most(cone.low - angle, angle - cone.high)
+
+
+def _dot(a: Sequence[Any], b: Sequence[float]) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -4,16 +4,20 @@ Walk from the world to the tool. Joints with parallel axes form a run: along the
 add up exactly, across it they can at best be stretched into one line. So the tool lies within a ball around a convex
 set that is simple: what the leading prismatic joints span, widened by the cylinder of the first run. Its distance is
 approached from below: a plane that parts a point from the whole set proves how far out the point is at least.
+
+The steps are written once, for a float or a column of them: numpy takes ten times as long for one position.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.chain import Chain, Link, path_to_tool, turns
 from ikde.model.robot import Robot
-from ikde.model.rotation import measure_skew
-from ikde.model.tree import Body, build_tree
 
 PARALLEL = 1e-9  # between axes of one run; by how far they are not is added to what the run can reach
 SWEEPS = 60  # of the search for the nearest point; two are enough where slides are at right angles
@@ -21,8 +25,113 @@ CONVERGED, ROUNDING = 1e-13, 2e-15  # of all lengths
 TINY_M = 1e-300
 SKEW = 3.0  # rad: how far a matrix may turn directions, times what it lacks of a rotation
 
-Slide = tuple[Floats, float, float]
-"""A direction [3] of length 1, and how far along it something can be at least and at most, m."""
+Vector = tuple[float, float, float]
+Column = Any
+"""A float, or as many as there are positions [T]."""
+
+
+class _Slide(NamedTuple):
+    """A direction of length 1, and how far along it something can be at least and at most, m."""
+
+    direction: Vector
+    low: float
+    high: float
+
+
+class _Arithmetic(NamedTuple):
+    """What is called otherwise for a column than for a float; the bits are the same."""
+
+    least: Any
+    most: Any
+    root: Any
+
+
+_FLOAT, _COLUMN = _Arithmetic(min, max, math.sqrt), _Arithmetic(np.minimum, np.maximum, np.sqrt)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reach:
+    """All that the tool can reach lies in here: around `centre`, the sums of slides, a disc and a ball; m."""
+
+    centre: Vector
+    slides: tuple[_Slide, ...]
+    axis: Vector
+    """Of the disc."""
+    disc: float
+    """Radius, as that of the ball."""
+    ball: float
+    length: float
+    """All that can add up in a coordinate: rounding grows with it."""
+
+    def excess_m(self, p_world_tool: Floats) -> float:
+        """At least how far out a position [3] is, m."""
+        state = self._begin(*p_world_tool.tolist())
+        length = self.length + math.sqrt(_square(state[:3]))
+        slack, excess = self.ball + ROUNDING * length, 0.0
+        for _ in range(SWEEPS):
+            distance, bound = self._sweep(state, _FLOAT)
+            excess = max(0.0, bound - slack)
+            if distance <= slack or distance - bound <= CONVERGED * length:
+                break
+        return excess
+
+    def excess_of_many_m(self, p_world_tool: Floats) -> Floats:
+        """At least how far out positions [T, 3] are [T], m: each as if it were the only one."""
+        state = self._begin(*(np.ascontiguousarray(column) for column in p_world_tool.T))
+        length = self.length + np.sqrt(_square(state[:3]))
+        slack, excess, rows = self.ball + ROUNDING * length, np.zeros(len(length)), np.arange(len(length))
+        for _ in range(SWEEPS):
+            distance, bound = self._sweep(state, _COLUMN)
+            excess[rows] = np.maximum(0.0, bound - slack)
+            is_open = (distance > slack) & (distance - bound > CONVERGED * length)
+            if not is_open.any():
+                break
+            state = [column[is_open] for column in state]
+            rows, length, slack = rows[is_open], length[is_open], slack[is_open]
+        return excess
+
+    def _begin(self, x: Column, y: Column, z: Column) -> list[Column]:
+        """The offset from the centre, what is left of it, the share of the disc, and of each slide."""
+        x, y, z = x - self.centre[0], y - self.centre[1], z - self.centre[2]
+        nothing = 0.0 * x
+        return [x, y, z, x, y, z, nothing, nothing, nothing, *[nothing] * len(self.slides)]
+
+    def _sweep(self, state: list[Column], how: _Arithmetic) -> tuple[Column, Column]:
+        """Better shares of slides and disc, put into `state`; the distance that is left, and what is proved of it."""
+        least, most, root = how
+        ox, oy, oz, x, y, z, fx, fy, fz, *taken = state
+        for k, ((dx, dy, dz), low, high) in enumerate(self.slides):
+            before = taken[k]
+            taken[k] = share = least(most(before + (x * dx + y * dy + z * dz), low), high)
+            step = share - before
+            x, y, z = x - step * dx, y - step * dy, z - step * dz
+        if self.disc > 0.0:
+            x, y, z = x + fx, y + fy, z + fz
+            fx, fy, fz = self._across(x, y, z)
+            share = least(1.0, self.disc / most(root(fx * fx + fy * fy + fz * fz), TINY_M))
+            fx, fy, fz = fx * share, fy * share, fz * share
+            x, y, z = x - fx, y - fy, z - fz
+        state[:] = [ox, oy, oz, x, y, z, fx, fy, fz, *taken]
+        distance = root(x * x + y * y + z * z)
+        length = most(distance, TINY_M)
+        nx, ny, nz = x / length, y / length, z / length
+        # How far beyond all that can be summed up the offset lies along this direction.
+        bound = ox * nx + oy * ny + oz * nz
+        for (dx, dy, dz), low, high in self.slides:
+            along = nx * dx + ny * dy + nz * dz
+            bound = bound - most(along * low, along * high)
+        return distance, bound - self.disc * root(_square(self._across(nx, ny, nz))) if self.disc > 0.0 else bound
+
+    def _across(self, x: Column, y: Column, z: Column) -> tuple[Column, Column, Column]:
+        """What of a vector lies in the plane of the disc."""
+        ax, ay, az = self.axis
+        along = x * ax + y * ay + z * az
+        return x - along * ax, y - along * ay, z - along * az
+
+
+def _square(vector: Sequence[Column]) -> Column:
+    x, y, z = vector
+    return x * x + y * y + z * z
 
 
 @dataclass(slots=True)
@@ -45,115 +154,85 @@ class _Run:
         ends = parallel * lower, parallel * upper
         self.low, self.high = self.low + min(ends), self.high + max(ends)
         farthest = max(abs(lower), abs(upper))
-        self.across += farthest * float(np.linalg.norm(direction - parallel * self.axis))
-        self.total += farthest * float(np.linalg.norm(direction))
+        self.across += farthest * _norm(direction - parallel * self.axis)
+        self.total += farthest * _norm(direction)
 
     @property
     def length(self) -> float:
-        return float(np.hypot(max(abs(self.low), abs(self.high)), self.across))
+        return math.hypot(max(abs(self.low), abs(self.high)), self.across)
 
 
-def reach_excess_m(robot: Robot, p_world_tool: Floats, lower: Floats, upper: Floats) -> Floats:
-    """Distances in m by which positions [..., 3] are out of reach, or 0 where this bound cannot tell.
+def bound_reach(chain: Chain) -> Reach:
+    """The bound, ready to be asked about positions. Sound for any tree; sharp for the usual ones.
 
-    `lower`, `upper` [N]: the joint ranges that hold, after `freeze`; those of turns do not count. Sound for any tree;
-    sharp for the usual ones.
+    Ranges of turns do not count, but a joint that may not turn at all is part of its link.
     """
-    chain, p_body_tool, _ = chain_to_tool(robot)
-    first = next((i for i, body in enumerate(chain) if _is_revolute(robot, body)), len(chain))
-    lead, rest = chain[:first], chain[first:]
+    links = chain.links
+    first = next((i for i, link in enumerate(links) if link.is_revolute), len(links))
     R, centre, slides = np.eye(3), np.zeros(3), []
-    for body in lead:
-        centre = centre + R @ body.T_parent_body[:3, 3]
-        R = R @ body.T_parent_body[:3, :3]
-        slides.append((R @ body.axis, lower[body.joint], upper[body.joint]))
-    skew = SKEW * sum(float(measure_skew(body.T_parent_body[:3, :3])) for body in chain)
-    askew = skew * sum(max(abs(low), abs(high)) for _, low, high in slides)
-    if not rest:
-        return _bound_distance(p_world_tool - centre - R @ p_body_tool, slides, np.zeros(3), 0.0, askew)
-    centre = centre + R @ rest[0].T_parent_body[:3, 3]
-    axis = R @ rest[0].T_parent_body[:3, :3] @ rest[0].axis
-    runs = _runs(robot, rest, p_body_tool, lower, upper)
-    askew += (2.0 * sum(run.tilt for run in runs) + skew) * sum(run.total for run in runs)
-    ball = sum(run.length for run in runs[1:]) + askew
-    slides.append((axis, runs[0].low, runs[0].high))
-    return _bound_distance(p_world_tool - centre, slides, axis, runs[0].across, ball)
-
-
-def _bound_distance(offset: Floats, slides: list[Slide], axis: Floats, disc: float, ball: float) -> Floats:
-    """At least how far offsets [..., 3] are from all sums of slides, a disc across `axis`, and a ball (radii in m)."""
-    left, taken, flat = np.array(offset), [np.zeros(offset.shape[:-1]) for _ in slides], np.zeros_like(offset)
-    lengths = _length(offset) + disc + ball + sum(max(abs(low), abs(high)) for _, low, high in slides)
-    bound = np.zeros(offset.shape[:-1])
-    for _ in range(SWEEPS):
-        for k, (direction, low, high) in enumerate(slides):
-            left = left + taken[k][..., None] * direction
-            taken[k] = np.clip(left @ direction, low, high)
-            left = left - taken[k][..., None] * direction
-        left = left + flat
-        across = left - (left @ axis)[..., None] * axis
-        flat = across * np.minimum(1.0, disc / np.maximum(_length(across), TINY_M))[..., None]
-        left = left - flat
-        distance = _length(left)
-        bound = _parting_plane(offset, left / np.maximum(distance, TINY_M)[..., None], slides, axis, disc)
-        if np.all(distance - bound <= CONVERGED * lengths):
-            break
-    return np.maximum(0.0, bound - ball - ROUNDING * lengths)
-
-
-def _parting_plane(offset: Floats, normal: Floats, slides: list[Slide], axis: Floats, disc: float) -> Floats:
-    """How far beyond all sums of slides and disc offsets [..., 3] lie along unit vectors `normal` [..., 3], m."""
-    beyond = np.sum(offset * normal, axis=-1)
-    for direction, low, high in slides:
-        along = normal @ direction
-        beyond = beyond - np.maximum(along * low, along * high)
-    return beyond - disc * _length(normal - (normal @ axis)[..., None] * axis)
+    for link in links[:first]:
+        centre = centre + R @ link.p_before_link
+        R = R @ link.R_before_link
+        slides.append(_Slide(as_vector(R @ link.axis), link.lower, link.upper))
+    askew = SKEW * chain.skew * sum(max(abs(slide.low), abs(slide.high)) for slide in slides)
+    if first == len(links):
+        centre, no_disc = as_vector(centre + R @ chain.p_link_tool), {"axis": (0.0, 0.0, 0.0), "disc": 0.0}
+        return Reach(centre=centre, slides=tuple(slides), **no_disc, ball=askew, length=chain.length_m)
+    centre = centre + R @ links[first].p_before_link
+    axis = as_vector(R @ links[first].R_before_link @ links[first].axis)
+    runs = _runs(links[first:], chain.p_link_tool)
+    askew += (2.0 * sum(run.tilt for run in runs) + SKEW * chain.skew) * sum(run.total for run in runs)
+    slides.append(_Slide(axis, runs[0].low, runs[0].high))
+    return Reach(
+        centre=as_vector(centre),
+        slides=tuple(slides),
+        axis=axis,
+        disc=runs[0].across,
+        ball=sum(run.length for run in runs[1:]) + askew,
+        length=chain.length_m,
+    )
 
 
 def arm_length_m(robot: Robot) -> float:
     """Length of the chain from the first joint that turns to the tool, stretched, in m; slides at zero."""
-    chain, p_body_tool, _ = chain_to_tool(robot)
-    first = next((i for i, body in enumerate(chain) if _is_revolute(robot, body)), len(chain))
-    offsets = [body.T_parent_body[:3, 3] for body in chain[first + 1 :]]
-    return float(sum(np.linalg.norm(offset) for offset in [*offsets, p_body_tool]))
+    path, p_body_tool, _ = path_to_tool(robot)
+    first = next((i for i, body in enumerate(path) if turns(robot, body)), len(path))
+    offsets = [body.T_parent_body[:3, 3] for body in path[first + 1 :]]
+    return sum(map(_norm, [*offsets, p_body_tool]))
 
 
-def _length(vectors: Floats) -> Floats:
-    return np.linalg.norm(vectors, axis=-1)
-
-
-def chain_to_tool(robot: Robot) -> tuple[list[Body], Floats, Floats]:
-    """Bodies from the world to the tool, and the tool's place [3] and rotation [3, 3] in the last of them."""
-    tree = build_tree(robot)
-    index = tree.frame_body[robot.tool]
-    chain = []
-    while index != 0:
-        chain.append(tree.bodies[index])
-        index = tree.bodies[index].parent
-    T_body_tool = tree.T_body_frame[robot.tool]
-    return chain[::-1], T_body_tool[:3, 3], T_body_tool[:3, :3]
-
-
-def _is_revolute(robot: Robot, body: Body) -> bool:
-    return body.joint is not None and robot.joints[body.joint].kind != "prismatic"
-
-
-def _runs(robot: Robot, chain: list[Body], p_body_tool: Floats, lower: Floats, upper: Floats) -> list[_Run]:
+def _runs(links: Sequence[Link], p_link_tool: Floats) -> list[_Run]:
     """Runs of the joints from the first revolute one on; axes are compared at q = 0, where parallel means parallel."""
-    R_run_body = np.eye(3)
-    runs = [_Run(axis=chain[0].axis)]
-    for position, body in enumerate(chain):
+    R_run_link = np.eye(3)
+    runs = [_Run(axis=links[0].axis)]
+    for position, link in enumerate(links):
         if position > 0:
-            R_run_body = R_run_body @ body.T_parent_body[:3, :3]
-            axis = R_run_body @ body.axis
-            apart = float(np.linalg.norm(np.cross(axis, runs[-1].axis)))
-            if not _is_revolute(robot, body):
-                runs[-1].slide(axis, float(lower[body.joint]), float(upper[body.joint]))
+            R_run_link = R_run_link @ link.R_before_link
+            axis = R_run_link @ link.axis
+            apart = _sine(axis, runs[-1].axis)
+            if not link.is_revolute:
+                runs[-1].slide(axis, link.lower, link.upper)
             elif apart <= PARALLEL:
                 runs[-1].tilt += apart
             else:
-                runs.append(_Run(axis=body.axis))
-                R_run_body = np.eye(3)
-        following = chain[position + 1].T_parent_body[:3, 3] if position + 1 < len(chain) else p_body_tool
-        runs[-1].add(R_run_body @ following)
+                runs.append(_Run(axis=link.axis))
+                R_run_link = np.eye(3)
+        following = links[position + 1].p_before_link if position + 1 < len(links) else p_link_tool
+        runs[-1].add(R_run_link @ following)
     return runs
+
+
+def as_vector(vector: Floats) -> Vector:
+    """An array [3] as floats, which count faster one by one."""
+    x, y, z = vector.tolist()
+    return x, y, z
+
+
+def _norm(vector: Floats) -> float:
+    return math.sqrt(_square(vector.tolist()))
+
+
+def _sine(a: Floats, b: Floats) -> float:
+    """Of the angle between vectors [3] of length 1."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return math.sqrt(_square((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)))

@@ -21,7 +21,8 @@ TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
 
 def preview_json(preview: Preview) -> dict[str, Any]:
     """What would run, as plain data."""
-    return asdict(preview) | {"columns": list(preview.columns), "seconds": preview.seconds}
+    sums = {"seconds": preview.seconds, "compile_seconds": preview.compile_seconds}
+    return asdict(preview) | {"columns": list(preview.columns), **sums}
 
 
 def format_preview(preview: Preview, *, color: bool = False) -> str:
@@ -42,14 +43,24 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
             format_seconds(arm.seconds),
             f"{arm.sample_reached} / {arm.sample}",
         )
+    loading = sum(arm.load_seconds for arm in preview.arms)
     lines = [
         f"in all     {preview.solves:,} solves in {count_of(preview.parts, 'part')}, about "
-        f"{format_seconds(preview.seconds)} on {count_of(preview.threads, 'thread')}",
+        f"{format_seconds(preview.seconds)} on {count_of(preview.threads, 'thread')}, "
+        f"{format_seconds(loading)} of it to load kernels and seeds",
+        f"compiling  {_tell_compiling(preview)}",
         f"on disk    about {decimal(preview.bytes)}",
         f"columns    {', '.join(preview.columns)}",
         "nothing was written",
     ]
     return render(head, table, *map(plain, lines), color=color, width=WIDTH)
+
+
+def _tell_compiling(preview: Preview) -> str:
+    if not preview.compile_seconds:
+        return "nothing: all that the sample needed was compiled already"
+    again = "will be done once more" if preview.compiles_again else "is done: the run need not do it again"
+    return f"took {format_seconds(preview.compile_seconds)}, is not counted above, and {again}"
 
 
 def run_json(summary: RunSummary) -> dict[str, Any]:

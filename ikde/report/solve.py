@@ -1,6 +1,7 @@
 """A solve's result as text and as JSON."""
 
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -8,12 +9,22 @@ import numpy as np
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
 from ikde.report.geometry import joints_json
-from ikde.report.numbers import Units, format_fixed, seconds
+from ikde.report.numbers import Units, count_of, format_fixed, seconds
 from ikde.report.render import make_table, plain, render
-from ikde.solver.engine_table import ENGINES
+from ikde.solver.engine_table import label_engine
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
+TIMES = ("solve_seconds", "compile_seconds")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spent:
+    """What several solutions took together: they are chosen from many solves, of which each has little to say."""
+
+    solve_seconds: float
+    """Wall time of all that was solved, with loading and grading, without compiling."""
+    compile_seconds: float
 
 
 def solve_json(robot: Robot, result: SolveResult, convention: str | None = None) -> dict[str, Any]:
@@ -46,15 +57,48 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
     }
 
 
-def format_solve(
-    robot: Robot, result: SolveResult, units: Units, *, convention: str | None = None, color: bool = False
+def solutions_json(
+    robot: Robot, results: Sequence[SolveResult], spent: Spent, convention: str | None = None
+) -> dict[str, Any]:
+    """Several solutions as plain data: the first, with what all took together, and all of them, without times."""
+    rows = [solve_json(robot, result, convention) for result in results]
+    return {**rows[0], **asdict(spent), "solutions": [{k: v for k, v in row.items() if k not in TIMES} for row in rows]}
+
+
+def format_solutions(
+    robot: Robot,
+    results: Sequence[SolveResult],
+    units: Units,
+    spent: Spent,
+    *,
+    convention: str | None = None,
+    color: bool = False,
 ) -> str:
-    """A result for the terminal: the verdict, the joints within their ranges, the graded figures, the cost."""
+    """Several solutions for the terminal, one below the other, and what they took together."""
+    pages = [format_solve(robot, result, units, convention=convention, color=color, timed=False) for result in results]
+    numbered = [f"solution {number} of {len(results)}\n{page}" for number, page in enumerate(pages, 1)]
+    compiled = f", after {seconds(spent.compile_seconds)} of compiling" if spent.compile_seconds else ""
+    return "\n\n".join([*numbered, f"together {seconds(spent.solve_seconds)}, with loading and grading{compiled}"])
+
+
+def format_solve(
+    robot: Robot,
+    result: SolveResult,
+    units: Units,
+    *,
+    convention: str | None = None,
+    color: bool = False,
+    timed: bool = True,
+) -> str:
+    """A result for the terminal: the verdict, the joints within their ranges, the graded figures, the cost.
+
+    `timed`: with the seconds that it took.
+    """
     mark, style = ("reached", "bold green") if result.reached else ("not reached", "bold red")
     lines = [f"[{style}]{mark}[/]: {plain(result.reason)}"]
     if result.hint:
         lines.append(f"[yellow]what would help[/]: {plain(result.hint)}")
-    tables = _joint_table(robot, result, units, convention), _grade_table(result, units)
+    tables = _joint_table(robot, result, units, convention), _grade_table(result, units, timed)
     return render(*lines, *tables, color=color)
 
 
@@ -87,7 +131,7 @@ GRADERS = {
 COLLISIONS = {True: "yes", False: "no", None: "not checked"}
 
 
-def _grade_table(result: SolveResult, units: Units) -> Any:
+def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     table = make_table("graded", GRADERS[result.verified])
     table.add_row("position error", units.format_error(result.position_error_m))
     asked = result.target.kind != "position"
@@ -100,11 +144,12 @@ def _grade_table(result: SolveResult, units: Units) -> Any:
     table.add_row("self-collision", COLLISIONS[result.collision])
     table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
-    attempts = f"{result.attempts} attempt{'s' if result.attempts != 1 else ''}{rejected}"
-    table.add_row("cost", f"{seconds(result.solve_seconds)}, {result.evaluations} evaluations in {attempts}")
-    if result.compile_seconds:
+    attempts = f"{count_of(result.attempts, 'attempt')}{rejected}"
+    took = f"{seconds(result.solve_seconds)}, " if timed else ""
+    table.add_row("cost", f"{took}{count_of(result.evaluations, 'evaluation')} in {attempts}")
+    if result.compile_seconds and timed:
         table.add_row("compiled first", f"{result.compile_seconds:.1f} s")
-    table.add_row("engine", ENGINES[result.method].label.format(de=result.settings.evolution))
+    table.add_row("engine", label_engine(result.method).format(de=result.settings.evolution))
     if result.family:
         table.add_row("family", f"{result.family} (shoulder, elbow, wrist)")
     table.add_row("repeat with", f"the same command, seed {result.seed}: the same bits")

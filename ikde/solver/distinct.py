@@ -71,7 +71,7 @@ def solve_distinct(
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
     options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
     first = confirm(robot, solve(robot, target, chosen, seed=seed, collision=collision, near=near, freeze=freeze))
-    if not first.reached or count == 1:
+    if not first.reached or count == 1 or problem.is_fixed:
         return [first]
     look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(problem, target, count, first, options)

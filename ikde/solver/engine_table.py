@@ -85,8 +85,15 @@ ENGINES: Mapping[str, EngineRow] = {
     ),
 }
 """In the order of their numbers in `SearchState.engine`."""
-NAMES = tuple(ENGINES)
+NO_ENGINE = "none"
+"""Stands for an engine where no joint may move: there is one configuration, and it is graded."""
+NAMES = (*ENGINES, NO_ENGINE)
 SEVERAL = 1 + max(row.one_by_one for row in ENGINES.values())
 """Targets: as many are solved side by side."""
 AUTO = ("lm", "analytic", "memetic")
 """What `auto` tries, in this order, of those that fit; each takes over what the one before leaves."""
+
+
+def label_engine(name: str) -> str:
+    """What a result says of the engine that answered; `{de}` stands for the settings of the DE."""
+    return ENGINES[name].label if name in ENGINES else "none: no joint may move"

@@ -10,9 +10,9 @@ from ikde.model.target import Target
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
+from ikde.solver.fixed import tell_fixed
 from ikde.solver.hints import (
     Probe,
-    excess_of_bounds,
     hint_at_bounds,
     hint_at_stream,
     hint_at_tolerance,
@@ -22,6 +22,7 @@ from ikde.solver.hints import (
 )
 from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
+from ikde.solver.proof import prove
 from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.touching import find_always_touching
@@ -54,20 +55,17 @@ class _Met:
     blocking: Mapping[tuple[str, str], int]
 
 
-def stop_from_counts(found: SearchState, timeout_s: float | None) -> Ints:
+def stop_from_counts(problem: Problem, found: SearchState) -> Ints:
     """What the counts of the search alone tell, at no cost: index [T] into `STOP_REASONS` of rows not reached."""
+    timeout_s = None if problem.is_fixed else problem.settings.timeout_s
     stops = np.where(found.counts[:, COLLIDING] > 0, _COLLISION, _BUDGET)
     if timeout_s is not None:
         stops[found.seconds >= timeout_s] = _TIMED_OUT
-    return np.where(found.excess_m > 0.0, _OUT_OF_REACH, stops)
+    return np.where(found.is_excluded(), _OUT_OF_REACH, stops)
 
 
-def reason_from_counts(
-    stop: StopReason, excess_m: float, attempts: int, colliding: int, timeout_s: float | None
-) -> str:
-    """One line that says it."""
-    if stop is StopReason.OUT_OF_REACH:
-        return _out_of_reach(excess_m)
+def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_s: float | None) -> str:
+    """One line that says it, of what is not proved to be out of reach."""
     if stop is StopReason.COLLISION:
         return f"only colliding solutions found, {colliding} of them"
     if stop is StopReason.TIMED_OUT:
@@ -80,11 +78,12 @@ def explain(
     problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
 ) -> Explanation:
     """Explain an unreached target from its counts, proved bounds, and short searches that change one thing."""
-    proof = _prove(problem, target)
-    if proof is not None:
-        return proof
+    if problem.is_fixed:
+        return _explain_fixed(problem, target, found, graded)
+    if prove(problem, target) != (0.0, 0.0):
+        return explain_reach(problem, target)
     met, timeout_s = _read_counts(problem, found), problem.settings.timeout_s
-    if stop_from_counts(found, timeout_s)[0] == _TIMED_OUT:
+    if stop_from_counts(problem, found)[0] == _TIMED_OUT:
         return _timed_out(found, graded, timeout_s, met.blocking)
     probe = Probe(target, seed, stream, float(found.seconds[0]))
     met, hint = _look_closer(problem, probe, met)
@@ -92,6 +91,37 @@ def explain(
     if hint:
         return _spent(found, graded, hint)
     return _never_free(problem, met, graded) or _explain_by_remedies(problem, target, probe, met, found, graded)
+
+
+def _explain_fixed(problem: Problem, target: Target, found: SearchState, graded: Grade) -> Explanation:
+    """Where no joint may move all is known: no search, but bounds for joints that would be free."""
+    stop = STOP_REASONS[stop_from_counts(problem, found)[0]]
+    if stop is StopReason.BUDGET:  # met by the last digit, which the graders see differently
+        return _spent(found, graded, None)
+    pair = graded.closest_pair if graded.collision else None
+    return Explanation(
+        stop_reason=stop,
+        reason=tell_fixed(float(found.excess_m[0]), float(found.excess_rad[0]), pair),
+        hint=hint_at_bounds(problem, target) if prove(problem, target) != (0.0, 0.0) else None,
+        blocking_pairs=_read_counts(problem, found).blocking,
+    )
+
+
+def explain_reach(problem: Problem, target: Target) -> Explanation:
+    """Why a target is out of reach that a bound has excluded: no search, but bounds for wider ranges."""
+    return Explanation(
+        stop_reason=StopReason.OUT_OF_REACH,
+        reason=tell_out_of_reach(*prove(problem, target)),
+        hint=hint_at_bounds(problem, target),
+        blocking_pairs={},
+    )
+
+
+def tell_out_of_reach(far_m: float, off_rad: float) -> str:
+    """One line for what `prove` has found."""
+    words = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
+    words += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
+    return f"out of reach: at least {' and '.join(words)}, whatever the joints do"
 
 
 def _explain_by_remedies(
@@ -123,28 +153,6 @@ def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | Non
     )
 
 
-def explain_reach(problem: Problem, target: Target) -> Explanation:
-    """Why a target is out of reach that a bound has excluded."""
-    proof = _prove(problem, target)
-    assert proof is not None
-    return proof
-
-
-def _prove(problem: Problem, target: Target) -> Explanation | None:
-    """That no joint values bring the tool there, if bounds say so."""
-    far_m, off_rad = excess_of_bounds(problem, target, problem.lower, problem.upper)
-    if far_m == 0.0 and off_rad == 0.0:
-        return None
-    reason, hint = _out_of_reach(far_m, off_rad), hint_at_bounds(problem, target)
-    return Explanation(stop_reason=StopReason.OUT_OF_REACH, reason=reason, hint=hint, blocking_pairs={})
-
-
-def _out_of_reach(far_m: float, off_rad: float = 0.0) -> str:
-    words = [f"{at_least(far_m)} m too far"] if far_m > 0.0 else []
-    words += [f"{at_least(off_rad)} rad off in orientation"] if off_rad > 0.0 else []
-    return f"out of reach: at least {' and '.join(words)}, whatever the joints do"
-
-
 def _colliding(met: _Met, remedy: str | None) -> Explanation:
     worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
     collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
@@ -165,7 +173,7 @@ def _timed_out(
     found: SearchState, graded: Grade, timeout_s: float | None, blocking: Mapping[tuple[str, str], int]
 ) -> Explanation:
     attempts, colliding = found.counts[0, [ATTEMPTS, COLLIDING]].tolist()
-    reason = reason_from_counts(StopReason.TIMED_OUT, 0.0, attempts, colliding, timeout_s)
+    reason = reason_from_counts(StopReason.TIMED_OUT, attempts, colliding, timeout_s)
     return Explanation(
         stop_reason=StopReason.TIMED_OUT, reason=f"{reason}; {_best(graded)}", hint=MORE_TIME, blocking_pairs=blocking
     )

@@ -124,7 +124,7 @@ def _disagreement(gap: float, q: Floats) -> VerificationError:
 def _stop_reasons(
     problem: Problem, found: SearchState, reached: Bools, explanations: Mapping[int, Explanation]
 ) -> Ints:
-    unreached = stop_from_counts(found, problem.settings.timeout_s)
+    unreached = stop_from_counts(problem, found)
     codes = np.where(reached, STOP_REASONS.index(StopReason.REACHED), unreached)
     for row, story in explanations.items():
         codes[row] = STOP_REASONS.index(story.stop_reason)

@@ -6,20 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikde.kernels.arrays import REACHED, Floats
-from ikde.model.orientation_reach import orientation_excess_rad
-from ikde.model.reach import reach_excess_m
-from ikde.model.robot import MAX_MAGNITUDE
+from ikde.model.bounds import find_bounds
+from ikde.model.robot import MAX_MAGNITUDE, Joint
 from ikde.model.target import Target
 from ikde.solver.digits import round_up
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.problem import Problem
+from ikde.solver.proof import prove
 from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Grade, verify_many
 
 WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
+
+TOOL_AXES = {(1.0, 0.0, 0.0): "x axis", (0.0, 1.0, 0.0): "y axis", (0.0, 0.0, 1.0): "z axis"}
 
 Names = Sequence[str]
 """Of joints."""
@@ -54,23 +56,12 @@ def meets(problem: Problem, target: Target, q: Floats) -> bool:
     return is_inside and graded.within_tolerance and not graded.colliding_pairs
 
 
-def excess_of_bounds(problem: Problem, target: Target, lower: Floats, upper: Floats) -> tuple[float, float]:
-    """By how much bounds prove a target to be out of reach inside ranges [N], m and rad; 0 within the tolerances."""
-    far_m = float(reach_excess_m(problem.robot, target.p_world_tool, lower, upper))
-    off_rad = orientation_excess_rad(problem.robot, target, lower, upper)
-    settings = problem.settings
-    return far_m * (far_m > settings.position_tolerance_m), off_rad * (off_rad > settings.orientation_tolerance_rad)
-
-
 def hint_at_bounds(problem: Problem, target: Target) -> str:
     """What opens the bounds that exclude a target, or that nothing does."""
-    frozen, slides = problem.frozen, [joint.name for joint in problem.robot.joints if joint.kind == "prismatic"]
-
-    def excess(freed: Names, widened: Names) -> tuple[float, float]:
-        return excess_of_bounds(problem, target, *_open_ranges(problem, freed, widened))
+    frozen, slides = problem.frozen, [joint.name for joint in problem.robot.joints if _limits_bounds(joint)]
 
     def is_open(freed: Names, widened: Names) -> bool:
-        return excess(freed, widened) == (0.0, 0.0)
+        return prove(problem.with_ranges(*_open_ranges(problem, freed, widened)), target) == (0.0, 0.0)
 
     ways = [f"free {_name(freed)}" for freed in _find_fewest(frozen, lambda names: is_open(names, ()))]
     if not ways:
@@ -81,9 +72,11 @@ def hint_at_bounds(problem: Problem, target: Target) -> str:
             ways.append(f"free {_name(freed)} and a larger range for {_name(wide)}")
     if ways:
         return f"{', or '.join(ways)}: then the bound no longer excludes the target"
-    far_m, off_rad = excess(frozen, slides)
-    asked = " and ".join(["a target closer to the robot"] * (far_m > 0.0) + ["another orientation"] * (off_rad > 0.0))
-    return f"{asked}; no joint range brings the tool there"
+    widest = problem.with_ranges(*_open_ranges(problem, frozen, slides))
+    far_m, off_rad = prove(widest, target)
+    asked = ["a target closer to the robot"] if far_m > 0.0 else []
+    asked += [f"another orientation ({_name_cone(widest, target)})"] if off_rad > 0.0 else []
+    return f"{' and '.join(asked)}; no joint range brings the tool there"
 
 
 def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Grade) -> str | None:
@@ -138,6 +131,11 @@ def try_widening(problem: Problem, probe: Probe) -> str | None:
     return f"a wider range for {', '.join(names)}: a solution was found beyond the limits"
 
 
+def _limits_bounds(joint: Joint) -> bool:
+    """Whether a wider range may open a bound: the range of a turn does not count, unless it is a point."""
+    return joint.kind == "prismatic" or joint.lower == joint.upper
+
+
 def _open_ranges(problem: Problem, freed: Names, widened: Names) -> tuple[Floats, Floats]:
     """The ranges with some frozen joints free, and some of the joints that may move as wide as can be."""
     robot, is_free = problem.robot, np.isin(problem.robot.joint_names, freed)
@@ -153,6 +151,18 @@ def _widen(problem: Problem) -> tuple[Floats, Floats]:
     lower = np.where(slides, np.maximum(problem.lower - grow, -MAX_MAGNITUDE), np.minimum(problem.lower, -np.pi))
     upper = np.where(slides, np.minimum(problem.upper + grow, MAX_MAGNITUDE), np.maximum(problem.upper, np.pi))
     return np.where(is_frozen, problem.lower, lower), np.where(is_frozen, problem.upper, upper)
+
+
+def _name_cone(problem: Problem, target: Target) -> str:
+    """What the joints keep, however they turn, and the target asks for otherwise."""
+    cone = find_bounds(problem.robot, problem.lower, problem.upper).turning.find_worst(target)
+    direction = TOOL_AXES.get(cone.tool, f"direction {_numbers(cone.tool)}")
+    angles = " to ".join(dict.fromkeys(f"{angle:.3f}" for angle in (cone.low, cone.high)))
+    return f"the tool's {direction} stays {angles} rad from {_numbers(cone.world)} of the world"
+
+
+def _numbers(vector: Sequence[float]) -> str:
+    return " ".join(f"{value + 0.0:.3g}" for value in np.round(vector, 6).tolist())  # no -0
 
 
 def _find_fewest(names: Names, helps: Callable[[Names], bool]) -> list[Names]:

@@ -67,6 +67,11 @@ class Problem:
         lower, upper = np.maximum(self.lower, robot.lower), np.minimum(self.upper, robot.upper)
         return lower, upper, ~robot.is_prismatic, self.centre
 
+    @property
+    def is_fixed(self) -> bool:
+        """Whether no joint may move."""
+        return bool((self.lower == self.upper).all())
+
     def with_ranges(self, lower: Floats, upper: Floats) -> "Problem":
         """The same question with other joint ranges and nothing frozen."""
         return replace(self, lower=lower, upper=upper, frozen=())

@@ -12,7 +12,6 @@ from ikde.kernels.answer import FIRST_COUNT, METRICS, size_of
 from ikde.kernels.arrays import REACHED
 from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES
@@ -20,6 +19,7 @@ from ikde.solver.engines.lm import prepare_answer
 from ikde.solver.engines.pool import runs_on_tables
 from ikde.solver.explain import explain_reach
 from ikde.solver.problem import make_problem
+from ikde.solver.proof import prove
 from ikde.solver.result import ResultMaker, SolveResult, StopReason
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings, choose_settings
@@ -56,7 +56,7 @@ class Quick:
             return self._results.make(row, target, seed, stream, time.perf_counter() - started)
         if row.view(np.int64)[self._reached]:
             return None
-        if self._is_out_of_reach(target):
+        if prove(self._problem, target) != (0.0, 0.0):
             made = self._results.make(row, target, seed, stream, time.perf_counter() - started)
             return made.with_changes(**OUT_OF_REACH)
         if self._all > self._few and self._answer(target.T_world_tool, word, stream, self._few, self._all, row):
@@ -71,11 +71,6 @@ class Quick:
         result = self.solve(target, seed, stream, time.perf_counter())
         return result and result.with_changes(compile_seconds=clock.seconds)
 
-    def _is_out_of_reach(self, target: Target) -> bool:
-        problem = self._problem
-        excess = reach_excess_m(problem.robot, target.p_world_tool, problem.lower, problem.upper)
-        return bool(excess > problem.settings.position_tolerance_m)
-
 
 @lru_cache(maxsize=64)
 def find_quick(
@@ -87,6 +82,7 @@ def find_quick(
     """
     chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
     engines = choose_engines(robot, chosen, {kind})
-    if engines[0] != ENGINE or runs_on_tables():
+    may_move = bool((robot.lower < robot.upper).any())
+    if engines[0] != ENGINE or runs_on_tables() or not may_move:
         return None
     return Quick(collision, chosen, kind, is_last=len(engines) == 1)

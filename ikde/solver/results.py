@@ -11,7 +11,8 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
-from ikde.solver.explain import Explanation, reason_from_counts
+from ikde.solver.explain import Explanation, reason_from_counts, tell_out_of_reach
+from ikde.solver.fixed import tell_fixed
 from ikde.solver.grade import Outcomes, grade
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, count_blocking_pairs, reached_reason
@@ -122,9 +123,14 @@ class SolveResults:
         stop = STOP_REASONS[self.stop_reasons[index]]
         if stop is StopReason.REACHED:
             return reached_reason(self.problem.collision)
-        excess_m = float(self.found.excess_m[index])
+        excess = float(self.found.excess_m[index]), float(self.found.excess_rad[index])
+        if self.problem.is_fixed and stop is not StopReason.BUDGET:
+            closest = self.problem.collision.pairs[self.closest_pair[index]] if self.collision[index] else None
+            return tell_fixed(*excess, closest)
+        if stop is StopReason.OUT_OF_REACH:
+            return tell_out_of_reach(*excess)
         counts = int(self.attempts[index]), int(self.rejected[index])
-        return reason_from_counts(stop, excess_m, *counts, self.problem.settings.timeout_s)
+        return reason_from_counts(stop, *counts, self.problem.settings.timeout_s)
 
     def explanation(self, index: int) -> Explanation:
         """Why, and what would help: of a row that was not explained what its counts say, made now."""

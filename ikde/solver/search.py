@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 
 from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
 from ikde.model.closed_form import find_ur_arm
-from ikde.model.reach import reach_excess_m
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.cancellation import get_cancel_check
 from ikde.solver.engine_table import AUTO, ENGINES, NAMES
 from ikde.solver.engines.engine import Engine, SearchInputs
 from ikde.solver.engines.search_state import SearchState, make_search_state
+from ikde.solver.fixed import look
 from ikde.solver.problem import Problem
+from ikde.solver.proof import prove_many
 from ikde.solver.referee import Referee
 from ikde.solver.settings import SolveSettings
 
@@ -49,13 +50,16 @@ def search(
     """
     targets = Targets.of(targets)
     found = make_search_state(problem, len(targets))
+    if problem.is_fixed:
+        look(problem, targets, found)
+        return found
     referee = Referee(problem, targets, found)
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
     inputs = SearchInputs(problem, targets, found, seed=seed, streams=streams)
     plan = _plan(problem, inputs, attempts)
     found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
     for name, budget in plan:
-        rows = np.flatnonzero((found.counts[:, REACHED] == 0) & (found.excess_m == 0.0) & (found.seconds < left_s))
+        rows = np.flatnonzero((found.counts[:, REACHED] == 0) & ~found.is_excluded() & (found.seconds < left_s))
         if not len(rows):
             break
         before, spent = found.score[rows].copy(), found.counts[:, ATTEMPTS] - first_attempt
@@ -63,7 +67,7 @@ def search(
         few = min(ENGINES[name].attempts_before_proof, budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         if attempts is None:
-            _prove(problem, targets, found)
+            _exclude(problem, targets, found)
         lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
         _go_on(lanes, referee, found, spent, first_attempt + budget)
         found.engine[rows[(found.score[rows] != before).any(axis=1)]] = NAMES.index(name)
@@ -118,12 +122,11 @@ def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[
     return [(name, budget(name)) for name in names]
 
 
-def _prove(problem: Problem, targets: Targets, found: SearchState) -> None:
+def _exclude(problem: Problem, targets: Targets, found: SearchState) -> None:
     """Find out which of the unreached targets are out of reach."""
     rows = np.flatnonzero(found.counts[:, REACHED] == 0)
     if len(rows):
-        excess = reach_excess_m(problem.robot, targets.p_world_tool[rows], problem.lower, problem.upper)
-        found.excess_m[rows] = np.where(excess > problem.settings.position_tolerance_m, excess, 0.0)
+        found.excess_m[rows], found.excess_rad[rows] = prove_many(problem, targets.take(rows))
 
 
 class _Lanes:
@@ -140,7 +143,7 @@ class _Lanes:
     def run(self, first: int, last: Ints) -> None:
         """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet."""
         stop, check_cancelled, reached = threading.Event(), get_cancel_check(), self._found.counts[:, REACHED]
-        open_rows = (reached == 0) & (self._found.excess_m == 0.0) & (last > first)
+        open_rows = (reached == 0) & ~self._found.is_excluded() & (last > first)
         last = np.where(open_rows, last, first)
         pieces = _cut(open_rows, self._engine.rows_per_call)
 

@@ -9,8 +9,8 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.kernels.tracking import REACHED, track_sample
 from ikde.model.base_motion import wheel_speeds
+from ikde.model.bounds import find_bounds
 from ikde.model.pack import pack_robot
-from ikde.model.reach import reach_excess_m
 from ikde.model.robot import MAX_MAGNITUDE
 from ikde.solver.digits import at_least
 from ikde.solver.plain import compute_gaps
@@ -35,7 +35,7 @@ Finding = tuple[Floats, Floats]
 
 def first_out_of_reach(follower: Follower, lower: Floats, upper: Floats) -> tuple[int, float] | None:
     """The first sample that is proved to be out of reach of the ranges [N], and by how many m; None if none is."""
-    excess = reach_excess_m(follower.robot, follower.path.p_world_tool, lower, upper)
+    excess = find_bounds(follower.robot, lower, upper).reach.excess_of_many_m(follower.path.p_world_tool)
     beyond = np.flatnonzero(excess > np.sqrt(3.0) * follower.plan.limits.position_error_m)  # which is allowed per axis
     return (int(beyond[0]), float(excess[beyond[0]])) if len(beyond) else None
 

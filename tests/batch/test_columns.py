@@ -15,6 +15,8 @@ from ikde.model.rotation import rotation_from_quat_wxyz
 from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions
 from tests.batch.small import FAR, ROBOT, make_arm
+from tests.problems import problem_of
+from tests.scara import make_scara
 
 NUMBERS = np.arange(5, 9)  # targets 2, 3, 3, 4 of two repeats each
 POSE = rotation_from_quat_wxyz(np.array([0.5, 0.5, -0.5, 0.5]))
@@ -88,6 +90,16 @@ def test_each_grader_adds_its_columns(rows):
         assert row["typical_collides"] == seen.collision
         nearest = [pair for pair in seen.pairs if pair.clearance_m <= seen.pairs[0].clearance_m + 1e-11]  # may be two
         assert (row["typical_pair_a"], row["typical_pair_b"]) in [(pair.a, pair.b) for pair in nearest]
+
+
+def test_reasons_that_are_not_looked_into_tell_angles_apart():
+    """What is off by another angle has another reason, also where all that was counted is the same."""
+    problem = problem_of(make_scara(), ikde.SolveSettings(restarts=1))
+    targets = [ikde.Target((0.74, 0.1, 0.0), axis_world_tool=(np.sin(a), 0.0, -np.cos(a))) for a in (0.2, 0.3, 0.2)]
+    rows = solve_rows(problem, targets, BulkOptions(explain=False), seed=1)
+    table = tabulate(rows, numbers=np.arange(3), repeats=1, names=None).to_pydict()
+    told = [f"out of reach: at least 0.{off} rad off in orientation, whatever the joints do" for off in (199, 299, 199)]
+    assert table["reason"] == [row.reason for row in rows] == told
 
 
 def read_back(table):

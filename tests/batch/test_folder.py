@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from ikde.batch import folder as module
-from ikde.batch.folder import LOCK, claim_folder, keep_names
+from ikde.batch.folder import LOCK, check_folder, claim_folder, keep_names
 from ikde.batch.manifest import MANIFEST, read_manifest, write_manifest
 from ikde.errors import FileError
 from ikde.formats.atomic import sync_folder, temporary_path
@@ -25,6 +25,29 @@ time.sleep(60)
 def claim(folder, overwrite=False, **changes):
     with claim_folder(folder, make_batch(**changes), overwrite=overwrite):
         pass
+
+
+def claims_and_checks(folder, overwrite=False, **changes):
+    """What claiming a folder says, which checking must have said before, leaving everything as it is."""
+    before = snapshot(folder)
+    said = []
+    for look in (check_folder, None):
+        try:
+            if look:
+                look(folder, make_batch(**changes), overwrite=overwrite)
+                assert snapshot(folder) == before
+            else:
+                claim(folder, overwrite, **changes)
+            said.append(None)
+        except FileError as error:
+            said.append(str(error))
+    assert said[0] == said[1]
+    return said[0]
+
+
+def snapshot(folder):
+    """All that lies there, and next to it."""
+    return {path: path.read_bytes() if path.is_file() else None for path in folder.parent.rglob("*")}
 
 
 @pytest.fixture
@@ -69,6 +92,33 @@ def test_a_run_of_another_recipe_is_refused_with_the_difference(run):
     with pytest.raises(FileError, match=r"holds another run \(--overwrite replaces it\): seed: 7 there, 8 now$"):
         claim(run, seed=8)
     assert (run / "solutions" / "auto-00000.parquet").exists()
+
+
+def test_checking_a_folder_says_what_claiming_it_says_and_changes_nothing(run, tmp_path):
+    assert claims_and_checks(run) is None
+    assert "holds another run" in claims_and_checks(run, seed=8)
+    assert claims_and_checks(tmp_path / "new" / "deeper") is None
+    (tmp_path / "file").touch()
+    for place in ("file", "file/below", "file/below/deeper"):
+        assert "is a file or lies below one" in claims_and_checks(tmp_path / place)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "notes.txt").write_text("mine")
+    assert "is not empty and holds no run of ikde" in claims_and_checks(tmp_path / "other")
+    linked = run / "report"
+    linked.rmdir()
+    linked.symlink_to(tmp_path / "other")
+    assert "is a symbolic link" in claims_and_checks(run)
+    linked.unlink()
+    manifest = run / MANIFEST
+    manifest.write_text(manifest.read_text().replace("ikde batch 3", "ikde batch 2"))
+    for overwrite in (False, True):
+        assert "holds a run of an earlier ikde" in claims_and_checks(run, overwrite=overwrite)
+
+
+def test_a_run_that_would_be_replaced_is_no_error_and_still_there_after_a_check(run):
+    check_folder(run, make_batch(seed=8), overwrite=True)
+    assert (run / "solutions" / "auto-00000.parquet").exists()
+    assert read_manifest(run).seed == 7
 
 
 @pytest.mark.parametrize("seed", [7, 8])

@@ -9,6 +9,8 @@ import time
 import pytest
 
 import ikde
+from ikde.batch.preview import preview_batch
+from tests.substitutes import never
 
 SPEC = """
 robot: qiao2021
@@ -95,6 +97,33 @@ def test_a_dry_run_writes_nothing(cli, spec, tmp_path, monkeypatch):
     assert "nothing was written" in text.out
     assert (data["solves"], data["parts"]) == (6, 2)
     assert not out.exists()
+
+
+def test_a_dry_run_tells_compiling_apart(cli, spec, monkeypatch):
+    monkeypatch.setattr("ikde.batch.preview.SAMPLE_SECONDS", 0.1)
+    data = cli("batch", spec, "--dry-run", "--json").data
+    assert data["compile_seconds"] == sum(arm["compile_seconds"] for arm in data["arms"])
+    assert data["seconds"] == sum(arm["seconds"] + arm["load_seconds"] for arm in data["arms"])
+    again = cli("batch", spec, "--dry-run")
+    assert "compiling  nothing: all that the sample needed was compiled already\n" in again.out
+    assert "of it to load kernels and seeds\n" in again.out
+
+
+def test_a_dry_run_refuses_a_folder_as_the_run_would(cli, spec, tmp_path, substitute):
+    out = tmp_path / "run"
+    cli("batch", spec, "--out", out)
+    spec.write_text(SPEC + "seed: 8\n")
+    refused = cli("batch", spec, "--out", out)
+    substitute(preview_batch, never)
+    dry = cli("batch", spec, "--out", out, "--dry-run")
+    assert (dry.code, dry.out, dry.err) == (2, "", refused.err)
+    assert dry.err.count("\n") == 1
+    manifest = out / "manifest.json"
+    manifest.write_text(manifest.read_text().replace("ikde batch 3", "ikde batch 1"))
+    for options in ((), ("--overwrite",)):
+        dry = cli("batch", spec, "--out", out, "--dry-run", *options)
+        assert (dry.code, dry.err) == (2, cli("batch", spec, "--out", out, *options).err)
+        assert "holds a run of an earlier ikde ('ikde batch 1'" in dry.err
 
 
 def test_a_dry_run_leaves_the_cluster_alone_and_says_so(cli, spec, monkeypatch):

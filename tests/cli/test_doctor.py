@@ -1,9 +1,12 @@
 """`ikde doctor`."""
 
+import re
 from types import SimpleNamespace
 
+import pytest
+
 from ikde import __version__
-from ikde.cli.doctor import PACKAGES, describe_machine
+from ikde.cli.doctor import PACKAGES, describe_machine, judge
 
 FACTS = {
     "ikde",
@@ -35,7 +38,25 @@ def test_text_names_every_fact(cli):
     outcome = cli("doctor")
     assert outcome.code == 0
     for name in FACTS:
-        assert name.replace("_", " ") in outcome.out
+        assert f"\n {name.removesuffix('_seconds').replace('_', ' ')} " in outcome.out
+    assert outcome.out.splitlines()[-1].startswith("all well: what this solve needs was compiled before, and the next")
+    assert re.search(r"^ solve +[\d.]+ [µm]s$", outcome.out, re.MULTILINE)
+
+
+WELL = {"solve_reached": True, "cache_is_writable": True, "compile_seconds": 0.0, "solve_seconds": 2.3e-5}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "all well: what this solve needs was compiled before, and the next one takes 23.0 µs"),
+        ({"compile_seconds": 8.0}, "all well: what this solve needs is compiled now, and need not be again, and"),
+        ({"cache_is_writable": False}, "works, but the cache folder cannot be used: every process compiles anew"),
+        ({"solve_reached": False, "cache_is_writable": False}, "not well: "),
+    ],
+)
+def test_the_last_line_is_a_verdict(changes, words):
+    assert judge(WELL | changes).startswith(words)
 
 
 def test_the_times_are_told_apart(monkeypatch):

@@ -193,8 +193,8 @@ def test_settings_of_the_de_are_read_by_their_kind():
     [
         ("populaton=8", "--de: unknown key 'populaton' (did you mean 'population'?); expected strategy, population, "),
         ("best/1", "--de: unknown key 'best/1'; expected strategy, population, start_share, weight, crossover, "),
-        ("population=8.5", "--de.population: expected population=a whole number, got 'population=8.5'"),
-        ("population", "--de.population: expected population=a whole number, got 'population'"),
+        ("population=8.5", "--de population: expected population=a whole number, got 'population=8.5'"),
+        ("population", "--de population: expected population=a whole number, got 'population'"),
         ("weight=much", "--de.weight: expected weight=a number, got 'weight=much'"),
         ("weight=1,weight=2", "--de.weight: this key is given twice"),
     ],

@@ -144,7 +144,7 @@ def test_settings_of_the_de_are_laid_over_its_own_defaults(cli):
 def test_other_methods_refuse_settings_of_the_de(cli, method):
     refused = cli(*SOLVE, "--de", "population=40", "--method", method)
     assert (refused.code, refused.out) == (2, "")
-    told = f"ikde: settings.de.population: `population` is a setting of the method de; {method} does not use it"
+    told = f"ikde: --de population: `population` is a setting of the method de; {method} does not use it"
     assert refused.err.startswith(told)
     assert refused.err.count("\n") == 1
 
@@ -188,7 +188,12 @@ def test_several_solutions_are_distinct_and_numbered(cli, qiao):
     assert solutions[0] == list(outcome.data["q"].values())
     for i, q in enumerate(solutions):
         assert all(are_apart(qiao, q, other) for other in solutions[:i])
-    assert "solution 3 of 3" in cli(*SOLVE, "--count", 3).out
+    assert outcome.data["solve_seconds"] > 0.0
+    assert not any({"solve_seconds", "compile_seconds"} & set(entry) for entry in outcome.data["solutions"])
+    text = cli(*SOLVE, "--count", 3).out
+    assert "solution 3 of 3" in text
+    assert text.splitlines()[-1].startswith("together ")
+    assert text.count("together ") == 1
 
 
 def test_fewer_solutions_than_asked_for_exit_with_1(cli, qiao):
@@ -196,8 +201,22 @@ def test_fewer_solutions_than_asked_for_exit_with_1(cli, qiao):
     tool = ikde.forward(qiao, qiao.home)["tool"][:3, 3]
     outcome = cli("solve", "--position", *tool, "--freeze", frozen, "--count", 2, "--restarts", 2, "--json")
     assert outcome.code == 1
+    assert outcome.err == "found 1 distinct solutions of 2; no joint may move\n"
     assert outcome.data["reached"] is True
     assert len(outcome.data["solutions"]) == 1
+    narrow = ("--freeze", "d_x,d_y,q_z,q1,q2,q3,q4,q5", "--restarts", 2)
+    outcome = cli("solve", "--position", *tool, *narrow, "--count", 99)
+    assert (outcome.code, outcome.err.endswith("; more --restarts may find more\n")) == (1, True)
+
+
+def test_where_no_joint_may_move_the_answer_says_so(cli, qiao):
+    outcome = cli(*SOLVE, "--freeze", ",".join(qiao.joint_names))
+    assert outcome.code == 1
+    assert outcome.out.startswith("not reached: no joint may move: the tool stays 0.703 m off\nwhat would help: free ")
+    assert "none: no joint may move" in outcome.out
+    data = cli(*SOLVE, "--freeze", ",".join(qiao.joint_names), "--json").data
+    assert (data["method"], data["attempts"], data["evaluations"]) == ("none", 1, 1)
+    assert data["verified"] is True
 
 
 def test_frozen_joints_keep_their_values(cli):
@@ -310,15 +329,15 @@ def test_a_figure_is_written(cli, tmp_path):
         ("--count -2", "count"),
         ("--method ga", "method"),
         ("--restarts 0", "settings.restarts"),
-        ("--method de --de collision=no", "settings.de.collision: expected one of reject, feasibility, got 'no'"),
-        ("--method de --de strategy=rand/9", "settings.de.strategy"),
-        ("--method de --de bounds=wrap", "settings.de.bounds"),
-        ("--method de --de update=never", "settings.de.update"),
-        ("--method de --de population=5", "settings.de.population: expected a whole number of at least 6"),
-        ("--method de --de generations=0", "settings.de.generations"),
-        ("--method de --de weight=nan", "settings.de.weight"),
-        ("--method de --de crossover=1.5", "settings.de.crossover: expected 0 to 1, got 1.5"),
-        ("--method de --de start_share=0", "settings.de.start_share"),
+        ("--method de --de collision=no", "--de collision: expected one of reject, feasibility, got 'no'"),
+        ("--method de --de strategy=rand/9", "--de strategy"),
+        ("--method de --de bounds=wrap", "--de bounds"),
+        ("--method de --de update=never", "--de update"),
+        ("--method de --de population=5", "--de population: expected a whole number of at least 6"),
+        ("--method de --de generations=0", "--de generations"),
+        ("--method de --de weight=nan", "--de weight"),
+        ("--method de --de crossover=1.5", "--de crossover: expected 0 to 1, got 1.5"),
+        ("--method de --de start_share=0", "--de start_share"),
         ("--freeze d_z", "did you mean 'q_z'"),
         ("--freeze d_x=a", "freeze.d_x"),
         ("--freeze d_x=9", "outside the limits"),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ikde.model.orientation_reach import orientation_excess_rad
+from ikde.model.bounds import find_bounds
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.target import Target
 from tests import reference
@@ -16,6 +16,10 @@ from tests.scara import make_scara
 
 few = settings(max_examples=150)
 HERE = (0.0, 0.0, 0.0)
+
+
+def orientation_excess_rad(robot, target, lower, upper):
+    return find_bounds(robot, lower, upper).turning.excess_rad(target)
 
 
 def miss_rad(robot, target, q):

@@ -5,12 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ikde.model.reach import arm_length_m, reach_excess_m
+from ikde.model.bounds import find_bounds
+from ikde.model.reach import arm_length_m
 from tests import reference
 from tests.random_robots import make_frame, make_robot, random_robot
 
 few = settings(max_examples=150)
 ROUNDING = 1e-12
+
+
+def reach_excess_m(robot, p, lower, upper):
+    return find_bounds(robot, lower, upper).reach.excess_m(np.asarray(p))
 
 
 def tool_position(robot, q):
@@ -281,10 +286,8 @@ def test_a_robot_whose_tool_no_joint_moves_stays_where_it_is():
 
 def test_many_positions_are_one_after_the_other(any_robot, rng):
     positions = rng.uniform(-8.0, 8.0, (40, 3))
-    one_by_one = [reach_excess_m(any_robot, p, any_robot.lower, any_robot.upper) for p in positions]
-    assert reach_excess_m(any_robot, positions, any_robot.lower, any_robot.upper) == pytest.approx(
-        one_by_one, abs=1e-12
-    )
+    reach = find_bounds(any_robot, any_robot.lower, any_robot.upper).reach
+    assert reach.excess_of_many_m(positions).tolist() == [reach.excess_m(p) for p in positions]
 
 
 # ---- the length of an arm

@@ -54,11 +54,23 @@ PREVIEW = Preview(
     targets=1000,
     repeats=1,
     seed=1,
-    arms=(ArmPreview(name="auto", method="auto", detector="improved", sample=32, sample_reached=31, seconds=20.0),),
+    arms=(
+        ArmPreview(
+            name="auto",
+            method="auto",
+            detector="improved",
+            sample=32,
+            sample_reached=31,
+            seconds=20.0,
+            load_seconds=1.5,
+            compile_seconds=0.0,
+        ),
+    ),
     solves=1000,
     parts=1,
     threads=2,
     columns=("arm", "target"),
+    compiles_again=False,
     bytes=123456,
 )
 
@@ -148,15 +160,31 @@ def test_json_of_a_run_is_plain_data():
 def test_a_preview_says_how_much_and_how_long():
     text = format_preview(PREVIEW)
     assert text.startswith("demo: robot qiao2021, 1,000 targets, 1 repeat, seed 1\n")
-    assert "in all     1,000 solves in 1 part, about 20 s on 2 threads" in text
+    assert "in all     1,000 solves in 1 part, about 22 s on 2 threads, 1.5 s of it to load" in text
     assert "on disk    about 123.5 kB" in text
     assert "31 / 32" in text
     assert text.endswith("nothing was written")
 
 
+@pytest.mark.parametrize(
+    ("compiled", "again", "words"),
+    [
+        (0.0, False, "nothing: all that the sample needed was compiled already"),
+        (0.0, True, "nothing: all that the sample needed was compiled already"),
+        (95.0, False, "took 1 min 35 s, is not counted above, and is done: the run need not do it again"),
+        (95.0, True, "took 1 min 35 s, is not counted above, and will be done once more"),
+    ],
+)
+def test_a_preview_tells_compiling_apart(compiled, again, words):
+    arms = (replace(PREVIEW.arms[0], compile_seconds=compiled),)
+    text = format_preview(replace(PREVIEW, arms=arms, compiles_again=again))
+    assert f"compiling  {words}\n" in text
+    assert "about 22 s on 2 threads, 1.5 s of it to load kernels and seeds\n" in text
+
+
 def test_json_of_a_preview_is_plain_data():
     data = json.loads(json.dumps(preview_json(PREVIEW), allow_nan=False))
-    assert (data["seconds"], data["columns"]) == (20.0, ["arm", "target"])
+    assert (data["seconds"], data["compile_seconds"], data["columns"]) == (21.5, 0.0, ["arm", "target"])
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
 """A result as text and as JSON: nothing is lost, units and convention are the user's."""
 
 import json
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import ikde
-from ikde.report.numbers import Units
-from ikde.report.solve import BAR, format_solve, solve_json
+from ikde.report.numbers import Units, count_of
+from ikde.report.solve import BAR, Spent, format_solutions, format_solve, solutions_json, solve_json
 from tests.flat_settings import flat_settings
 
 TARGET = ikde.Target((0.8, 0.5, 1.0))
@@ -141,6 +143,23 @@ def test_a_compilation_is_on_its_own_line(qiao, result):
     assert "compiled first" not in format_solve(qiao, result.with_changes(compile_seconds=0.0), Units())
     text = format_solve(qiao, result.with_changes(compile_seconds=12.34), Units())
     assert "12.3 s" in next(line for line in text.splitlines() if "compiled first" in line)
+
+
+def test_several_solutions_tell_once_what_they_took_together(qiao, result):
+    results, spent = [result.with_changes(compile_seconds=3.0)] * 3, Spent(solve_seconds=0.0123, compile_seconds=3.0)
+    text = format_solutions(qiao, results, Units(), spent)
+    assert [line for line in text.splitlines() if line.startswith("solution ")] == [
+        f"solution {k} of 3" for k in (1, 2, 3)
+    ]
+    assert text.endswith("\n\ntogether 12.3 ms, with loading and grading, after 3.0 s of compiling")
+    assert "compiled first" not in text
+    counted = f"{count_of(result.evaluations, 'evaluation')} in {count_of(result.attempts, 'attempt')}"
+    assert re.findall(r"^ cost +(.*)$", text, re.MULTILINE) == [counted] * 3
+    assert format_solutions(qiao, results, Units(), replace(spent, compile_seconds=0.0)).endswith("loading and grading")
+    data = json.loads(json.dumps(solutions_json(qiao, results, spent), allow_nan=False))
+    assert (data["solve_seconds"], data["compile_seconds"]) == (0.0123, 3.0)
+    assert [row["q"] for row in data["solutions"]] == [solve_json(qiao, result)["q"]] * 3
+    assert not any({"solve_seconds", "compile_seconds"} & set(row) for row in data["solutions"])
 
 
 def test_rejected_attempts_are_counted(qiao, result):

@@ -86,7 +86,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
         pair_counts = np.zeros((len(targets), 35), dtype=np.int64)
         engine = np.zeros(len(targets), dtype=np.int64)
         score = np.zeros((len(targets), 2))
-        some = {"score": score, "excess_m": nothing, "seconds": nothing, "engine": engine}
+        some = {"score": score, "excess_m": nothing, "excess_rad": nothing, "seconds": nothing, "engine": engine}
         some["metrics"] = compute_metrics(CollisionModel.of(qiao), targets, q, QUICK)
         return SearchState(q=q, counts=counts, pair_counts=pair_counts, **some)
 

@@ -10,14 +10,15 @@ import pytest
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
 from ikde.kernels.evolution import solve_lanes
-from ikde.model.reach import reach_excess_m
 from ikde.solver import search as module
 from ikde.solver.engine_table import ENGINES, NAMES
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
+from ikde.solver.proof import prove_many
 from ikde.solver.search import choose_engines, make_engine, search, usable_cores
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
+from tests.scara import make_scara
 from tests.targets import free_q, make_target
 
 CHEAP = flat_settings(population=8, generations=5, restarts=3)
@@ -57,17 +58,31 @@ def test_cutting_attempts_into_calls_does_not_change_the_bits(problem, monkeypat
 def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao, substitute):
     asked = []
 
-    def watched(robot, positions, lower, upper):
-        asked.append(len(positions))
-        return reach_excess_m(robot, positions, lower, upper)
+    def watched(problem, targets):
+        asked.append(len(targets))
+        return prove_many(problem, targets)
 
-    substitute(reach_excess_m, watched)
+    substitute(prove_many, watched)
     problem = problem_of(qiao, ikde.SolveSettings(method="de", restarts=9))
     found = search(problem, [*TARGETS, ikde.Target((50.0, 0.0, 1.0))], seed=1, streams=range(6))
     assert asked == [1]
     assert np.flatnonzero(found.excess_m).tolist() == [5]
     assert found.counts[:, REACHED].tolist() == [1, 1, 1, 1, 1, 0]
     assert found.counts[5, ATTEMPTS] == ENGINES["de"].attempts_before_proof
+
+
+def test_who_asks_for_what_no_joint_turns_is_told_after_a_few_attempts():
+    robot, settings = make_scara(), ikde.SolveSettings(method="de", restarts=9)
+    tilted = ikde.Target((0.5, 0.0, 0.0), axis_world_tool=(1, 0, -1))
+    upright, free = ikde.Target((0.74, 0.1, -0.2), axis_world_tool=(0, 0, -1)), ikde.Target((0.74, 0.1, 0.2))
+    targets = [upright, tilted, free, tilted]
+    found = search(problem_of(robot, settings), targets, seed=1, streams=range(4))
+    assert found.excess_rad == pytest.approx([0.0, np.pi / 4, 0.0, np.pi / 4])
+    assert found.counts[:, REACHED].tolist() == [1, 0, 1, 0]
+    assert found.counts[[1, 3], ATTEMPTS].tolist() == [ENGINES["de"].attempts_before_proof] * 2
+    rows = ikde.solve_many(robot, targets, settings, bulk=ikde.BulkOptions(explain=False))
+    assert rows[1].stop_reason == "out_of_reach"
+    assert rows[1].reason == "out of reach: at least 0.785 rad off in orientation, whatever the joints do"
 
 
 def test_the_first_few_attempts_are_part_of_the_budget(qiao):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.model.bounds import find_bounds
 from ikde.model.collision_model import CollisionModel
-from ikde.model.reach import reach_excess_m
 from ikde.track import diagnosis
 from ikde.track.diagnosis import CHECKS, explain_stop, first_out_of_reach, tell_static
 from ikde.track.follow_path import follow_path
@@ -105,7 +105,7 @@ def test_out_of_reach_is_proved_or_told_by_the_solver():
 
 def test_what_an_error_along_each_axis_may_make_up_for_is_no_proof():
     path = make_line([0.9, 0, 1.0], [0.9, 0, 3.0], 20)
-    excess = reach_excess_m(robot(), path.p_world_tool, robot().lower, robot().upper)
+    excess = find_bounds(robot(), robot().lower, robot().upper).reach.excess_of_many_m(path.p_world_tool)
     first = int(np.flatnonzero(excess)[0])
     for share, sample in ((0.6, first + 1), (0.55, first)):
         follower = follower_of(robot(), path, position_error_m=share * excess[first], collision="none")

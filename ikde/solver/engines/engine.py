@@ -45,7 +45,7 @@ class SearchInputs:
     def attempts(self, rows: range, first: int, last: Ints, kind: int | None = None) -> Ints:
         """Attempts [rows, 2] to make: first .. last - 1 where a row is open and its target of this kind, else none."""
         inside = slice(rows.start, rows.stop)
-        wanted = (self.found.counts[inside, REACHED] == 0) & (self.found.excess_m[inside] == 0.0)
+        wanted = (self.found.counts[inside, REACHED] == 0) & ~self.found.is_excluded(inside)
         if kind is not None:
             wanted &= self.targets.kind[inside] == kind
         attempts = np.full((len(rows), 2), first)

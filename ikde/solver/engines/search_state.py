@@ -7,6 +7,7 @@ import numpy as np
 from ikde.kernels.arrays import COUNTS, Floats, Ints
 from ikde.solver.metrics import Metrics, make_metrics
 from ikde.solver.problem import Problem
+from ikde.solver.verify import Bools
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -18,9 +19,14 @@ class SearchState:
     counts: Ints  # [T, COUNTS]
     pair_counts: Ints  # [T, P]
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
+    excess_rad: Floats  # [T] by how much its orientation is, likewise
     seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
     engine: Ints  # [T] which one answered: its place in `engine_table.NAMES`
     metrics: Metrics  # of `q`, by the grader; what it refuses is not reached
+
+    def is_excluded(self, rows: slice = slice(None)) -> Bools:
+        """Which of these targets are proved to be out of reach [T]."""
+        return (self.excess_m[rows] > 0.0) | (self.excess_rad[rows] > 0.0)
 
     def row(self, index: int) -> "SearchState":
         """One target's share."""
@@ -39,6 +45,7 @@ def make_search_state(problem: Problem, count: int) -> SearchState:
         counts=np.zeros((count, COUNTS), dtype=np.int64),
         pair_counts=np.zeros((count, pairs), dtype=np.int64),
         excess_m=np.zeros(count),
+        excess_rad=np.zeros(count),
         seconds=np.zeros(count),
         engine=np.zeros(count, dtype=np.int64),
         metrics=make_metrics(count),
