@@ -131,11 +131,15 @@ def add_half_space(spaces, used, new, y):
 
 @leaf_kernel
 def find_nearest_point(spaces, count, y):
-    """Move `y` [D] to the nearest point in the first `count` half spaces; False if there is none (`y` is then near)."""
+    """Move `y` [D] to the nearest point in the first `count` half spaces; False if there is none (`y` is then near).
+
+    It moves by the sum of the active normals times their multipliers; behind them stands -1 in `active`.
+    """
     used = 0
     for _ in range(MAX_ROUNDS):
         worst = find_most_violated(spaces, count, y)
         if worst < 0:
+            spaces.active[used] = -1
             return True
         used = add_half_space(spaces, used, worst, y)
         if used == EMPTY:

@@ -1,0 +1,252 @@
+"""From a configuration that meets its target to the one near it that moves least from `near`.
+
+Minimised is |y|^2 / 2, y_j = w_j (q_j - near_j), where the tool meets its target, in the joint ranges and free of
+collision. Each step is Newton's for the Lagrangian [Nocedal2006, ch. 18], with the exact second derivative of the tool
+(`kernels/motion_step.py`): first without a thought of collisions; if what comes of it collides, once more from the
+start, with linearised contacts (`kernels/contacts.py`), every step of it free.
+"""
+
+from ikde.kernels.arrays import REACHED
+from ikde.kernels.attempt import is_inside
+from ikde.kernels.clearance import find_closest_spheres
+from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
+from ikde.kernels.motion_step import (
+    INSIDE,
+    choose_doubt,
+    constrain_point,
+    factor_hessian,
+    fill_hessian,
+    is_free,
+    judge_place,
+    list_contacts,
+    make_motion_work,
+    set_free_point,
+    set_motion,
+    set_step,
+    split_motion,
+    square_motion,
+    stays_inside,
+    update_multipliers,
+)
+from ikde.kernels.tool_tangent import (
+    fill_bend,
+    fill_null,
+    fill_rows,
+    list_moving,
+    place_tool,
+    set_multipliers,
+    split,
+)
+
+MAX_STEPS = 60
+TRIALS = 10  # of one step: halved, or turned away from a contact
+CORRECTIONS = 2  # of one step that goes into a contact
+DONE = 1e-5  # square of the last step, as a share of |y|^2: a next one would be as its square
+DONE_SLIDING = 1e-10  # where steps converge linearly
+ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
+
+
+@inline_kernel
+def copy(source, target):
+    """Copy [N]."""
+    for k in range(source.size):
+        target[k] = source[k]
+
+
+@inline_kernel
+def meets(descent, position, orientation):
+    """Whether errors are within the tolerances."""
+    return position <= descent.position_tolerance and orientation <= descent.orientation_tolerance
+
+
+@inline_kernel
+def set_trial(ranges, weight, share, count, work):
+    """The end of a share of the step, cut to the joint ranges; returns the square of the motion there, weighed."""
+    total = 0.0
+    copy(work.q, work.trial)
+    for k in range(count):
+        joint = work.tangent.moving[k]
+        value = work.q[joint] + share * work.step[k] / weight[joint]
+        work.trial[joint] = min(max(value, ranges[0, joint]), ranges[1, joint])
+        moved = weight[joint] * (work.trial[joint] - work.q[joint])
+        total += moved * moved
+    return total
+
+
+@inline_kernel
+def cap_step(weight, largest, count, work):
+    """The share of the step at which no joint moves more than `largest` (m or rad)."""
+    most = 0.0
+    for k in range(count):
+        most = max(most, abs(work.step[k]) / weight[work.tangent.moving[k]])
+    return largest / most if most > largest else 1.0
+
+
+@inline_kernel
+def yield_to_contacts(collision, share, work, count, contacts):
+    """Take from the slack of contacts what they miss at the trial's poses, for a second step from the same place."""
+    margin = collision.safe_distance + INSIDE
+    for i in range(contacts):
+        a, b = collision.pairs[work.pair[i], 0], collision.pairs[work.pair[i], 1]
+        gap, _, _ = find_closest_spheres(collision, work.contacts.centres, a, b)
+        if gap < margin:
+            expected = work.slack[i]
+            for k in range(count):
+                expected += share * work.slope[i, k] * work.step[k]
+            work.slack[i] += gap - margin - max(expected, 0.0)
+
+
+@inline_kernel
+def prepare_step(kind, length, weight, rank, count, carrying, work):
+    """Set the free point of a step by the split in `work`; returns by how much the Hessian had to grow."""
+    fill_bend(kind, length, weight, carrying, work.tangent)
+    fill_null(work.tangent, rank, count)
+    fill_hessian(work, rank, count, carrying)
+    shift = factor_hessian(work, count - rank)
+    set_free_point(work, rank, count, carrying)
+    return shift
+
+
+@leaf_kernel
+def choose_step(ranges, weight, rank, used, count, carrying, contacts, work):
+    """The step to the least motion within joint ranges and contacts, and its multipliers; False if there is none."""
+    copy(work.free_point, work.point)
+    set_step(work, rank, count)
+    is_bound = contacts > 0 or not stays_inside(ranges, weight, work, count)
+    if is_bound:
+        if not constrain_point(ranges, weight, work, rank, count, contacts):
+            for k in range(count):  # there is no room to take the tool's error away
+                work.tangent.along[k] = 0.0
+            if not constrain_point(ranges, weight, work, rank, count, contacts):
+                return False
+        set_step(work, rank, count)
+    update_multipliers(work, rank, used, count, carrying, is_bound)
+    return True
+
+
+@leaf_kernel
+def take_motion_step(robot, collision, target, index, ranges, descent, weight, number, size, slides, work):
+    """Step `number` of the descent from work.q, whose poses and error are in `work`.
+
+    `size`: how many joints move, and how many of them carry the tool. Returns whether it was taken, whether it was the
+    last that is worth while, and whether the tool meets its target behind it.
+    """
+    tangent, kind, length, (count, carrying) = work.tangent, target.kind[index], descent.rotation_length, size
+    contacts = list_contacts(robot, collision, weight, work, count) if slides else 0
+    used = fill_rows(robot, kind, length, weight, count, tangent)
+    rank = split(tangent, used, count)
+    if rank == count:
+        return False, True, False
+    set_motion(weight, ranges[2], work.q, count, work)
+    split_motion(work, rank, count)
+    if number == 0:
+        set_multipliers(tangent, rank, used, work.split)
+    shift = prepare_step(kind, length, weight, rank, count, carrying, work)
+    is_possible = choose_step(ranges, weight, rank, used, count, carrying, contacts, work)
+    square = square_motion(weight, ranges[2], work.q, count, work)
+    doubt = choose_doubt(work, used, count)
+    before, error = judge_place(work, rank, used, square, doubt)
+    share, corrections = cap_step(weight, descent.largest_step, count, work), CORRECTIONS if contacts > 0 else 0
+    enough = (DONE_SLIDING if contacts > 0 or shift > 0.0 else DONE) * square
+    for _ in range(TRIALS):
+        moved = set_trial(ranges, weight, share, count, work)
+        if not is_possible or moved == 0.0:
+            break
+        position, orientation = place_tool(robot, target, index, length, work.trial, tangent)
+        square_there = square_motion(weight, ranges[2], work.trial, count, work)
+        after, behind = judge_place(work, rank, used, square_there, doubt)
+        is_better = behind <= max(ALMOST * ALMOST * moved, error) and after < before
+        clear = not slides or is_free(collision, work)
+        if is_better and clear:
+            copy(work.trial, work.q)
+            return True, moved <= enough, meets(descent, position, orientation)
+        if is_better and corrections > 0:
+            corrections -= 1
+            yield_to_contacts(collision, share, work, count, contacts)
+            is_possible = choose_step(ranges, weight, rank, used, count, carrying, contacts, work)
+            share = cap_step(weight, descent.largest_step, count, work)
+        else:
+            share *= 0.5
+    return False, True, False
+
+
+@leaf_kernel
+def walk(robot, collision, target, index, ranges, descent, weight, slides, work):
+    """Steps from work.q [N] on, free of collision if it slides; the best that meets the target stays in work.best.
+
+    Returns if any is better than where it began.
+    """
+    size = list_moving(robot, ranges, work.tangent.moving)
+    place_tool(robot, target, index, descent.rotation_length, work.q, work.tangent)
+    if slides:
+        is_free(collision, work)
+    least, is_better = square_motion(weight, ranges[2], work.q, size[0], work), False
+    for number in range(MAX_STEPS):
+        taken, is_last, is_met = take_motion_step(
+            robot, collision, target, index, ranges, descent, weight, number, size, slides, work
+        )
+        if not taken:
+            break
+        square = square_motion(weight, ranges[2], work.q, size[0], work)
+        if is_met and square < least:
+            least, is_better = square, True
+            copy(work.q, work.best)
+        if is_last and is_met:
+            break
+    return is_better
+
+
+@inline_kernel
+def is_answer(robot, collision, target, index, ranges, descent, q, work):
+    """Whether `q` [N] meets the target, inside the joint ranges and free of collision."""
+    if not is_inside(ranges, q):
+        return False
+    position, orientation = place_tool(robot, target, index, descent.rotation_length, q, work.tangent)
+    return meets(descent, position, orientation) and is_free(collision, work)
+
+
+@leaf_kernel
+def descend_to_near(robot, collision, target, index, ranges, descent, weight, q, work):
+    """`reduce_motion` with the buffers given."""
+    if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
+        copy(ranges[2], q)
+        return
+    copy(q, work.q)
+    if not walk(robot, collision, target, index, ranges, descent, weight, False, work):
+        return
+    if not is_answer(robot, collision, target, index, ranges, descent, work.best, work):
+        copy(q, work.q)
+        if not walk(robot, collision, target, index, ranges, descent, weight, True, work):
+            return
+    copy(work.best, q)
+
+
+@kernel
+def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
+    """Move `q` [N], which meets target `index`, to a local minimum of the motion from `near`, in place.
+
+    The motion is sqrt(sum (w_j (q_j - near_j))^2); the target stays met, the joint ranges kept, and nothing collides.
+    It never grows: where nothing better is found `q` stays, to the bit. If `near` itself is an answer, `q` becomes
+    that, to the bit.
+
+    Args:
+        robot: `RobotArrays`.
+        collision: `CollisionArrays`, whose safe distance leaves room for rounding.
+        target: `TargetArrays`.
+        index: which target.
+        ranges: [3, N] lower, upper, near; m or rad.
+        descent: `DescentArrays`: tolerances, as `damped.compute_turn` measures them, rotation length and largest step.
+        weight: [N] above 0, per m or per rad.
+        q: [N] within tolerance, in the ranges and free.
+    """
+    work = make_motion_work(robot, collision, q.size)
+    descend_to_near(robot, collision, target, index, ranges, descent, weight, q, work)
+
+
+@kernel
+def reduce_motions(robot, collision, target, rows, ranges, descent, weight, counts, q):
+    """`reduce_motion` of rows[0] .. rows[1] - 1 of `q` [T, N], those that `counts` [T, COUNTS] says are reached."""
+    work = make_motion_work(robot, collision, q.shape[1])
+    for row in range(rows[0], rows[1]):
+        if counts[row, REACHED] == 1:
+            descend_to_near(robot, collision, target, row, ranges, descent, weight, q[row], work)
