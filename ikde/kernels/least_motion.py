@@ -42,7 +42,8 @@ MAX_STEPS = 60
 TRIALS = 10  # of one step: halved, or turned away from a contact
 CORRECTIONS = 2  # of one step that goes into a contact
 DONE = 1e-5  # square of the last step, as a share of |y|^2: a next one would be as its square
-DONE_SLIDING = 1e-10  # where steps converge linearly
+DONE_SLIDING = 1e-7  # where each step is a share of the last one
+SHORTER, SHORTEST = 0.2, 0.05  # steps after a walk that got lost; m or rad
 ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
 
 
@@ -98,26 +99,26 @@ def yield_to_contacts(collision, share, work, count, contacts):
 
 @inline_kernel
 def prepare_step(kind, length, weight, rank, count, carrying, work):
-    """Set the free point of a step by the split in `work`; returns by how much the Hessian had to grow."""
+    """Set the free point of a step by the split in `work`; returns whether the target bends the wrong way."""
     fill_bend(kind, length, weight, carrying, work.tangent)
     fill_null(work.tangent, rank, count)
     fill_hessian(work, rank, count, carrying)
-    shift = factor_hessian(work, count - rank)
+    is_bent = factor_hessian(work, count - rank)
     set_free_point(work, rank, count, carrying)
-    return shift
+    return is_bent
 
 
 @leaf_kernel
-def choose_step(ranges, weight, rank, used, count, carrying, contacts, work):
+def choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work):
     """The step to the least motion within joint ranges and contacts, and its multipliers; False if there is none."""
     copy(work.free_point, work.point)
     set_step(work, rank, count)
     is_bound = contacts > 0 or not stays_inside(ranges, weight, work, count)
     if is_bound:
-        if not constrain_point(ranges, weight, work, rank, count, contacts):
+        if not constrain_point(ranges, weight, largest, work, rank, count, contacts):
             for k in range(count):  # there is no room to take the tool's error away
                 work.tangent.along[k] = 0.0
-            if not constrain_point(ranges, weight, work, rank, count, contacts):
+            if not constrain_point(ranges, weight, largest, work, rank, count, contacts):
                 return False
         set_step(work, rank, count)
     update_multipliers(work, rank, used, count, carrying, is_bound)
@@ -125,10 +126,11 @@ def choose_step(ranges, weight, rank, used, count, carrying, contacts, work):
 
 
 @leaf_kernel
-def take_motion_step(robot, collision, target, index, ranges, descent, weight, number, size, slides, work):
-    """Step `number` of the descent from work.q, whose poses and error are in `work`.
+def take_motion_step(robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work):
+    """One step of the descent from work.q, whose poses and error are in `work`.
 
-    `size`: how many joints move, and how many of them carry the tool. Returns whether it was taken, whether it was the
+    `largest` of any joint, m or rad; `is_first`: there are no multipliers yet; `size`: how many joints move, and how
+    many of them carry the tool. Returns whether it was taken, whether it was the
     last that is worth while, and whether the tool meets its target behind it.
     """
     tangent, kind, length, (count, carrying) = work.tangent, target.kind[index], descent.rotation_length, size
@@ -139,15 +141,15 @@ def take_motion_step(robot, collision, target, index, ranges, descent, weight, n
         return False, True, False
     set_motion(weight, ranges[2], work.q, count, work)
     split_motion(work, rank, count)
-    if number == 0:
+    if is_first:
         set_multipliers(tangent, rank, used, work.split)
-    shift = prepare_step(kind, length, weight, rank, count, carrying, work)
-    is_possible = choose_step(ranges, weight, rank, used, count, carrying, contacts, work)
+    is_bent = prepare_step(kind, length, weight, rank, count, carrying, work)
+    is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
     square = square_motion(weight, ranges[2], work.q, count, work)
     doubt = choose_doubt(work, used, count)
     before, error = judge_place(work, rank, used, square, doubt)
-    share, corrections = cap_step(weight, descent.largest_step, count, work), CORRECTIONS if contacts > 0 else 0
-    enough = (DONE_SLIDING if contacts > 0 or shift > 0.0 else DONE) * square
+    share, corrections = cap_step(weight, largest, count, work), CORRECTIONS if contacts > 0 else 0
+    enough = (DONE_SLIDING if contacts > 0 or is_bent else DONE) * square
     for _ in range(TRIALS):
         moved = set_trial(ranges, weight, share, count, work)
         if not is_possible or moved == 0.0:
@@ -163,30 +165,43 @@ def take_motion_step(robot, collision, target, index, ranges, descent, weight, n
         if is_better and corrections > 0:
             corrections -= 1
             yield_to_contacts(collision, share, work, count, contacts)
-            is_possible = choose_step(ranges, weight, rank, used, count, carrying, contacts, work)
-            share = cap_step(weight, descent.largest_step, count, work)
+            is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
+            share = cap_step(weight, largest, count, work)
         else:
             share *= 0.5
     return False, True, False
 
 
-@leaf_kernel
-def walk(robot, collision, target, index, ranges, descent, weight, slides, work):
-    """Steps from work.q [N] on, free of collision if it slides; the best that meets the target stays in work.best.
-
-    Returns if any is better than where it began.
-    """
-    size = list_moving(robot, ranges, work.tangent.moving)
-    place_tool(robot, target, index, descent.rotation_length, work.q, work.tangent)
+@inline_kernel
+def stand(robot, collision, target, index, descent, slides, q, work):
+    """Go back to `q` [N]: its poses and error, and the places of its spheres."""
+    copy(q, work.q)
+    place_tool(robot, target, index, descent.rotation_length, q, work.tangent)
     if slides:
         is_free(collision, work)
-    least, is_better = square_motion(weight, ranges[2], work.q, size[0], work), False
-    for number in range(MAX_STEPS):
-        taken, is_last, is_met = take_motion_step(
-            robot, collision, target, index, ranges, descent, weight, number, size, slides, work
+
+
+@leaf_kernel
+def walk(robot, collision, target, index, ranges, descent, weight, slides, q, work):
+    """Steps from `q` [N] on, free of collision if it slides; the best that meets the target is left in work.best.
+
+    A walk that gets lost begins again at its best, with shorter steps. Returns if any place is better than `q`.
+    """
+    size, largest = list_moving(robot, ranges, work.tangent.moving), descent.largest_step
+    least, is_better, is_first, is_met = square_motion(weight, ranges[2], q, size[0], work), False, True, True
+    copy(q, work.best)
+    stand(robot, collision, target, index, descent, slides, q, work)
+    for _ in range(MAX_STEPS):
+        taken, is_last, meets_there = take_motion_step(
+            robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work
         )
         if not taken:
-            break
+            if is_met or largest < SHORTEST:
+                break
+            is_first, is_met, largest = True, True, SHORTER * largest
+            stand(robot, collision, target, index, descent, slides, work.best, work)
+            continue
+        is_first, is_met = False, meets_there
         square = square_motion(weight, ranges[2], work.q, size[0], work)
         if is_met and square < least:
             least, is_better = square, True
@@ -211,14 +226,11 @@ def descend_to_near(robot, collision, target, index, ranges, descent, weight, q,
     if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
         copy(ranges[2], q)
         return
-    copy(q, work.q)
-    if not walk(robot, collision, target, index, ranges, descent, weight, False, work):
+    if not walk(robot, collision, target, index, ranges, descent, weight, False, q, work):
         return
-    if not is_answer(robot, collision, target, index, ranges, descent, work.best, work):
-        copy(q, work.q)
-        if not walk(robot, collision, target, index, ranges, descent, weight, True, work):
-            return
-    copy(work.best, q)
+    is_done = is_answer(robot, collision, target, index, ranges, descent, work.best, work)
+    if is_done or walk(robot, collision, target, index, ranges, descent, weight, True, q, work):
+        copy(work.best, q)
 
 
 @kernel

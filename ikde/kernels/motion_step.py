@@ -26,7 +26,7 @@ from ikde.kernels.tool_tangent import (
     solve_along,
 )
 
-MIN_PIVOT = 0.1  # of the reduced Hessian, which is 1 without any bend
+MIN_PIVOT = 0.1  # of the reduced Hessian, which is 1 where the tool moves straight
 MAX_CONTACTS = 12
 REACH = 0.1  # m beyond the safe distance: nearer pairs are constrained
 INSIDE = 2e-9  # m beyond the safe distance: where contacts are set, so that rounding and bend leave them free
@@ -177,24 +177,23 @@ def fill_hessian(work, rank, count, carrying):
 
 @inline_kernel
 def factor_hessian(work, size):
-    """Cholesky factor of the reduced Hessian, into its lower triangle; its diagonal grows until it is definite.
+    """Cholesky factor of the reduced Hessian, into its lower triangle; what bends the wrong way counts as straight.
 
-    Returns by how much.
+    Returns whether anything does.
     """
-    shift, row = 0.0, 0
-    while row < size:
-        pivot = work.product[row] + shift
+    is_bent = False
+    for row in range(size):
+        pivot = work.product[row]
         for b in range(row):
             total = work.hessian[b, row]
             for k in range(b):
                 total -= work.hessian[row, k] * work.hessian[b, k]
             work.hessian[row, b] = total / work.hessian[b, b]
             pivot -= work.hessian[row, b] * work.hessian[row, b]
-        work.hessian[row, row] = math.sqrt(max(pivot, MIN_PIVOT))
-        row += 1
         if pivot < MIN_PIVOT:
-            shift, row = max(2.0 * shift, 0.5), 0
-    return shift
+            is_bent, pivot = True, max(1.0, -pivot)
+        work.hessian[row, row] = math.sqrt(pivot)
+    return is_bent
 
 
 @inline_kernel
@@ -275,8 +274,8 @@ def add_half_space(work, size, offset, owner, at):
 
 
 @inline_kernel
-def fill_half_spaces(ranges, weight, work, rank, count, contacts):
-    """Joint ranges and contacts as half spaces; returns how many."""
+def fill_half_spaces(ranges, weight, largest, work, rank, count, contacts):
+    """Contacts, and the ends of joint ranges nearer than `largest` (m or rad), as half spaces; returns how many."""
     tangent, size, at = work.tangent, count - rank, 0
     for k in range(count):
         joint = tangent.moving[k]
@@ -284,8 +283,10 @@ def fill_half_spaces(ranges, weight, work, rank, count, contacts):
             sign = 1.0 - 2.0 * side
             for a in range(size):
                 work.row[a] = sign * tangent.null[a, k]
-            room = weight[joint] * (ranges[side, joint] - work.q[joint]) - tangent.along[k]
-            at = add_half_space(work, size, sign * room, 2 * k + side, at)
+            room = sign * (ranges[side, joint] - work.q[joint])
+            if room > -largest:
+                offset = weight[joint] * room - sign * tangent.along[k]
+                at = add_half_space(work, size, offset, 2 * k + side, at)
     for i in range(contacts):
         offset = -work.slack[i]
         for k in range(count):
@@ -299,9 +300,9 @@ def fill_half_spaces(ranges, weight, work, rank, count, contacts):
 
 
 @inline_kernel
-def constrain_point(ranges, weight, work, rank, count, contacts):
+def constrain_point(ranges, weight, largest, work, rank, count, contacts):
     """Move `point` to the nearest one from which all constraints are met; False if there is none."""
-    spaces = fill_half_spaces(ranges, weight, work, rank, count, contacts)
+    spaces = fill_half_spaces(ranges, weight, largest, work, rank, count, contacts)
     for a in range(work.point.size):
         work.point[a] = work.free_point[a] if a < count - rank else 0.0
     return find_nearest_point(work.spaces, spaces, work.point)
