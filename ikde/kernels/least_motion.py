@@ -6,7 +6,6 @@ collision. Each step is Newton's for the Lagrangian [Nocedal2006, ch. 18], with 
 start, with linearised contacts (`kernels/contacts.py`), every step of it free.
 """
 
-from ikde.kernels.arrays import REACHED
 from ikde.kernels.attempt import is_inside
 from ikde.kernels.clearance import find_closest_spheres
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
@@ -256,9 +255,8 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
 
 
 @kernel
-def reduce_motions(robot, collision, target, rows, ranges, descent, weight, counts, q):
-    """`reduce_motion` of rows[0] .. rows[1] - 1 of `q` [T, N], those that `counts` [T, COUNTS] says are reached."""
+def reduce_motions(robot, collision, target, rows, ranges, descent, weight, q):
+    """`reduce_motion` of some rows [K] of `q` [T, N], a target each: the same bits."""
     work = make_motion_work(robot, collision, q.shape[1])
-    for row in range(rows[0], rows[1]):
-        if counts[row, REACHED] == 1:
-            descend_to_near(robot, collision, target, row, ranges, descent, weight, q[row], work)
+    for row in rows:
+        descend_to_near(robot, collision, target, row, ranges, descent, weight, q[row], work)

@@ -1,6 +1,7 @@
 """Several solutions of one target, far enough apart to be a choice, best first by a stated cost."""
 
 import time
+from collections.abc import Callable
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -14,6 +15,7 @@ from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
+from ikde.solver.motion import Weights, limit_margin
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.result import SolveResult
 from ikde.solver.results import solve_rows
@@ -27,7 +29,7 @@ ROUNDS = 4  # as often, if they were too much alike
 
 UNEXPLAINED = BulkOptions(verify="all", explain=False)
 
-Rank = Literal["motion", "clearance", "found"]
+Rank = Literal["motion", "clearance", "limits", "found"]
 
 
 def solve_distinct(
@@ -42,6 +44,7 @@ def solve_distinct(
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
+    weights: Weights | None = None,
 ) -> list[SolveResult]:
     """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
 
@@ -53,29 +56,32 @@ def solve_distinct(
         target: what the tool is asked to do.
         count: how many are wanted.
         settings: tolerances and search settings; None for the method's own.
-        rank: what comes first, and what is kept of many: `"motion"`, the least root mean square of the joints'
-            distances from `near` (else home) as shares of their ranges; `"clearance"`, the largest; `"found"`, in the
-            order of the search, the first being that of `solve`. Without a detector there is no clearance to rank by.
+        rank: what comes first, and what is kept of many: `"motion"`, the least from `near`, else home
+            (`SolveResult.motion`); `"clearance"`, the largest; `"limits"`, the largest distance from the joint limits,
+            of the joint that is nearest to one as a share of its range; `"found"`, in the order of the search, the
+            first being that of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
         collision: as for `solve`.
         near: as for `solve`.
         freeze: as for `solve`.
+        weights: as for `solve`.
     """
     if not 1 <= count <= MAX_WANTED:
         raise InputError(f"expected a whole number of at least 1, up to {MAX_WANTED:,}, got {count}", ("count",))
     check_rank(rank)
     chosen = choose_settings(settings, method)
-    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
+    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
     options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
-    first = confirm(robot, solve(robot, target, chosen, seed=seed, collision=collision, near=near, freeze=freeze))
+    question = {"collision": collision, "near": near, "freeze": freeze, "weights": weights}
+    first = confirm(robot, solve(robot, target, chosen, seed=seed, **question))
     if not first.reached or count == 1 or problem.is_fixed:
         return [first]
     look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(problem, target, count, first, options)
-    return sort_solutions(problem, solutions, rank)[:count]
+    return sort_solutions(robot, solutions, rank)[:count]
 
 
 def check_rank(rank: str) -> None:
@@ -106,22 +112,15 @@ class Clock:
         return self._timeout_s is not None and self.spent_s >= self._timeout_s
 
 
-def sort_solutions(problem: Problem, solutions: list[SolveResult], rank: Rank) -> list[SolveResult]:
+def sort_solutions(robot: Robot, solutions: list[SolveResult], rank: Rank) -> list[SolveResult]:
     """Best first; equals stay in the order in which they were found."""
-    if rank == "motion":
-        return sorted(solutions, key=lambda result: motion_cost(problem, result.q))
-    if rank == "clearance":
-        return sorted(solutions, key=lambda result: -(result.clearance_m or 0.0))
-    return solutions
-
-
-def motion_cost(problem: Problem, q: Floats) -> float:
-    """Root mean square of the joints' distances from `near`, else home, as shares of their ranges, or of a turn."""
-    start = problem.robot.home if problem.near is None else problem.near
-    lower, upper = problem.robot.drawn
-    widths = upper - lower
-    shares = (q - start) / np.where(widths > 0.0, widths, 1.0)
-    return float(np.sqrt(np.mean(shares**2)))
+    costs: dict[Rank, Callable[[SolveResult], float]] = {
+        "motion": lambda result: result.motion,
+        "clearance": lambda result: -(result.clearance_m or 0.0),
+        "limits": lambda result: -float(limit_margin(robot.lower, robot.upper, result.q)),
+        "found": lambda result: 0.0,
+    }
+    return sorted(solutions, key=costs[rank])
 
 
 def _sample(

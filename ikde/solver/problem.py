@@ -13,6 +13,7 @@ from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, read_joints
+from ikde.solver.motion import Weights, read_weights
 from ikde.solver.settings import SolveSettings
 
 Freeze = Mapping[str, float | None] | Iterable[str]
@@ -33,6 +34,8 @@ class Problem:
     """[N] joint ranges, all finite; a frozen joint's are equal."""
     near: Floats | None
     frozen: tuple[str, ...]
+    weights: Floats
+    """[N] of the joints in the motion from `centre`, per m or rad."""
 
     @property
     def robot(self) -> Robot:
@@ -41,7 +44,7 @@ class Problem:
 
     @property
     def centre(self) -> Floats:
-        """[N] what joints are turned to, by whole turns: `near`, else home."""
+        """[N] what joints are turned to, by whole turns, and motions begin at: `near`, else home."""
         return self.robot.home if self.near is None else self.near
 
     @property
@@ -88,6 +91,7 @@ def make_problem(
     collision: CollisionChoice,
     near: JointValues | None,
     freeze: Freeze | None,
+    weights: Weights | None = None,
 ) -> Problem:
     """Resolve names and ranges; raises `InputError` for what does not fit the robot."""
     start = None if near is None else read_joints(robot, near, default=robot.home)
@@ -110,6 +114,7 @@ def make_problem(
         upper=upper,
         near=None if start is None else np.clip(start, lower, upper),
         frozen=tuple(fixed),
+        weights=read_weights(robot, weights),
     )
 
 

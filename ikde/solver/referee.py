@@ -1,4 +1,4 @@
-"""Grades what engines found, each joint first in the turn that was meant; a refused answer is searched on.
+"""Grades what engines found, once it is in the turn that was meant and near `near`; the refused is searched on.
 
 A full turn moves no body, but for rounding, and an engine stops a hair inside the tolerances, so a refusal is rare: a
 tolerance near the rounding limit of a far target, or a bug. The next attempt, or engine, then goes on with that row.
@@ -10,6 +10,7 @@ from ikde.kernels.arrays import ATTEMPTS, REACHED, Ints
 from ikde.kernels.turns import unwind_rows
 from ikde.model.target import Targets
 from ikde.solver.engines.search_state import SearchState
+from ikde.solver.engines.stay_near import stay_near
 from ikde.solver.metrics import Limits, compute_metrics
 from ikde.solver.problem import Problem
 
@@ -38,11 +39,12 @@ class Referee:
     def _grade(self, rows: Ints) -> None:
         found, problem, targets = self._found, self._problem, self._targets
         some = rows if len(rows) < len(targets) else slice(None)  # mostly all at once, without a copy
-        Q = found.q[some]
+        asked, Q = targets.take(some), found.q[some]
         unwind_rows(*self._turns, Q)
+        if problem.near is not None:
+            stay_near(problem, asked, np.flatnonzero(found.counts[some, REACHED] == 1), Q)
         found.q[some] = Q
-        asked = problem.collision, targets.take(some), Q, problem.settings
-        found.metrics.put(some, compute_metrics(*asked, limits=self._limits))
+        found.metrics.put(some, compute_metrics(problem.collision, asked, Q, problem.settings, limits=self._limits))
         self._graded[some] = found.counts[some, ATTEMPTS]
 
 

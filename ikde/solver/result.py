@@ -13,6 +13,7 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Pairs
 from ikde.model.target import Target
+from ikde.solver.motion import measure_motion
 from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Grade, verify
@@ -114,6 +115,12 @@ class SolveResult:
     def orientation_error_rad(self) -> float:
         """Rotation-vector norm between tool and target, rad."""
         return self._row.item(self._maker.joints + 1)
+
+    @cached_property
+    def motion(self) -> float:
+        """How far `q` is from `near`, else from home: sqrt(sum (w_j dq_j)^2), by the problem's weights."""
+        problem = self._maker.problem
+        return float(measure_motion(problem.weights, problem.centre, self.q))
 
     @cached_property
     def clearance_m(self) -> float | None:

@@ -14,6 +14,7 @@ from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, reason_from_counts, tell_out_of_reach
 from ikde.solver.fixed import tell_fixed
 from ikde.solver.grade import Outcomes, grade
+from ikde.solver.motion import measure_motion
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, count_blocking_pairs, reached_reason
 from ikde.solver.search import search
@@ -73,6 +74,11 @@ class SolveResults:
     def orientation_error_rad(self) -> Floats:
         """Rotation-vector norm between tool and target [T], rad."""
         return self.outcomes.metrics.orientation_error_rad
+
+    @property
+    def motion(self) -> Floats:
+        """How far each row is from `near`, else from home [T]: sqrt(sum (w_j dq_j)^2), by the problem's weights."""
+        return measure_motion(self.problem.weights, self.problem.centre, self.q)
 
     @property
     def clearance_m(self) -> Floats:

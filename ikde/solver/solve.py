@@ -8,6 +8,7 @@ from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.joints import JointValues
+from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.quick import find_quick
 from ikde.solver.result import SolveResult
@@ -26,6 +27,7 @@ def solve(
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
+    weights: Weights | None = None,
 ) -> SolveResult:
     """Find a configuration that meets the target, inside all limits and free of self-collision.
 
@@ -38,8 +40,12 @@ def solve(
         method: the engine (`SolveSettings.method`); `"auto"` is ikde's choice.
         collision: what is checked: a detector's name, a `Detector`, a `CollisionModel`, `"none"` (self-collision is not
             checked), or None for the robot's default.
-        near: joint values to stay close to: the joint ranges are searched in growing boxes around them.
+        near: joint values to stay close to, brought inside the ranges: they are searched in growing boxes around them,
+            and what is found is moved to a local minimum of the motion from there. `near` itself is the answer, to
+            the bit, if it meets the target.
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
+        weights: of joints, by name, in the motion sqrt(sum (w_j dq_j)^2), per m or rad, 1e-6 to 1e6; left out: 1 /
+            range, of a turn for a joint without limits, and 1 / m for a base that drives in the plane.
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
@@ -52,12 +58,13 @@ def solve(
     """
     started = perf_counter()
     seed, stream = check_seed(seed), check_stream(stream)
-    if near is None and freeze is None:
+    if near is None and freeze is None and weights is None:
         quick = find_quick(robot, settings, method, collision, target.kind)
         result = quick.solve(target, seed, stream, started) if quick else None
         if result is not None:
             return result
-    problem = make_problem(robot, choose_settings(settings, method), collision=collision, near=near, freeze=freeze)
+    chosen = choose_settings(settings, method)
+    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
     return solve_rows(problem, [target], seed=seed, first_stream=stream, strict=True).row(0)
 
 
@@ -71,6 +78,7 @@ def solve_many(
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
+    weights: Weights | None = None,
     bulk: BulkOptions | None = None,
 ) -> SolveResults:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
@@ -85,5 +93,5 @@ def solve_many(
     if not isinstance(bulk, BulkOptions | None):
         raise InputError(f"expected BulkOptions, got {bulk!r}", ("bulk",))
     chosen = choose_settings(settings, method)
-    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze)
+    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
     return solve_rows(problem, targets, bulk or BulkOptions(), seed=check_seed(seed))
