@@ -15,7 +15,7 @@ from ikde.model.robot import Robot
 from ikde.solver.problem import make_problem
 from ikde.solver.settings import SolveSettings
 
-MERGED = ("settings", "ranges", "near", "freeze")  # an arm adds to these instead of replacing them
+MERGED = ("settings", "ranges", "near", "weights", "freeze")  # an arm adds to these instead of replacing them
 TOLERANCES = {"position_tolerance": "position_tolerance_m", "orientation_tolerance": "orientation_tolerance_rad"}
 
 
@@ -38,6 +38,7 @@ def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry) -> A
         collision=collision,
         near=None if entry.near is None else to_si(robot, "near", entry.near, units),
         freeze=to_si(robot, "freeze", entry.freeze, units) or None,
+        weights=entry.weights,
     )
     return Arm(name=name, method=entry.method, problem=problem)
 
@@ -53,6 +54,7 @@ def describe_arm(arm: Arm) -> dict[str, Any]:
             "settings": problem.settings,
             "ranges": {joint.name: (joint.lower, joint.upper) for joint in problem.robot.joints},
             "near": None if problem.near is None else dict(zip(names, problem.near, strict=True)),
+            "weights": dict(zip(names, problem.weights, strict=True)),
             "freeze": {name: start[name] for name in problem.frozen},
         }
     )

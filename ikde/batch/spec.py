@@ -149,6 +149,8 @@ class SolveEntry(Entry):
     """Joint ranges instead of the robot's: joint: [lower, upper]."""
     near: dict[Name, Number] | None = None
     """Joint values to stay close to; joints left out stay near home."""
+    weights: dict[Name, Number] = {}
+    """Weights of joints in the motion from `near`, per m or rad; joints left out have the robot's own."""
     freeze: dict[Name, Number | None] = {}
     """Joints that must not move, with their value (null: from `near`, else home)."""
 

@@ -38,14 +38,25 @@ ToleranceOption = Annotated[
 OrientationToleranceOption = Annotated[
     float | None, of_target(help="Orientation tolerance, in --angles (default: 1e-4 rad).")
 ]
-NearOption = Annotated[str | None, of_robot(metavar="Q", help="Stay close to these joint values (as --q of check).")]
+NearOption = Annotated[
+    str | None, of_robot(metavar="Q", help="Move as little as can be from these joint values (as --q of check).")
+]
 FreezeOption = Annotated[
     str | None, of_robot(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home.")
+]
+WeightsOption = Annotated[
+    str | None,
+    of_robot(
+        metavar="J=W,..", help="Weights of joints in the motion, per m or rad (default: 1 / range; 1 / m of a base)."
+    ),
 ]
 SeedOption = Annotated[int, of_search(help="Same seed, same answer.")]
 CountOption = Annotated[int, of_search(metavar="K", help="Distinct solutions to find.")]
 RankOption = Annotated[
-    str, of_search(metavar="ORDER", help="Order of several: motion (least first), clearance, found.")
+    str,
+    of_search(
+        metavar="ORDER", help="Order of several: motion (least from --near, else home), clearance, limits, found."
+    ),
 ]
 MethodOption = Annotated[str, of_search(metavar="NAME", help=f"{METHODS}.")]
 RestartsOption = Annotated[int | None, of_search(metavar="N", help="Attempts before the budget is spent.")]
@@ -75,6 +86,7 @@ def solve(
     robot: options.RobotOption = "qiao2021",
     near: NearOption = None,
     freeze: FreezeOption = None,
+    weights: WeightsOption = None,
     detector: options.DetectorOption = None,
     pairs: options.PairsOption = None,
     safe_distance: options.SafeDistanceOption = None,
@@ -96,6 +108,7 @@ def solve(
     Example: ikde solve --position 800 500 1000 --unit mm --plot pose.png
     """
     skip_blas_probe()
+    from ikde.io.joint_text import parse_weights
     from ikde.io.robots import load_robot
     from ikde.io.target import make_target
     from ikde.model.convention import convention_offsets
@@ -111,11 +124,12 @@ def solve(
     start = None if near is None else options.read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = options.read_freeze(model, freeze, unit, angles, convention)
+    weighed = None if weights is None else parse_weights(weights)
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
     with working("searching ..."), note_compile() as clock:
-        question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen}
+        question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
         if count == 1:
             results = [confirm(model, solve_one(model, target, settings, **question))]
         else:

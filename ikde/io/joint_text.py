@@ -47,6 +47,14 @@ def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, f
     return frozen
 
 
+def parse_weights(text: str) -> dict[str, float]:
+    """Parse `q1=2,d_x=0.5`, or a file, into weights by joint name, per m or rad."""
+    weights = _read(text, "weights")
+    if not isinstance(weights, Mapping):
+        raise InputError("expected name=value", ("weights",))
+    return dict(weights)
+
+
 def _split(text: str) -> list[str]:
     return list(filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS))))
 

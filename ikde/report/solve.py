@@ -38,6 +38,7 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         **joints_json(robot, result.q, convention),
         "position_error_m": result.position_error_m,
         "orientation_error_rad": result.orientation_error_rad,
+        "motion": result.motion,
         "clearance_m": result.clearance_m,
         "closest_pair": list(result.closest_pair) if result.closest_pair else None,
         "collision": result.collision,
@@ -141,6 +142,7 @@ def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     else:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
         table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
+    table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, as weighed")
     table.add_row("self-collision", COLLISIONS[result.collision])
     table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""

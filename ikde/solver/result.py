@@ -117,10 +117,16 @@ class SolveResult:
         return self._row.item(self._maker.joints + 1)
 
     @cached_property
+    def near(self) -> Floats | None:
+        """[N] what `q` was to stay close to, brought inside the joint ranges; None: nothing."""
+        return self._maker.problem.near
+
+    @cached_property
     def motion(self) -> float:
         """How far `q` is from `near`, else from home: sqrt(sum (w_j dq_j)^2), by the problem's weights."""
         problem = self._maker.problem
-        return float(measure_motion(problem.weights, problem.centre, self.q))
+        start = problem.robot.home if self.near is None else self.near
+        return float(measure_motion(problem.weights, start, self.q))
 
     @cached_property
     def clearance_m(self) -> float | None:
