@@ -39,8 +39,8 @@ def default_weights(robot: Robot) -> Floats:
 
     So a joint's whole range counts as much as that of any other, and as much as one metre of driving.
     """
-    widths = robot.upper - robot.lower
-    widths[np.isinf(widths)] = 2.0 * np.pi
+    lower, upper = robot.drawn
+    widths = upper - lower
     widths[[k for k in find_planar_base(robot)[:2] if k >= 0]] = 1.0
     weights = np.clip(1.0 / np.where(widths > 0.0, widths, 1.0), LEAST, MOST)
     weights.setflags(write=False)
