@@ -3,7 +3,9 @@
 from contextlib import contextmanager
 from types import SimpleNamespace
 
-from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED
+from ikde.kernels.answer import grade_row, open_row
+from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED, TargetArrays
+from ikde.kernels.flat_arguments import unpack_answer
 from ikde.solver.engines import pool
 from ikde.solver.quick import find_quick
 from tests.substitutes import BothWays, substituted
@@ -40,6 +42,7 @@ class Liar:
     def change(self, module):
         """The module with its solvers exchanged; its seeds are honest."""
         solvers = {"solve_target": BothWays(self.solve_target), "solve_targets": self.solve_many(3)}
+        solvers["answer_target"] = BothWays(self.answer_target)
         if hasattr(module, "solve_branches"):
             solvers["solve_branches"] = self.solve_many(5)
         return SimpleNamespace(**{**vars(module), **solvers})
@@ -49,6 +52,13 @@ class Liar:
         *_, first, last, q, score, counts, _ = arguments
         if last > first:
             self.claim(q, score, counts)
+
+    def answer_target(self, numbers, whole, pool, pool_T, T_world_tool, seed, stream, first, last, out):
+        """Like that of `kernels/lm.py`, with its honest grader."""
+        grader, terms, kinds, _ = unpack_answer(numbers, whole)
+        q, score, counts, _ = open_row(len(self.q), first, out)
+        self.solve_target(first, last, q, score, counts, None)
+        return grade_row(grader, terms, TargetArrays(kinds, T_world_tool.reshape(1, 3, 4)), len(self.q), out)
 
     def solve_many(self, place):
         """Like `solve_targets` and `solve_branches`; which rows they solve stands at this place."""

@@ -10,7 +10,6 @@ import numpy as np
 from ikde.kernels.arrays import COUNTS, REACHED
 from ikde.kernels.grade_one import grade_one
 from ikde.kernels.jit import inline_view_kernel, kernel
-from ikde.kernels.turns import unwind
 
 METRICS = 3  # position error in m, orientation error in rad, clearance in m
 PAIR, FIRST_COUNT = 0, 1  # of the whole numbers
@@ -35,11 +34,12 @@ def open_row(joints, first, out):
 
 
 @kernel
-def grade_row(numbers, whole, kinds, T_world_tool, turns, joints, out):
-    """Unwind and grade the q of a row, `numbers` and `whole` the grader's; True if it is reached and accepted."""
-    unwind(turns[0], turns[1], turns[2], turns[3], out[:joints])
+def grade_row(numbers, whole, target, joints, out):
+    """Grade the q of a row, `numbers` and `whole` being the grader's; True if it is reached and accepted."""
     out_whole = out[joints + METRICS :].view(np.int64)
-    position, orientation, clearance, pair, accepted = grade_one(numbers, whole, kinds, T_world_tool, out[:joints])
+    position, orientation, clearance, pair, accepted = grade_one(
+        numbers, whole, target.kind, target.T_world_tool, out[:joints]
+    )
     out[joints], out[joints + 1], out[joints + 2] = position, orientation, clearance
     out_whole[PAIR] = pair
     return accepted and out_whole[FIRST_COUNT + REACHED] == 1

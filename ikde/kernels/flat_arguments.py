@@ -57,6 +57,16 @@ def flatten_answer(search: Sequence[Any], grader: tuple[Floats, Ints], kind: int
     return numbers, np.concatenate([search[1], grader[1], turning.astype(np.int64), where])
 
 
+def set_ranges(block: Floats, ranges: Floats, turns: Turns) -> Floats:
+    """A copy of the numbers of `flatten_answer` with other ranges (lower, upper, near) and bounds of turns."""
+    numbers, joints = block.copy(), len(ranges[0])
+    end = len(numbers)
+    for k, bound in enumerate((*ranges, turns[0], turns[1], turns[3])):
+        start = 1 + k * joints if k < len(ranges) else end + (k - 6) * joints
+        numbers[start : start + joints] = bound
+    return numbers
+
+
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
     """What `unpack_models` takes: six sizes, then all values."""
     tables = (robot.bodies, robot.frame_body, collision.components, collision.pairs, collision.rows, collision.radius)

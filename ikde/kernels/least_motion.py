@@ -187,7 +187,8 @@ def walk(robot, collision, target, index, ranges, descent, weight, slides, q, wo
     A walk that gets lost begins again at its best, with shorter steps. Returns if any place is better than `q`.
     """
     size, largest = list_moving(robot, ranges, work.tangent.moving), descent.largest_step
-    least, is_better, is_first, is_met = square_motion(weight, ranges[2], q, size[0], work), False, True, True
+    least, is_better = square_motion(weight, ranges[2], q, size[0], work), False
+    is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
     copy(q, work.best)
     stand(robot, collision, target, index, descent, slides, q, work)
     for _ in range(MAX_STEPS):
@@ -225,11 +226,13 @@ def descend_to_near(robot, collision, target, index, ranges, descent, weight, q,
     if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
         copy(ranges[2], q)
         return
-    if not walk(robot, collision, target, index, ranges, descent, weight, False, q, work):
-        return
-    is_done = is_answer(robot, collision, target, index, ranges, descent, work.best, work)
-    if is_done or walk(robot, collision, target, index, ranges, descent, weight, True, q, work):
-        copy(work.best, q)
+    for tries in range(2):
+        slides = tries > 0  # a constant would be compiled into a walk of its own
+        if not walk(robot, collision, target, index, ranges, descent, weight, slides, q, work):
+            return
+        if slides or is_answer(robot, collision, target, index, ranges, descent, work.best, work):
+            copy(work.best, q)
+            return
 
 
 @kernel

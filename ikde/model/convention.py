@@ -36,6 +36,8 @@ def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
     Raises:
         InputError: for an unknown convention.
     """
+    if convention is None or convention == robot.convention:
+        return q
     offsets = convention_offsets(robot, convention)
     own = _wrap(q - offsets)
     for turn in (-2.0 * np.pi, 2.0 * np.pi):

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from functools import lru_cache
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,22 +148,22 @@ class Robot:
     @property
     def joint_names(self) -> tuple[str, ...]:
         """Names in the order of q."""
-        return tuple(joint.name for joint in self.joints)
+        return _find_columns(self).names
 
     @property
     def lower(self) -> Floats:
         """Lower limits [N], m or rad; -inf of a continuous joint."""
-        return np.array([joint.lower for joint in self.joints])
+        return _find_columns(self).lower.copy()
 
     @property
     def upper(self) -> Floats:
         """Upper limits [N], m or rad; inf of a continuous joint."""
-        return np.array([joint.upper for joint in self.joints])
+        return _find_columns(self).upper.copy()
 
     @property
     def home(self) -> Floats:
         """Home configuration [N], m or rad."""
-        return np.array([joint.home for joint in self.joints])
+        return _find_columns(self).home.copy()
 
     @property
     def drawn(self) -> tuple[Floats, Floats]:
@@ -171,14 +172,42 @@ class Robot:
 
     def finite_limits(self, centre: Floats, turns: float) -> tuple[Floats, Floats]:
         """Limits [N]; those of a continuous joint so many turns on either side of `centre` [N], rad."""
-        lower, upper, reach = self.lower, self.upper, turns * 2.0 * np.pi
-        return np.where(np.isinf(lower), centre - reach, lower), np.where(np.isinf(upper), centre + reach, upper)
+        lower, upper, is_continuous = self.lower, self.upper, _find_columns(self).is_continuous
+        if is_continuous is not None:
+            lower[is_continuous] = centre[is_continuous] - 2.0 * np.pi * turns
+            upper[is_continuous] = centre[is_continuous] + 2.0 * np.pi * turns
+        return lower, upper
 
     @property
     def is_prismatic(self) -> NDArray[np.bool_]:
         """Which joints are prismatic [N]."""
-        return np.array([joint.kind == "prismatic" for joint in self.joints])
+        return _find_columns(self).is_prismatic.copy()
 
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
         return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))
+
+
+class _Columns(NamedTuple):
+    """What joints say, joint by joint: 0.2 us where making an array takes 2."""
+
+    names: tuple[str, ...]
+    lower: Floats
+    upper: Floats
+    home: Floats
+    is_prismatic: NDArray[np.bool_]
+    is_continuous: NDArray[np.bool_] | None
+    """None if none is."""
+
+
+@lru_cache(maxsize=256)
+def _find_columns(robot: Robot) -> _Columns:
+    kinds = [joint.kind for joint in robot.joints]
+    return _Columns(
+        names=tuple(joint.name for joint in robot.joints),
+        lower=np.array([joint.lower for joint in robot.joints]),
+        upper=np.array([joint.upper for joint in robot.joints]),
+        home=np.array([joint.home for joint in robot.joints]),
+        is_prismatic=np.array([kind == "prismatic" for kind in kinds]),
+        is_continuous=np.array([kind == "continuous" for kind in kinds]) if "continuous" in kinds else None,
+    )

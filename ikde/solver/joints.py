@@ -41,7 +41,7 @@ def _from_array(robot: Robot, q: ArrayLike) -> Floats:
     if values.ndim == 0 or values.shape[-1] != len(names):
         count = values.shape[-1] if values.ndim else 1
         raise InputError(f"expected {len(names)} joint values ({', '.join(names)}), got {count}", ("q",))
-    if not np.all(np.abs(values) <= MAX_MAGNITUDE):  # False for NaN
+    if not (np.abs(values) <= MAX_MAGNITUDE).all():  # False for NaN
         raise InputError(f"expected finite joint values below {MAX_MAGNITUDE:g}, got {values.tolist()}", ("q",))
     return values
 

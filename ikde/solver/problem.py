@@ -10,8 +10,9 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT, CollisionArrays, Floats, RobotArrays, SearchArrays
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.numbers import is_number
 from ikde.model.pack import pack_robot
-from ikde.model.robot import Robot
+from ikde.model.robot import MAX_MAGNITUDE, Robot
 from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.motion import Weights, read_weights
 from ikde.solver.settings import SolveSettings
@@ -112,7 +113,7 @@ def make_problem(
         settings=settings,
         lower=lower,
         upper=upper,
-        near=None if start is None else np.clip(start, lower, upper),
+        near=None if start is None else np.minimum(np.maximum(start, lower), upper),
         frozen=tuple(fixed),
         weights=read_weights(robot, weights),
     )
@@ -127,6 +128,8 @@ def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[s
     given = dict(names) if isinstance(names, Mapping) else dict.fromkeys(names)
     start = dict(zip(robot.joint_names, default, strict=True))
     values = {name: start.get(name, 0.0) if value is None else value for name, value in given.items()}
+    if all(name in start and is_number(value) and abs(value) <= MAX_MAGNITUDE for name, value in values.items()):
+        return {name: float(value) for name, value in values.items()}
     resolved = read_joints(robot, values, default=default)
     return {name: float(resolved[robot.joint_names.index(name)]) for name in values}
 

@@ -4,7 +4,8 @@ The answer is that of the long way (`solver.results`), bit for bit; what this wa
 """
 
 import time
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.lm import prepare_answer
-from ikde.solver.engines.pool import runs_on_tables
+from ikde.solver.engines.lm import pack_answer
+from ikde.solver.engines.pool import load_kernels, runs_on_tables
 from ikde.solver.explain import explain_reach
 from ikde.solver.problem import make_problem
 from ikde.solver.proof import prove
@@ -28,48 +29,65 @@ ENGINE = "lm"
 HALF_WORDS = 2**63
 OUT_OF_REACH = {"reached": False, "stop_reason": StopReason.OUT_OF_REACH, "_explain": explain_reach}
 
+Answer = Callable[..., bool]
+"""`answer(T_world_tool, seed, stream, first, last, out)`: attempts `first` .. `last` - 1 and their grade, as
+`lm.answer_target`."""
 
-class Quick:
-    """The engine `lm` and the grader, for one collision model, settings and kind of target."""
 
-    def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str, is_last: bool = False) -> None:
-        self._problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-        self._answer, self._results = prepare_answer(self._problem, kind), ResultMaker(self._problem, ENGINE)
-        joints = len(collision.robot.joints)
+class Stages:
+    """How one question is asked of the engine `lm`: a few attempts, a bound, and then all that it has."""
+
+    def __init__(self, collision: CollisionModel, settings: SolveSettings, *, is_last: bool) -> None:
+        joints, row, budget = len(collision.robot.joints), ENGINES[ENGINE], settings.budget(ENGINE)
         self._size, self._reached = size_of(joints, len(collision.pairs)), joints + METRICS + FIRST_COUNT + REACHED
-        row, budget = ENGINES[ENGINE], settings.budget(ENGINE)
         self._few = min(row.attempts_before_proof, budget)
         self._all = budget if is_last or row.attempts_before_next is None else row.attempts_before_next
         if settings.timeout_s is not None:
             self._all = self._few
-        self._is_ready = False
 
-    def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
+    def ask(
+        self, answer: Answer, maker: ResultMaker, target: Target, seed: int, stream: int, started: float
+    ) -> SolveResult | None:
         """A graded solution or a proof that there is none, or None if this target needs another engine, or a reason.
 
         `started`: when the caller began to wait, by `time.perf_counter`.
         """
         row, word = np.empty(self._size), seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
-        if not self._is_ready:
-            return self._compile(target, seed, stream)
-        if self._answer(target.T_world_tool, word, stream, 0, self._few, row):
-            return self._results.make(row, target, seed, stream, time.perf_counter() - started)
+        if answer(target.T_world_tool, word, stream, 0, self._few, row):
+            return maker.make(row, target, seed, stream, time.perf_counter() - started)
         if row.view(np.int64)[self._reached]:
             return None
-        if prove(self._problem, target) != (0.0, 0.0):
-            made = self._results.make(row, target, seed, stream, time.perf_counter() - started)
+        if prove(maker.problem, target) != (0.0, 0.0):
+            made = maker.make(row, target, seed, stream, time.perf_counter() - started)
             return made.with_changes(**OUT_OF_REACH)
-        if self._all > self._few and self._answer(target.T_world_tool, word, stream, self._few, self._all, row):
-            return self._results.make(row, target, seed, stream, time.perf_counter() - started)
+        if self._all > self._few and answer(target.T_world_tool, word, stream, self._few, self._all, row):
+            return maker.make(row, target, seed, stream, time.perf_counter() - started)
         return None
 
-    def _compile(self, target: Target, seed: int, stream: int) -> SolveResult | None:
-        """The first answer, whose time is that of a second try."""
+
+class Quick:
+    """The engine `lm` and the grader, for one collision model, settings and kind of target."""
+
+    def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str, *, is_last: bool = False) -> None:
+        problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
+        answer = partial(load_kernels(collision, kind).answer_target.compiled, *pack_answer(problem, kind))
+        stages, maker = Stages(collision, settings, is_last=is_last), ResultMaker(problem, ENGINE)
+        self._ask, self._is_ready = partial(stages.ask, answer, maker), False
+
+    def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
+        """As `Stages.ask`; the first one compiles."""
+        if self._is_ready:
+            return self._ask(target, seed, stream, started)
         self._is_ready = True
-        with compile_clock() as clock:
-            self.solve(target, seed, stream, 0.0)
-        result = self.solve(target, seed, stream, time.perf_counter())
-        return result and result.with_changes(compile_seconds=clock.seconds)
+        return compile_first(self._ask, target, seed, stream)
+
+
+def compile_first(ask: Callable[..., SolveResult | None], target: Target, seed: int, stream: int) -> SolveResult | None:
+    """The first answer, whose time is that of a second try."""
+    with compile_clock() as clock:
+        ask(target, seed, stream, 0.0)
+    result = ask(target, seed, stream, time.perf_counter())
+    return result and result.with_changes(compile_seconds=clock.seconds)
 
 
 @lru_cache(maxsize=64)

@@ -93,13 +93,13 @@ def choose_engines(
         return [name for name in settings.engines if not ENGINES[name].stays_in_limits] or [AUTO[-1]]
     if len(settings.engines) == 1:
         return [*settings.engines]
-    arm, free = find_ur_arm(robot), _find_free(robot.lower, robot.upper) if free is None else free
+    arm, free = find_ur_arm(robot), find_free(robot.lower, robot.upper) if free is None else free
     is_closed = arm is not None and free == set(arm.coordinates)
     rows = {name: ENGINES[name] for name in settings.engines}
     return [n for n, row in rows.items() if kinds <= {*row.target_kinds} and (is_closed or not row.is_closed_form)]
 
 
-def _find_free(lower: Floats, upper: Floats) -> set[int]:
+def find_free(lower: Floats, upper: Floats) -> set[int]:
     """Joints that may move: all but those that are frozen."""
     return set(np.flatnonzero(upper > lower).tolist())
 
@@ -109,7 +109,7 @@ def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[
     robot, settings, arm = problem.robot, problem.settings, find_ur_arm(problem.robot)
     inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
     kinds = {KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
-    free = _find_free(problem.lower, problem.upper)
+    free = find_free(problem.lower, problem.upper)
     names = choose_engines(robot, settings, kinds, inside=inside, free=free)
     stands_still = arm is not None and free <= set(arm.coordinates)
 

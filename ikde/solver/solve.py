@@ -11,6 +11,7 @@ from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.quick import find_quick
+from ikde.solver.quick_near import find_quick_near
 from ikde.solver.result import SolveResult
 from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, check_stream, choose_settings
@@ -65,6 +66,10 @@ def solve(
             return result
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
+    if near is not None or freeze is not None or weights is not None:
+        result = find_quick_near(problem.collision, chosen, target.kind).solve(problem, target, seed, stream, started)
+        if result is not None:
+            return result
     return solve_rows(problem, [target], seed=seed, first_stream=stream, strict=True).row(0)
 
 

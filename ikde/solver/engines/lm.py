@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.flat_arguments import flatten_answer, flatten_search
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
@@ -17,10 +17,10 @@ from ikde.solver.problem import Problem, pack_searched
 ONE_BY_ONE = ENGINES["lm"].one_by_one
 
 
-def pack_block(problem: Problem, kind: str) -> tuple[Floats, Ints, Floats, Floats]:
+def pack_block(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> tuple[Floats, Ints, Floats, Floats]:
     """All that stays from target to target, as `solve_target` takes it."""
-    models, seeds = pack_searched(problem.collision), make_seeds(problem, kind)
-    return flatten_search(*models, make_ranges(problem), make_descent(problem, kind), seeds)
+    settings = make_ranges(problem), make_descent(problem, kind), seeds or make_seeds(problem, kind)
+    return flatten_search(*pack_searched(problem.collision), *settings)
 
 
 def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
@@ -28,11 +28,11 @@ def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
     return partial(load_kernels(problem.collision, kind).solve_target.compiled, *pack_block(problem, kind))
 
 
-def prepare_answer(problem: Problem, kind: str) -> Callable[..., bool]:
-    """The same and the grade in one call: `answer(T_world_tool, seed, stream, begin, end, out)` (`answer_target`)."""
-    *search, pool, pool_T = pack_block(problem, kind)
-    block = flatten_answer(search, pack_grader(problem.collision, problem.settings), KINDS.index(kind), problem.turns)
-    return partial(load_kernels(problem.collision, kind).answer_target.compiled, *block, pool, pool_T)
+def pack_answer(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> tuple[Floats, Ints, Floats, Floats]:
+    """All that stays from target to target, as `answer_target` takes it; `seeds` if they are there already."""
+    *search, pool, pool_T = pack_block(problem, kind, seeds)
+    grader = pack_grader(problem.collision, problem.settings)
+    return *flatten_answer(search, grader, KINDS.index(kind), problem.turns), pool, pool_T
 
 
 class DampedLeastSquares:
