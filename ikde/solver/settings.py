@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.mutation import MAX_DRAWN, REPAIRS, STRATEGIES
 from ikde.model.numbers import is_number
 from ikde.solver.engine_table import AUTO, ENGINES, Method
@@ -209,7 +209,12 @@ def _check_bits(value: Any, bits: int, name: str) -> int:
 
 
 def choose_settings(settings: SolveSettings | None, method: str) -> SolveSettings:
-    """The settings, or the method's own; a wrong name is an error either way."""
+    """The settings, or the method's own; a wrong name, or what is neither, is an error either way."""
+    if not isinstance(method, str):
+        raise InputError(f"expected the name of a method, got {quoted(method)}", ("method",))
+    if not isinstance(settings, SolveSettings | None):
+        hint = ", which take these as `de`" if isinstance(settings, DeSettings) else ""
+        raise InputError(f"expected SolveSettings{hint}, got {quoted(settings)}", ("settings",))
     own = SolveSettings.for_method(method)
     if settings is None:
         return own

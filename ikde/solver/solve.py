@@ -60,7 +60,10 @@ def solve(
     started = perf_counter()
     seed, stream = check_seed(seed), check_stream(stream)
     if near is None and freeze is None and weights is None:
-        quick = find_quick(robot, settings, method, collision, target.kind)
+        try:
+            quick = find_quick(robot, settings, method, collision, target.kind)
+        except TypeError:  # what has no hash is nothing that fits: it is refused below, by name
+            quick = None
         result = quick.solve(target, seed, stream, started) if quick else None
         if result is not None:
             return result

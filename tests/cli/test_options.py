@@ -195,8 +195,8 @@ def test_settings_of_the_de_are_read_by_their_kind():
         ("best/1", "--de: unknown key 'best/1'; expected strategy, population, start_share, weight, crossover, "),
         ("population=8.5", "--de population: expected population=a whole number, got 'population=8.5'"),
         ("population", "--de population: expected population=a whole number, got 'population'"),
-        ("weight=much", "--de.weight: expected weight=a number, got 'weight=much'"),
-        ("weight=1,weight=2", "--de.weight: this key is given twice"),
+        ("weight=much", "--de weight: expected weight=a number, got 'weight=much'"),
+        ("weight=1,weight=2", "--de weight: this key is given twice"),
     ],
 )
 def test_what_is_no_setting_of_the_de_is_refused(text, words):

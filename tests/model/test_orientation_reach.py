@@ -115,6 +115,17 @@ def test_the_last_joint_keeps_its_direction_in_a_pose():
     assert off == pytest.approx(np.arccos(axis[2]))
 
 
+@pytest.mark.parametrize("about", [0, 1])
+def test_the_worst_cone_is_the_one_that_proves_it(about):
+    """Tilted about x the tool's x axis stays level, tilted about y its y axis does: neither is to blame."""
+    robot, rpy = make_scara(), np.array([np.pi, 0.0, 0.0])
+    rpy[about] += 0.3
+    turning, target = find_bounds(robot, robot.lower, robot.upper).turning, Target(HERE, rotation_from_rpy(rpy))
+    worst = turning.find_worst(target)
+    angle = np.arccos(target.R_world_tool @ worst.tool @ worst.world)
+    assert max(worst.low - angle, angle - worst.high) == pytest.approx(turning.excess_rad(target)) == pytest.approx(0.3)
+
+
 def test_a_matrix_that_is_nearly_a_rotation_proves_nothing_beyond_its_digits():
     robot = make_scara()
     turn = rotation_from_rpy(np.array([np.pi, 0.0, 0.0]))

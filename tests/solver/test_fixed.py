@@ -1,5 +1,7 @@
 """Where no joint may move the one configuration is the answer, graded, with what is off or collides."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +19,7 @@ from tests.conftest import random_q
 from tests.problems import problem_of
 from tests.random_robots import random_robot
 from tests.substitutes import never
-from tests.targets import free_q
+from tests.targets import free_q, targets_near
 
 METHODS = ("auto", "lm", "memetic", "de")
 
@@ -148,6 +150,40 @@ def test_a_robot_whose_ranges_are_points_has_one_answer(qiao):
     problem = problem_of(freed)
     assert not problem.is_fixed
     assert len(ikde.solve_distinct(robot, here, 3)) == 1
+
+
+def test_machine_code_and_python_see_the_same_bits(qiao, rng, monkeypatch):
+    q = colliding_q(qiao, rng)
+    targets = targets_near(qiao, np.array([q, free_q(qiao, rng), free_q(qiao, rng)]), rng)
+    asked = {"freeze": hold(qiao, q), "bulk": BulkOptions(explain=False, verify="none")}
+    plain = ikde.solve_many(qiao, targets, **asked)
+    monkeypatch.setattr("ikde.solver.fixed.FEW", 0)
+    compiled = ikde.solve_many(qiao, targets, **asked)
+    for name in (
+        "q",
+        "position_error_m",
+        "orientation_error_rad",
+        "clearance_m",
+        "closest_pair",
+        "reached",
+        "attempts",
+    ):
+        assert getattr(plain, name).tobytes() == getattr(compiled, name).tobytes(), name
+        assert getattr(plain, name).dtype == getattr(compiled, name).dtype
+    assert [row.reason for row in plain] == [row.reason for row in compiled]
+
+
+def test_no_compiler_is_needed():
+    code = """
+import sys
+import ikde
+robot = ikde.load_robot("ur5")
+asked = {"freeze": robot.joint_names}
+ikde.solve(robot, ikde.Target((0.8, 0.5, 1.0)), **asked)
+ikde.solve_many(robot, [ikde.Target((0.8, 0.5, 1.0))] * 3, **asked)
+sys.exit("numba" in sys.modules)
+"""
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_the_quick_way_is_not_prepared_for_it(qiao, substitute):

@@ -8,7 +8,7 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.model.target import KINDS
-from ikde.solver.settings import BulkOptions
+from ikde.solver.settings import BulkOptions, DeSettings
 from tests.bare_robot import BARE, platform_to_upper_arm
 from tests.conftest import ROBOTS, random_q
 from tests.problems import CHEAP, QUICK, TARGET, assert_true_to_its_figures
@@ -213,6 +213,13 @@ def test_unreached_targets_are_told_from_bound_and_counts_alone(qiao):
     ("options", "words"),
     [
         ({"method": "ga"}, "no method is called 'ga'"),
+        ({"method": ["lm"]}, r"^method: expected the name of a method, got \['lm'\]$"),
+        ({"settings": DeSettings()}, "^settings: expected SolveSettings, which take these as `de`, got DeSettings"),
+        ({"settings": {"restarts": 3}}, "^settings: expected SolveSettings, got {'restarts': 3}$"),
+        (
+            {"collision": ["improved"]},
+            r"^collision: expected a name, a Detector or a CollisionModel, got \['improved'\]$",
+        ),
         ({"collision": "improv"}, "no detector 'improv'"),
         ({"near": [1, 2]}, "expected 9 joint values"),
         ({"near": [np.nan] * 9}, "finite"),
