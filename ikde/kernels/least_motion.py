@@ -18,7 +18,6 @@ from ikde.kernels.motion_step import (
     is_free,
     judge_place,
     list_contacts,
-    make_motion_work,
     set_free_point,
     set_motion,
     set_step,
@@ -26,6 +25,21 @@ from ikde.kernels.motion_step import (
     square_motion,
     stays_inside,
     update_multipliers,
+)
+from ikde.kernels.motion_work import (
+    ALONG,
+    BEST,
+    FREE_POINT,
+    HERE,
+    MOVING,
+    PAIR,
+    POINT,
+    SLACK,
+    SLOPE,
+    SPLIT,
+    STEP,
+    TRIAL,
+    make_motion_work,
 )
 from ikde.kernels.tool_tangent import (
     fill_bend,
@@ -37,11 +51,11 @@ from ikde.kernels.tool_tangent import (
     split,
 )
 
-MAX_STEPS = 60
+MAX_STEPS = 40
 TRIALS = 10  # of one step: halved, or turned away from a contact
 CORRECTIONS = 2  # of one step that goes into a contact
-DONE = 1e-5  # square of the last step, as a share of |y|^2: a next one would be as its square
-DONE_SLIDING = 1e-7  # where each step is a share of the last one
+DONE = 1e-6  # square of the last step, as a share of |y|^2: a next one would be as its square
+DONE_SLIDING = 1e-8  # where each step is a share of the last one
 SHORTER, SHORTEST = 0.2, 0.05  # steps after a walk that got lost; m or rad
 ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
 
@@ -63,12 +77,12 @@ def meets(descent, position, orientation):
 def set_trial(ranges, weight, share, count, work):
     """The end of a share of the step, cut to the joint ranges; returns the square of the motion there, weighed."""
     total = 0.0
-    copy(work.q, work.trial)
+    copy(work.vectors[HERE], work.vectors[TRIAL])
     for k in range(count):
-        joint = work.tangent.moving[k]
-        value = work.q[joint] + share * work.step[k] / weight[joint]
-        work.trial[joint] = min(max(value, ranges[0, joint]), ranges[1, joint])
-        moved = weight[joint] * (work.trial[joint] - work.q[joint])
+        joint = work.whole[MOVING, k]
+        value = work.vectors[HERE, joint] + share * work.vectors[STEP, k] / weight[joint]
+        work.vectors[TRIAL, joint] = min(max(value, ranges[0, joint]), ranges[1, joint])
+        moved = weight[joint] * (work.vectors[TRIAL, joint] - work.vectors[HERE, joint])
         total += moved * moved
     return total
 
@@ -78,7 +92,7 @@ def cap_step(weight, largest, count, work):
     """The share of the step at which no joint moves more than `largest` (m or rad)."""
     most = 0.0
     for k in range(count):
-        most = max(most, abs(work.step[k]) / weight[work.tangent.moving[k]])
+        most = max(most, abs(work.vectors[STEP, k]) / weight[work.whole[MOVING, k]])
     return largest / most if most > largest else 1.0
 
 
@@ -87,20 +101,20 @@ def yield_to_contacts(collision, share, work, count, contacts):
     """Take from the slack of contacts what they miss at the trial's poses, for a second step from the same place."""
     margin = collision.safe_distance + INSIDE
     for i in range(contacts):
-        a, b = collision.pairs[work.pair[i], 0], collision.pairs[work.pair[i], 1]
+        a, b = collision.pairs[work.whole[PAIR, i], 0], collision.pairs[work.whole[PAIR, i], 1]
         gap, _, _ = find_closest_spheres(collision, work.contacts.centres, a, b)
         if gap < margin:
-            expected = work.slack[i]
+            expected = work.numbers[SLACK, i]
             for k in range(count):
-                expected += share * work.slope[i, k] * work.step[k]
-            work.slack[i] += gap - margin - max(expected, 0.0)
+                expected += share * work.vectors[SLOPE + i, k] * work.vectors[STEP, k]
+            work.numbers[SLACK, i] += gap - margin - max(expected, 0.0)
 
 
 @inline_kernel
 def prepare_step(kind, length, weight, rank, count, carrying, work):
     """Set the free point of a step by the split in `work`; returns whether the target bends the wrong way."""
-    fill_bend(kind, length, weight, carrying, work.tangent)
-    fill_null(work.tangent, rank, count)
+    fill_bend(kind, length, weight, carrying, work)
+    fill_null(work, rank, count)
     fill_hessian(work, rank, count, carrying)
     is_bent = factor_hessian(work, count - rank)
     set_free_point(work, rank, count, carrying)
@@ -110,41 +124,44 @@ def prepare_step(kind, length, weight, rank, count, carrying, work):
 @leaf_kernel
 def choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work):
     """The step to the least motion within joint ranges and contacts, and its multipliers; False if there is none."""
-    copy(work.free_point, work.point)
+    is_possible = contacts == 0
+    copy(work.vectors[FREE_POINT], work.vectors[POINT])
     set_step(work, rank, count)
     is_bound = contacts > 0 or not stays_inside(ranges, weight, work, count)
     if is_bound:
-        if not constrain_point(ranges, weight, largest, work, rank, count, contacts):
-            for k in range(count):  # there is no room to take the tool's error away
-                work.tangent.along[k] = 0.0
-            if not constrain_point(ranges, weight, largest, work, rank, count, contacts):
-                return False
+        for tries in range(2):
+            if tries == 1:  # there is no room to take the tool's error away
+                for k in range(count):
+                    work.vectors[ALONG, k] = 0.0
+            is_possible = constrain_point(ranges, weight, largest, work, rank, count, contacts)
+            if is_possible:
+                break
         set_step(work, rank, count)
     update_multipliers(work, rank, used, count, carrying, is_bound)
-    return True
+    return is_possible
 
 
 @leaf_kernel
 def take_motion_step(robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work):
-    """One step of the descent from work.q, whose poses and error are in `work`.
+    """One step of the descent from `HERE`, whose poses and error are in `work`.
 
     `largest` of any joint, m or rad; `is_first`: there are no multipliers yet; `size`: how many joints move, and how
-    many of them carry the tool. Returns whether it was taken, whether it was the
-    last that is worth while, and whether the tool meets its target behind it.
+    many of them carry the tool. Returns whether it was taken, whether it was the last that is worth while, and whether
+    the tool meets its target behind it.
     """
-    tangent, kind, length, (count, carrying) = work.tangent, target.kind[index], descent.rotation_length, size
+    kind, length, (count, carrying) = target.kind[index], descent.rotation_length, size
     contacts = list_contacts(robot, collision, weight, work, count) if slides else 0
-    used = fill_rows(robot, kind, length, weight, count, tangent)
-    rank = split(tangent, used, count)
+    used = fill_rows(robot, kind, length, weight, count, work)
+    rank = split(work, used, count)
     if rank == count:
         return False, True, False
-    set_motion(weight, ranges[2], work.q, count, work)
+    set_motion(weight, ranges[2], work.vectors[HERE], count, work)
     split_motion(work, rank, count)
     if is_first:
-        set_multipliers(tangent, rank, used, work.split)
+        set_multipliers(work, rank, used, work.vectors[SPLIT])
     is_bent = prepare_step(kind, length, weight, rank, count, carrying, work)
     is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
-    square = square_motion(weight, ranges[2], work.q, count, work)
+    square = square_motion(weight, ranges[2], work.vectors[HERE], count, work)
     doubt = choose_doubt(work, used, count)
     before, error = judge_place(work, rank, used, square, doubt)
     share, corrections = cap_step(weight, largest, count, work), CORRECTIONS if contacts > 0 else 0
@@ -153,13 +170,13 @@ def take_motion_step(robot, collision, target, index, ranges, descent, weight, l
         moved = set_trial(ranges, weight, share, count, work)
         if not is_possible or moved == 0.0:
             break
-        position, orientation = place_tool(robot, target, index, length, work.trial, tangent)
-        square_there = square_motion(weight, ranges[2], work.trial, count, work)
+        position, orientation = place_tool(robot, target, index, length, work.vectors[TRIAL], work)
+        square_there = square_motion(weight, ranges[2], work.vectors[TRIAL], count, work)
         after, behind = judge_place(work, rank, used, square_there, doubt)
         is_better = behind <= max(ALMOST * ALMOST * moved, error) and after < before
         clear = not slides or is_free(collision, work)
         if is_better and clear:
-            copy(work.trial, work.q)
+            copy(work.vectors[TRIAL], work.vectors[HERE])
             return True, moved <= enough, meets(descent, position, orientation)
         if is_better and corrections > 0:
             corrections -= 1
@@ -171,24 +188,24 @@ def take_motion_step(robot, collision, target, index, ranges, descent, weight, l
     return False, True, False
 
 
-@inline_kernel
+@leaf_kernel
 def stand(robot, collision, target, index, descent, slides, q, work):
     """Go back to `q` [N]: its poses and error, and the places of its spheres."""
-    copy(q, work.q)
-    place_tool(robot, target, index, descent.rotation_length, q, work.tangent)
+    copy(q, work.vectors[HERE])
+    place_tool(robot, target, index, descent.rotation_length, q, work)
     if slides:
         is_free(collision, work)
 
 
 @leaf_kernel
 def walk(robot, collision, target, index, ranges, descent, weight, slides, q, work):
-    """Steps from `q` [N] on, free of collision if it slides; the best that meets the target is left in work.best.
+    """Steps from `q` [N] on, free of collision if it slides; the best that meets the target is left in `BEST`.
 
     A walk that gets lost begins again at its best, with shorter steps. Returns if any place is better than `q`.
     """
-    size, largest = list_moving(robot, ranges, work.tangent.moving), descent.largest_step
+    size, largest = list_moving(robot, ranges, work.whole[MOVING]), descent.largest_step
     least, is_better, is_first, is_met = square_motion(weight, ranges[2], q, size[0], work), False, True, True
-    copy(q, work.best)
+    copy(q, work.vectors[BEST])
     stand(robot, collision, target, index, descent, slides, q, work)
     for _ in range(MAX_STEPS):
         taken, is_last, meets_there = take_motion_step(
@@ -198,24 +215,24 @@ def walk(robot, collision, target, index, ranges, descent, weight, slides, q, wo
             if is_met or largest < SHORTEST:
                 break
             is_first, is_met, largest = True, True, SHORTER * largest
-            stand(robot, collision, target, index, descent, slides, work.best, work)
+            stand(robot, collision, target, index, descent, slides, work.vectors[BEST], work)
             continue
         is_first, is_met = False, meets_there
-        square = square_motion(weight, ranges[2], work.q, size[0], work)
+        square = square_motion(weight, ranges[2], work.vectors[HERE], size[0], work)
         if is_met and square < least:
             least, is_better = square, True
-            copy(work.q, work.best)
+            copy(work.vectors[HERE], work.vectors[BEST])
         if is_last and is_met:
             break
     return is_better
 
 
-@inline_kernel
+@leaf_kernel
 def is_answer(robot, collision, target, index, ranges, descent, q, work):
     """Whether `q` [N] meets the target, inside the joint ranges and free of collision."""
     if not is_inside(ranges, q):
         return False
-    position, orientation = place_tool(robot, target, index, descent.rotation_length, q, work.tangent)
+    position, orientation = place_tool(robot, target, index, descent.rotation_length, q, work)
     return meets(descent, position, orientation) and is_free(collision, work)
 
 
@@ -225,11 +242,12 @@ def descend_to_near(robot, collision, target, index, ranges, descent, weight, q,
     if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
         copy(ranges[2], q)
         return
-    if not walk(robot, collision, target, index, ranges, descent, weight, False, q, work):
-        return
-    is_done = is_answer(robot, collision, target, index, ranges, descent, work.best, work)
-    if is_done or walk(robot, collision, target, index, ranges, descent, weight, True, q, work):
-        copy(work.best, q)
+    for slides in range(2):
+        if not walk(robot, collision, target, index, ranges, descent, weight, slides == 1, q, work):
+            return
+        if slides == 1 or is_answer(robot, collision, target, index, ranges, descent, work.vectors[BEST], work):
+            copy(work.vectors[BEST], q)
+            return
 
 
 @kernel

@@ -87,20 +87,17 @@ def test_joint_ranges_hold_and_are_used_to_their_ends(qiao, kind, rng):
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_collides_on_its_way_slides_along_the_contact(qiao, kind, rng):
     collision, touching, left = CollisionModel.of(qiao), 0, []
-    for seed in range(40):
-        near = random_q(qiao, rng)
-        target = make_target(qiao, beside(qiao, near, rng, 0.35), kind)
-        found = ikde.solve(qiao, target, method="lm", seed=seed)
-        if not found.reached:
-            continue
+    for _ in range(25):
+        q = free_q(qiao, rng)
+        near, target = beside(qiao, q, rng, 0.5), make_target(qiao, q, kind)
         problem = problem_of(qiao, near=near)
-        end = reduce_motion(problem, target, found.q)
+        end = reduce_motion(problem, target, q)
         assert ikde.verify(qiao, target, end).accepted
-        assert motion(problem.weights, near, end) <= motion(problem.weights, near, found.q)
+        assert motion(problem.weights, near, end) <= motion(problem.weights, near, q)
         if room(collision, end).min() < 1e-6:
             touching += 1
             left.append(residual(problem, target, end, collision))
-    assert touching >= 3
+    assert touching >= 2
     assert np.median(left) < 1e-3
 
 
@@ -108,8 +105,8 @@ def test_what_collides_on_its_way_slides_along_the_contact(qiao, kind, rng):
 def test_near_itself_is_the_answer_to_the_bit(any_robot, kind, rng):
     near = free_q(any_robot, rng)
     target = make_target(any_robot, near, kind)
-    problem, q = problem_of(any_robot, near=near), ikde.solve(any_robot, target).q
-    assert reduce_motion(problem, target, q).tobytes() == near.tobytes()
+    problem = problem_of(any_robot, near=near)
+    assert reduce_motion(problem, target, any_robot.home).tobytes() == near.tobytes()
 
 
 def test_near_is_no_answer_if_it_collides(qiao, rng):
