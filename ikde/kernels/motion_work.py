@@ -29,8 +29,8 @@ ERROR, MULTIPLIER, DIAGONAL, SCALE, SLACK = range(5)  # rows of `numbers`: of th
 MOVING, ORDER, PAIR = range(3)  # rows of `whole`: joints, parents first; the target's row of each row; pairs of gaps
 
 
-class MotionWork(NamedTuple):
-    """The tables, for N joints."""
+class MotionTables(NamedTuple):
+    """What most kernels need of it, for N joints."""
 
     vectors: Floats  # [SLOPE + MAX_CONTACTS, N]
     matrices: Floats  # [3, N, N]
@@ -40,6 +40,12 @@ class MotionWork(NamedTuple):
     T_world_tool: Floats  # [3, 4]
     length: Floats  # [2 N + MAX_CONTACTS] of the normals of the half spaces
     owner: Ints  # [2 N + MAX_CONTACTS] 2 k and 2 k + 1: lower and upper end of joint k; beyond: gaps
+
+
+class MotionWork(NamedTuple):
+    """All of it."""
+
+    tables: MotionTables
     contacts: Contacts
     spaces: HalfSpaces
 
@@ -47,7 +53,7 @@ class MotionWork(NamedTuple):
 @kernel
 def make_motion_work(robot, collision, joints):
     """Room for a robot and a collision model."""
-    return MotionWork(
+    tables = MotionTables(
         np.empty((SLOPE + MAX_CONTACTS, joints)),
         np.empty((3, joints, joints)),
         np.empty((5, MAX_CONTACTS)),
@@ -56,6 +62,9 @@ def make_motion_work(robot, collision, joints):
         np.empty((3, 4)),
         np.empty(2 * joints + MAX_CONTACTS),
         np.empty(2 * joints + MAX_CONTACTS, dtype=np.int64),
+    )
+    return MotionWork(
+        tables,
         make_contacts(np.empty((collision.components.shape[0], 3)), np.empty((3, collision.radius.size)), MAX_CONTACTS),
         make_half_spaces(2 * joints + MAX_CONTACTS, joints),
     )
