@@ -18,7 +18,6 @@ from ikde.kernels.motion_step import (
     is_free,
     judge_place,
     list_contacts,
-    make_motion_work,
     set_free_point,
     set_motion,
     set_step,
@@ -26,6 +25,21 @@ from ikde.kernels.motion_step import (
     square_motion,
     stays_inside,
     update_multipliers,
+)
+from ikde.kernels.motion_work import (
+    ALONG,
+    BEST,
+    FREE_POINT,
+    HERE,
+    MOVING,
+    PAIR,
+    POINT,
+    SLACK,
+    SLOPE,
+    SPLIT,
+    STEP,
+    TRIAL,
+    make_motion_work,
 )
 from ikde.kernels.tool_tangent import (
     fill_bend,
@@ -37,11 +51,11 @@ from ikde.kernels.tool_tangent import (
     split,
 )
 
-MAX_STEPS = 60
+MAX_STEPS = 40
 TRIALS = 10  # of one step: halved, or turned away from a contact
 CORRECTIONS = 2  # of one step that goes into a contact
-DONE = 1e-5  # square of the last step, as a share of |y|^2: a next one would be as its square
-DONE_SLIDING = 1e-7  # where each step is a share of the last one
+DONE = 1e-6  # square of the last step, as a share of |y|^2: a next one would be as its square
+DONE_SLIDING = 1e-8  # where each step is a share of the last one
 SHORTER, SHORTEST = 0.2, 0.05  # steps after a walk that got lost; m or rad
 ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
 
@@ -60,25 +74,25 @@ def meets(descent, position, orientation):
 
 
 @inline_kernel
-def set_trial(ranges, weight, share, count, work):
+def set_trial(ranges, weight, share, count, tables):
     """The end of a share of the step, cut to the joint ranges; returns the square of the motion there, weighed."""
     total = 0.0
-    copy(work.q, work.trial)
+    copy(tables.vectors[HERE], tables.vectors[TRIAL])
     for k in range(count):
-        joint = work.tangent.moving[k]
-        value = work.q[joint] + share * work.step[k] / weight[joint]
-        work.trial[joint] = min(max(value, ranges[0, joint]), ranges[1, joint])
-        moved = weight[joint] * (work.trial[joint] - work.q[joint])
+        joint = tables.whole[MOVING, k]
+        value = tables.vectors[HERE, joint] + share * tables.vectors[STEP, k] / weight[joint]
+        tables.vectors[TRIAL, joint] = min(max(value, ranges[0, joint]), ranges[1, joint])
+        moved = weight[joint] * (tables.vectors[TRIAL, joint] - tables.vectors[HERE, joint])
         total += moved * moved
     return total
 
 
 @inline_kernel
-def cap_step(weight, largest, count, work):
+def cap_step(weight, largest, count, tables):
     """The share of the step at which no joint moves more than `largest` (m or rad)."""
     most = 0.0
     for k in range(count):
-        most = max(most, abs(work.step[k]) / weight[work.tangent.moving[k]])
+        most = max(most, abs(tables.vectors[STEP, k]) / weight[tables.whole[MOVING, k]])
     return largest / most if most > largest else 1.0
 
 
@@ -87,109 +101,113 @@ def yield_to_contacts(collision, share, work, count, contacts):
     """Take from the slack of contacts what they miss at the trial's poses, for a second step from the same place."""
     margin = collision.safe_distance + INSIDE
     for i in range(contacts):
-        a, b = collision.pairs[work.pair[i], 0], collision.pairs[work.pair[i], 1]
+        a, b = collision.pairs[work.tables.whole[PAIR, i], 0], collision.pairs[work.tables.whole[PAIR, i], 1]
         gap, _, _ = find_closest_spheres(collision, work.contacts.centres, a, b)
         if gap < margin:
-            expected = work.slack[i]
+            expected = work.tables.numbers[SLACK, i]
             for k in range(count):
-                expected += share * work.slope[i, k] * work.step[k]
-            work.slack[i] += gap - margin - max(expected, 0.0)
+                expected += share * work.tables.vectors[SLOPE + i, k] * work.tables.vectors[STEP, k]
+            work.tables.numbers[SLACK, i] += gap - margin - max(expected, 0.0)
 
 
 @inline_kernel
-def prepare_step(kind, length, weight, rank, count, carrying, work):
-    """Set the free point of a step by the split in `work`; returns whether the target bends the wrong way."""
-    fill_bend(kind, length, weight, carrying, work.tangent)
-    fill_null(work.tangent, rank, count)
-    fill_hessian(work, rank, count, carrying)
-    is_bent = factor_hessian(work, count - rank)
-    set_free_point(work, rank, count, carrying)
+def prepare_step(kind, length, weight, rank, count, carrying, tables):
+    """Set the free point of a step by the split in `tables`; returns whether the target bends the wrong way."""
+    fill_bend(kind, length, weight, carrying, tables)
+    fill_null(tables, rank, count)
+    fill_hessian(tables, rank, count, carrying)
+    is_bent = factor_hessian(tables, count - rank)
+    set_free_point(tables, rank, count, carrying)
     return is_bent
 
 
 @leaf_kernel
 def choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work):
     """The step to the least motion within joint ranges and contacts, and its multipliers; False if there is none."""
-    copy(work.free_point, work.point)
-    set_step(work, rank, count)
-    is_bound = contacts > 0 or not stays_inside(ranges, weight, work, count)
+    is_possible = contacts == 0
+    copy(work.tables.vectors[FREE_POINT], work.tables.vectors[POINT])
+    set_step(work.tables, rank, count)
+    is_bound = contacts > 0 or not stays_inside(ranges, weight, work.tables, count)
     if is_bound:
-        if not constrain_point(ranges, weight, largest, work, rank, count, contacts):
-            for k in range(count):  # there is no room to take the tool's error away
-                work.tangent.along[k] = 0.0
-            if not constrain_point(ranges, weight, largest, work, rank, count, contacts):
-                return False
-        set_step(work, rank, count)
+        for tries in range(2):
+            if tries == 1:  # there is no room to take the tool's error away
+                for k in range(count):
+                    work.tables.vectors[ALONG, k] = 0.0
+            is_possible = constrain_point(ranges, weight, largest, work, rank, count, contacts)
+            if is_possible:
+                break
+        set_step(work.tables, rank, count)
     update_multipliers(work, rank, used, count, carrying, is_bound)
-    return True
+    return is_possible
 
 
 @leaf_kernel
 def take_motion_step(robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work):
-    """One step of the descent from work.q, whose poses and error are in `work`.
+    """One step of the descent from `HERE`, whose poses and error are in `work`.
 
     `largest` of any joint, m or rad; `is_first`: there are no multipliers yet; `size`: how many joints move, and how
-    many of them carry the tool. Returns whether it was taken, whether it was the
-    last that is worth while, and whether the tool meets its target behind it.
+    many of them carry the tool. Returns whether it was taken, whether it was the last that is worth while, and whether
+    the tool meets its target behind it.
     """
-    tangent, kind, length, (count, carrying) = work.tangent, target.kind[index], descent.rotation_length, size
+    kind, length, (count, carrying) = target.kind[index], descent.rotation_length, size
     contacts = list_contacts(robot, collision, weight, work, count) if slides else 0
-    used = fill_rows(robot, kind, length, weight, count, tangent)
-    rank = split(tangent, used, count)
+    used = fill_rows(robot, kind, length, weight, count, work.tables)
+    rank = split(work.tables, used, count)
     if rank == count:
         return False, True, False
-    set_motion(weight, ranges[2], work.q, count, work)
-    split_motion(work, rank, count)
+    set_motion(weight, ranges[2], work.tables.vectors[HERE], count, work.tables)
+    split_motion(work.tables, rank, count)
     if is_first:
-        set_multipliers(tangent, rank, used, work.split)
-    is_bent = prepare_step(kind, length, weight, rank, count, carrying, work)
+        set_multipliers(work.tables, rank, used, work.tables.vectors[SPLIT])
+    is_bent = prepare_step(kind, length, weight, rank, count, carrying, work.tables)
     is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
-    square = square_motion(weight, ranges[2], work.q, count, work)
-    doubt = choose_doubt(work, used, count)
-    before, error = judge_place(work, rank, used, square, doubt)
-    share, corrections = cap_step(weight, largest, count, work), CORRECTIONS if contacts > 0 else 0
+    square = square_motion(weight, ranges[2], work.tables.vectors[HERE], count, work.tables)
+    doubt = choose_doubt(work.tables, used, count)
+    before, error = judge_place(work.tables, rank, used, square, doubt)
+    share, corrections = cap_step(weight, largest, count, work.tables), CORRECTIONS if contacts > 0 else 0
     enough = (DONE_SLIDING if contacts > 0 or is_bent else DONE) * square
     for _ in range(TRIALS):
-        moved = set_trial(ranges, weight, share, count, work)
+        moved = set_trial(ranges, weight, share, count, work.tables)
         if not is_possible or moved == 0.0:
             break
-        position, orientation = place_tool(robot, target, index, length, work.trial, tangent)
-        square_there = square_motion(weight, ranges[2], work.trial, count, work)
-        after, behind = judge_place(work, rank, used, square_there, doubt)
+        position, orientation = place_tool(robot, target, index, length, work.tables.vectors[TRIAL], work.tables)
+        square_there = square_motion(weight, ranges[2], work.tables.vectors[TRIAL], count, work.tables)
+        after, behind = judge_place(work.tables, rank, used, square_there, doubt)
         is_better = behind <= max(ALMOST * ALMOST * moved, error) and after < before
         clear = not slides or is_free(collision, work)
         if is_better and clear:
-            copy(work.trial, work.q)
+            copy(work.tables.vectors[TRIAL], work.tables.vectors[HERE])
             return True, moved <= enough, meets(descent, position, orientation)
         if is_better and corrections > 0:
             corrections -= 1
             yield_to_contacts(collision, share, work, count, contacts)
             is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
-            share = cap_step(weight, largest, count, work)
+            share = cap_step(weight, largest, count, work.tables)
         else:
             share *= 0.5
     return False, True, False
 
 
-@inline_kernel
+@leaf_kernel
 def stand(robot, collision, target, index, descent, slides, q, work):
     """Go back to `q` [N]: its poses and error, and the places of its spheres."""
-    copy(q, work.q)
-    place_tool(robot, target, index, descent.rotation_length, q, work.tangent)
+    copy(q, work.tables.vectors[HERE])
+    place_tool(robot, target, index, descent.rotation_length, q, work.tables)
     if slides:
         is_free(collision, work)
 
 
 @leaf_kernel
 def walk(robot, collision, target, index, ranges, descent, weight, slides, q, work):
-    """Steps from `q` [N] on, free of collision if it slides; the best that meets the target is left in work.best.
+    """Steps from `q` [N] on, free of collision if it slides; the last that meets the target is left in `BEST`.
 
-    A walk that gets lost begins again at its best, with shorter steps. Returns if any place is better than `q`.
+    It is no worse than those before it: what they win beside it they win within the tolerances. A walk that gets lost
+    begins again there, with shorter steps. Returns if any place is better than `q`.
     """
-    size, largest = list_moving(robot, ranges, work.tangent.moving), descent.largest_step
-    least, is_better = square_motion(weight, ranges[2], q, size[0], work), False
+    size, largest = list_moving(robot, ranges, work.tables.whole[MOVING]), descent.largest_step
+    began, is_better = square_motion(weight, ranges[2], q, size[0], work.tables), False
     is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
-    copy(q, work.best)
+    copy(q, work.tables.vectors[BEST])
     stand(robot, collision, target, index, descent, slides, q, work)
     for _ in range(MAX_STEPS):
         taken, is_last, meets_there = take_motion_step(
@@ -199,24 +217,23 @@ def walk(robot, collision, target, index, ranges, descent, weight, slides, q, wo
             if is_met or largest < SHORTEST:
                 break
             is_first, is_met, largest = True, True, SHORTER * largest
-            stand(robot, collision, target, index, descent, slides, work.best, work)
+            stand(robot, collision, target, index, descent, slides, work.tables.vectors[BEST], work)
             continue
         is_first, is_met = False, meets_there
-        square = square_motion(weight, ranges[2], work.q, size[0], work)
-        if is_met and square < least:
-            least, is_better = square, True
-            copy(work.q, work.best)
+        if is_met and square_motion(weight, ranges[2], work.tables.vectors[HERE], size[0], work.tables) < began:
+            is_better = True
+            copy(work.tables.vectors[HERE], work.tables.vectors[BEST])
         if is_last and is_met:
             break
     return is_better
 
 
-@inline_kernel
+@leaf_kernel
 def is_answer(robot, collision, target, index, ranges, descent, q, work):
     """Whether `q` [N] meets the target, inside the joint ranges and free of collision."""
     if not is_inside(ranges, q):
         return False
-    position, orientation = place_tool(robot, target, index, descent.rotation_length, q, work.tangent)
+    position, orientation = place_tool(robot, target, index, descent.rotation_length, q, work.tables)
     return meets(descent, position, orientation) and is_free(collision, work)
 
 
@@ -226,12 +243,11 @@ def descend_to_near(robot, collision, target, index, ranges, descent, weight, q,
     if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
         copy(ranges[2], q)
         return
-    for tries in range(2):
-        slides = tries > 0  # a constant would be compiled into a walk of its own
-        if not walk(robot, collision, target, index, ranges, descent, weight, slides, q, work):
+    for slides in range(2):
+        if not walk(robot, collision, target, index, ranges, descent, weight, slides == 1, q, work):
             return
-        if slides or is_answer(robot, collision, target, index, ranges, descent, work.best, work):
-            copy(work.best, q)
+        if slides == 1 or is_answer(robot, collision, target, index, ranges, descent, work.tables.vectors[BEST], work):
+            copy(work.tables.vectors[BEST], q)
             return
 
 

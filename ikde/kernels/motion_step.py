@@ -7,294 +7,258 @@ the point L^T u, the least within joint ranges and contacts is the nearest point
 """
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-
-from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.clearance import find_colliding_pair
-from ikde.kernels.contacts import Contacts, fill_gradient, find_contacts, make_contacts
-from ikde.kernels.dual_active_set import HalfSpaces, find_nearest_point, make_half_spaces
-from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
+from ikde.kernels.contacts import fill_gradient, find_contacts
+from ikde.kernels.dual_active_set import find_nearest_point
+from ikde.kernels.jit import inline_kernel, leaf_kernel
+from ikde.kernels.motion_work import (
+    ALONG,
+    BEHIND,
+    BEND,
+    ERROR,
+    FREE_POINT,
+    HERE,
+    HESSIAN,
+    MAX_CONTACTS,
+    MOVING,
+    MULTIPLIER,
+    NULL,
+    PAIR,
+    POINT,
+    PRODUCT,
+    ROW,
+    SLACK,
+    SLOPE,
+    SPLIT,
+    STEP,
+    Y,
+)
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.kernels.tool_tangent import (
-    Tangent,
     apply,
     apply_transposed,
-    make_tangent,
     set_multipliers,
     solve_along,
 )
 
 MIN_PIVOT = 0.1  # of the reduced Hessian, which is 1 where the tool moves straight
-MAX_CONTACTS = 12
 REACH = 0.1  # m beyond the safe distance: nearer pairs are constrained
 INSIDE = 2e-9  # m beyond the safe distance: where contacts are set, so that rounding and bend leave them free
+FIRST_SHIFT = 0.125  # of its diagonal, where it is less
 DOUBT, MOST_DOUBT = 2.0, 100.0
 DOWNHILL = 0.05  # how much of the square of a step it shall win at least
 MIN_SLOPE = 1e-9  # below it no step along the null space changes a constraint
 
 
-class MotionWork(NamedTuple):
-    """Room for the numbers of a descent."""
-
-    tangent: Tangent
-    y: Floats  # [N] the motion so far, of the joints that move
-    split: Floats  # [N] Q^T y
-    behind: Floats  # [N] the motion that takes away the error behind a step
-    step: Floats  # [N]
-    q: Floats  # [N] where the descent stands
-    trial: Floats  # [N]
-    best: Floats  # [N]
-    hessian: Floats  # [N, N] in the null space, then its Cholesky factor
-    gradient: Floats  # [N] in the null space
-    free_point: Floats  # [N] the minimum without constraints, in coordinates in which the Hessian is 1
-    point: Floats  # [N] the minimum within them
-    product: Floats  # [N]
-    row: Floats  # [N]
-    slope: Floats  # [MAX_CONTACTS, N] of the gaps
-    slack: Floats  # [MAX_CONTACTS] m
-    pair: Ints  # [MAX_CONTACTS]
-    length: Floats  # [2 N + MAX_CONTACTS] of the normals of the half spaces
-    owner: Ints  # [2 N + MAX_CONTACTS] 2 k and 2 k + 1: lower and upper end of joint k; beyond: contacts
-    contacts: Contacts
-    spaces: HalfSpaces
-
-
-@kernel
-def make_motion_work(robot, collision, joints):
-    """Room for a robot and a collision model."""
-    return MotionWork(
-        make_tangent(robot, joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty((joints, joints)),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty(joints),
-        np.empty((MAX_CONTACTS, joints)),
-        np.empty(MAX_CONTACTS),
-        np.empty(MAX_CONTACTS, dtype=np.int64),
-        np.empty(2 * joints + MAX_CONTACTS),
-        np.empty(2 * joints + MAX_CONTACTS, dtype=np.int64),
-        make_contacts(np.empty((collision.components.shape[0], 3)), np.empty((3, collision.radius.size)), MAX_CONTACTS),
-        make_half_spaces(2 * joints + MAX_CONTACTS, joints),
-    )
-
-
 @inline_kernel
-def set_motion(weight, near, q, count, work):
+def set_motion(weight, near, q, count, tables):
     """The weighed motion from `near` to `q` [N] of the joints that move, into `y`."""
     for k in range(count):
-        joint = work.tangent.moving[k]
-        work.y[k] = weight[joint] * (q[joint] - near[joint])
+        joint = tables.whole[MOVING, k]
+        tables.vectors[Y, k] = weight[joint] * (q[joint] - near[joint])
 
 
 @inline_kernel
-def square_motion(weight, near, q, count, work):
+def square_motion(weight, near, q, count, tables):
     """Square of the weighed motion from `near` to `q` [N] of the joints that move."""
     total = 0.0
     for k in range(count):
-        joint = work.tangent.moving[k]
+        joint = tables.whole[MOVING, k]
         moved = weight[joint] * (q[joint] - near[joint])
         total += moved * moved
     return total
 
 
-@inline_kernel
+@leaf_kernel
 def is_free(collision, work):
     """Whether the poses in `work` are free of collision; the spheres are placed there."""
     contacts = work.contacts
-    compute_bounds(collision, work.tangent.T_world_body, contacts.bounds)
-    compute_centres(collision, work.tangent.T_world_body, contacts.centres)
+    compute_bounds(collision, work.tables.T_world_body, contacts.bounds)
+    compute_centres(collision, work.tables.T_world_body, contacts.centres)
     return find_colliding_pair(collision, contacts.bounds, contacts.centres) < 0
 
 
 @inline_kernel
-def split_motion(work, rank, count):
+def split_motion(tables, rank, count):
     """Q^T y, into `split`."""
     for k in range(count):
-        work.split[k] = work.y[k]
-    apply_transposed(work.tangent, rank, count, work.split)
+        tables.vectors[SPLIT, k] = tables.vectors[Y, k]
+    apply_transposed(tables, rank, count, tables.vectors[SPLIT])
 
 
 @inline_kernel
-def judge_place(work, rank, used, square, doubt):
+def judge_place(tables, rank, used, square, doubt):
     """What a place is worth, by the split and the multipliers at hand, and the square of what its error takes away.
 
     |y|^2, `square`, is corrected by what taking the tool's error away costs: to first order by the multipliers, and by
     `doubt` times the square of that motion, since more than the first order is not known.
     """
-    tangent, behind, cost = work.tangent, 0.0, 0.0
-    solve_along(tangent, rank, work.behind)
+    behind, cost = 0.0, 0.0
+    solve_along(tables, rank, tables.vectors[BEHIND])
     for k in range(rank):
-        behind += work.behind[k] * work.behind[k]
+        behind += tables.vectors[BEHIND, k] * tables.vectors[BEHIND, k]
     for i in range(used):
-        cost += tangent.multipliers[i] * tangent.error[i]
+        cost += tables.numbers[MULTIPLIER, i] * tables.numbers[ERROR, i]
     return square + 2.0 * cost + doubt * behind, behind
 
 
 @inline_kernel
-def choose_doubt(work, used, count):
+def choose_doubt(tables, used, count):
     """So much doubt that the step is downhill by a share of its square."""
     slope, square, behind = 0.0, 0.0, 0.0
     for k in range(count):
-        slope += work.y[k] * work.step[k]
-        square += work.step[k] * work.step[k]
-        behind += work.tangent.along[k] * work.tangent.along[k]
+        slope += tables.vectors[Y, k] * tables.vectors[STEP, k]
+        square += tables.vectors[STEP, k] * tables.vectors[STEP, k]
+        behind += tables.vectors[ALONG, k] * tables.vectors[ALONG, k]
     for i in range(used):
-        slope -= work.tangent.multipliers[i] * work.tangent.error[i]
+        slope -= tables.numbers[MULTIPLIER, i] * tables.numbers[ERROR, i]
     lacking = slope + DOWNHILL * square
     return min(DOUBT + lacking / behind, MOST_DOUBT) if lacking > 0.0 and behind > 0.0 else DOUBT
 
 
 @inline_kernel
-def fill_hessian(work, rank, count, carrying):
+def fill_hessian(tables, rank, count, carrying):
     """Upper triangle of Z^T (I - bend) Z, and its diagonal in `product`."""
-    tangent, size = work.tangent, count - rank
+    size = count - rank
     for b in range(size):
         for j in range(carrying):
             total = 0.0
             for k in range(carrying):
-                total += tangent.bend[j, k] * tangent.null[b, k]
-            work.row[j] = total
+                total += tables.matrices[BEND, j, k] * tables.matrices[NULL, b, k]
+            tables.vectors[ROW, j] = total
         for a in range(b + 1):
             total = 1.0 if a == b else 0.0
             for j in range(carrying):
-                total -= tangent.null[a, j] * work.row[j]
+                total -= tables.matrices[NULL, a, j] * tables.vectors[ROW, j]
             if a == b:
-                work.product[a] = total
+                tables.vectors[PRODUCT, a] = total
             else:
-                work.hessian[a, b] = total
+                tables.matrices[HESSIAN, a, b] = total
 
 
 @inline_kernel
-def factor_hessian(work, size):
-    """Cholesky factor of the reduced Hessian, into its lower triangle; what bends the wrong way counts as straight.
+def factor_hessian(tables, size):
+    """Cholesky factor of the reduced Hessian, into its lower triangle; its diagonal grows until it is definite.
 
-    Returns whether anything does.
+    Returns whether it had to.
     """
-    is_bent = False
-    for row in range(size):
-        pivot = work.product[row]
+    shift, row = 0.0, 0
+    while row < size:
+        pivot = tables.vectors[PRODUCT, row] + shift
         for b in range(row):
-            total = work.hessian[b, row]
+            total = tables.matrices[HESSIAN, b, row]
             for k in range(b):
-                total -= work.hessian[row, k] * work.hessian[b, k]
-            work.hessian[row, b] = total / work.hessian[b, b]
-            pivot -= work.hessian[row, b] * work.hessian[row, b]
+                total -= tables.matrices[HESSIAN, row, k] * tables.matrices[HESSIAN, b, k]
+            tables.matrices[HESSIAN, row, b] = total / tables.matrices[HESSIAN, b, b]
+            pivot -= tables.matrices[HESSIAN, row, b] * tables.matrices[HESSIAN, row, b]
         if pivot < MIN_PIVOT:
-            is_bent, pivot = True, max(1.0, -pivot)
-        work.hessian[row, row] = math.sqrt(pivot)
-    return is_bent
+            shift, row = max(2.0 * shift, FIRST_SHIFT), 0
+        else:
+            tables.matrices[HESSIAN, row, row] = math.sqrt(pivot)
+            row += 1
+    return shift > 0.0
 
 
 @inline_kernel
-def whiten(work, size, x):
+def whiten(tables, size, x):
     """L^-1 x, in place, with the Cholesky factor L."""
     for a in range(size):
         for k in range(a):
-            x[a] -= work.hessian[a, k] * x[k]
-        x[a] /= work.hessian[a, a]
+            x[a] -= tables.matrices[HESSIAN, a, k] * x[k]
+        x[a] /= tables.matrices[HESSIAN, a, a]
 
 
 @inline_kernel
-def apply_bend(work, carrying, x, out_x):
+def apply_bend(tables, carrying, x, out_x):
     """The bend times a motion `x` [n], of the joints that carry the tool."""
     for j in range(carrying):
         out_x[j] = 0.0
         for k in range(carrying):
-            out_x[j] += work.tangent.bend[j, k] * x[k]
+            out_x[j] += tables.matrices[BEND, j, k] * x[k]
 
 
 @inline_kernel
-def set_free_point(work, rank, count, carrying):
+def set_free_point(tables, rank, count, carrying):
     """The minimum without constraints: -L^-1 Z^T (y - bend along)."""
-    tangent, size = work.tangent, count - rank
-    solve_along(tangent, rank, tangent.along)
+    size = count - rank
+    solve_along(tables, rank, tables.vectors[ALONG])
     for k in range(rank, count):
-        tangent.along[k] = 0.0
-    apply(tangent, rank, count, tangent.along)
-    apply_bend(work, carrying, tangent.along, work.row)
+        tables.vectors[ALONG, k] = 0.0
+    apply(tables, rank, count, tables.vectors[ALONG])
+    apply_bend(tables, carrying, tables.vectors[ALONG], tables.vectors[ROW])
     for a in range(size):
-        work.free_point[a] = -work.split[rank + a]
+        tables.vectors[FREE_POINT, a] = -tables.vectors[SPLIT, rank + a]
         for j in range(carrying):
-            work.free_point[a] += tangent.null[a, j] * work.row[j]
-    whiten(work, size, work.free_point)
+            tables.vectors[FREE_POINT, a] += tables.matrices[NULL, a, j] * tables.vectors[ROW, j]
+    whiten(tables, size, tables.vectors[FREE_POINT])
 
 
 @inline_kernel
-def set_step(work, rank, count):
+def set_step(tables, rank, count):
     """The step [n] of `point`: along + Z L^-T point."""
-    tangent, size = work.tangent, count - rank
+    size = count - rank
     for a in range(size - 1, -1, -1):
-        total = work.point[a]
+        total = tables.vectors[POINT, a]
         for k in range(a + 1, size):
-            total -= work.hessian[k, a] * work.product[k]
-        work.product[a] = total / work.hessian[a, a]
+            total -= tables.matrices[HESSIAN, k, a] * tables.vectors[PRODUCT, k]
+        tables.vectors[PRODUCT, a] = total / tables.matrices[HESSIAN, a, a]
     for k in range(count):
-        work.step[k] = tangent.along[k]
+        tables.vectors[STEP, k] = tables.vectors[ALONG, k]
         for a in range(size):
-            work.step[k] += work.product[a] * tangent.null[a, k]
+            tables.vectors[STEP, k] += tables.vectors[PRODUCT, a] * tables.matrices[NULL, a, k]
 
 
 @inline_kernel
-def stays_inside(ranges, weight, work, count):
+def stays_inside(ranges, weight, tables, count):
     """Whether the step stays in the joint ranges."""
     for k in range(count):
-        joint = work.tangent.moving[k]
-        end = work.q[joint] + work.step[k] / weight[joint]
+        joint = tables.whole[MOVING, k]
+        end = tables.vectors[HERE, joint] + tables.vectors[STEP, k] / weight[joint]
         if end < ranges[0, joint] or end > ranges[1, joint]:
             return False
     return True
 
 
-@inline_kernel
+@leaf_kernel
 def add_half_space(work, size, offset, owner, at):
     """The half space row . u >= offset of the null space's coordinates u as number `at`; returns how many then."""
     spaces, square = work.spaces, 0.0
-    whiten(work, size, work.row)
+    whiten(work.tables, size, work.tables.vectors[ROW])
     for a in range(size):
-        square += work.row[a] * work.row[a]
+        square += work.tables.vectors[ROW, a] * work.tables.vectors[ROW, a]
     length = math.sqrt(square)
     if length < MIN_SLOPE:
         return at
-    for a in range(work.row.size):
-        spaces.normals[at, a] = work.row[a] / length if a < size else 0.0
+    for a in range(work.tables.vectors.shape[1]):
+        spaces.normals[at, a] = work.tables.vectors[ROW, a] / length if a < size else 0.0
     spaces.offsets[at] = offset / length
-    work.length[at], work.owner[at] = length, owner
+    work.tables.length[at], work.tables.owner[at] = length, owner
     return at + 1
 
 
 @inline_kernel
 def fill_half_spaces(ranges, weight, largest, work, rank, count, contacts):
     """Contacts, and the ends of joint ranges nearer than `largest` (m or rad), as half spaces; returns how many."""
-    tangent, size, at = work.tangent, count - rank, 0
+    size, at = count - rank, 0
     for k in range(count):
-        joint = tangent.moving[k]
+        joint = work.tables.whole[MOVING, k]
         for side in range(2):
             sign = 1.0 - 2.0 * side
             for a in range(size):
-                work.row[a] = sign * tangent.null[a, k]
-            room = sign * (ranges[side, joint] - work.q[joint])
+                work.tables.vectors[ROW, a] = sign * work.tables.matrices[NULL, a, k]
+            room = sign * (ranges[side, joint] - work.tables.vectors[HERE, joint])
             if room > -largest:
-                offset = weight[joint] * room - sign * tangent.along[k]
+                offset = weight[joint] * room - sign * work.tables.vectors[ALONG, k]
                 at = add_half_space(work, size, offset, 2 * k + side, at)
     for i in range(contacts):
-        offset = -work.slack[i]
+        offset = -work.tables.numbers[SLACK, i]
         for k in range(count):
-            offset -= work.slope[i, k] * tangent.along[k]
+            offset -= work.tables.vectors[SLOPE + i, k] * work.tables.vectors[ALONG, k]
         for a in range(size):
-            work.row[a] = 0.0
+            work.tables.vectors[ROW, a] = 0.0
             for k in range(count):
-                work.row[a] += tangent.null[a, k] * work.slope[i, k]
+                work.tables.vectors[ROW, a] += work.tables.matrices[NULL, a, k] * work.tables.vectors[SLOPE + i, k]
         at = add_half_space(work, size, offset, 2 * count + i, at)
     return at
 
@@ -303,32 +267,32 @@ def fill_half_spaces(ranges, weight, largest, work, rank, count, contacts):
 def constrain_point(ranges, weight, largest, work, rank, count, contacts):
     """Move `point` to the nearest one from which all constraints are met; False if there is none."""
     spaces = fill_half_spaces(ranges, weight, largest, work, rank, count, contacts)
-    for a in range(work.point.size):
-        work.point[a] = work.free_point[a] if a < count - rank else 0.0
-    return find_nearest_point(work.spaces, spaces, work.point)
+    for a in range(work.tables.vectors.shape[1]):
+        work.tables.vectors[POINT, a] = work.tables.vectors[FREE_POINT, a] if a < count - rank else 0.0
+    return find_nearest_point(work.spaces, spaces, work.tables.vectors[POINT])
 
 
 @inline_kernel
 def update_multipliers(work, rank, used, count, carrying, is_bound):
     """Multipliers of the target's rows behind the step: what constraints leave of y + step - bend step."""
-    tangent, spaces = work.tangent, work.spaces
-    apply_bend(work, carrying, work.step, work.row)
+    spaces = work.spaces
+    apply_bend(work.tables, carrying, work.tables.vectors[STEP], work.tables.vectors[ROW])
     for k in range(count):
-        work.split[k] = work.y[k] + work.step[k]
+        work.tables.vectors[SPLIT, k] = work.tables.vectors[Y, k] + work.tables.vectors[STEP, k]
         if k < carrying:
-            work.split[k] -= work.row[k]
+            work.tables.vectors[SPLIT, k] -= work.tables.vectors[ROW, k]
     active = 0
     while is_bound and spaces.active[active] >= 0:
         number = spaces.active[active]
-        force, owner = spaces.multipliers[active] / work.length[number], work.owner[number]
+        force, owner = spaces.multipliers[active] / work.tables.length[number], work.tables.owner[number]
         if owner < 2 * count:
-            work.split[owner // 2] -= force * (1.0 - 2.0 * (owner % 2))
+            work.tables.vectors[SPLIT, owner // 2] -= force * (1.0 - 2.0 * (owner % 2))
         else:
             for k in range(count):
-                work.split[k] -= force * work.slope[owner - 2 * count, k]
+                work.tables.vectors[SPLIT, k] -= force * work.tables.vectors[SLOPE + owner - 2 * count, k]
         active += 1
-    apply_transposed(tangent, rank, count, work.split)
-    set_multipliers(tangent, rank, used, work.split)
+    apply_transposed(work.tables, rank, count, work.tables.vectors[SPLIT])
+    set_multipliers(work.tables, rank, used, work.tables.vectors[SPLIT])
 
 
 @leaf_kernel
@@ -337,9 +301,12 @@ def list_contacts(robot, collision, weight, work, count):
     margin = collision.safe_distance + INSIDE
     found = find_contacts(collision, margin + REACH, MAX_CONTACTS, work.contacts)
     for i in range(found):
-        fill_gradient(robot, collision, work.tangent.T_world_body, work.contacts, i, work.row)
-        work.slack[i], work.pair[i] = work.contacts.gap[i] - margin, work.contacts.spheres[i, 0]
+        fill_gradient(robot, collision, work.tables.T_world_body, work.contacts, i, work.tables.vectors[ROW])
+        work.tables.numbers[SLACK, i], work.tables.whole[PAIR, i] = (
+            work.contacts.gap[i] - margin,
+            work.contacts.spheres[i, 0],
+        )
         for k in range(count):
-            joint = work.tangent.moving[k]
-            work.slope[i, k] = work.row[joint] / weight[joint]
+            joint = work.tables.whole[MOVING, k]
+            work.tables.vectors[SLOPE + i, k] = work.tables.vectors[ROW, joint] / weight[joint]
     return found

@@ -5,58 +5,27 @@ motions that move the tool, the others those that do not. Q is kept as Household
 """
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-
-from ikde.kernels.arrays import AXIS, COORDINATE, MOVES_TOOL, POSE, POSITION, Floats, Ints
+from ikde.kernels.arrays import AXIS, COORDINATE, MOVES_TOOL, POSE, POSITION
 from ikde.kernels.damped import compute_error
 from ikde.kernels.frames import compute_bodies, compute_jacobian, compute_tool
-from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
+from ikde.kernels.jit import inline_kernel, leaf_kernel
+from ikde.kernels.motion_work import (
+    BEND,
+    DIAGONAL,
+    ERROR,
+    JACOBIAN,
+    MOVING,
+    MULTIPLIER,
+    NULL,
+    ORDER,
+    ROWS,
+    SCALE,
+    TURNED,
+)
 
-TASK_ROWS = 6
 MIN_RANK = 1e-7  # share of the largest row that a row must keep to count: below, the target is singular there
 SOFTEST = 1e-10  # share of the square of the largest row: what a row this weak is damped by
-
-
-class Tangent(NamedTuple):
-    """The split of one configuration, N joints of which n move and c carry the tool."""
-
-    moving: Ints  # [N] the joints that move: first those that carry the tool, parents first
-    T_world_body: Floats  # [B, 3, 4]
-    T_world_tool: Floats  # [3, 4]
-    jacobian: Floats  # [6, N] m/rad or 1, and rad/rad or 0
-    error: Floats  # [6] m, the rotation times the rotation length
-    rows: Floats  # [6, N] the weighed Jacobian, then L below its diagonal and the reflections from it on
-    diagonal: Floats  # [6] of L
-    scale: Floats  # [6] of the reflections
-    order: Ints  # [6] which row of the target each row is
-    multipliers: Floats  # [6] of the target's rows, in the target's order
-    along: Floats  # [N] the motion that brings the tool onto its target
-    null: Floats  # [N, N] a row for each motion that leaves the tool in place
-    bend: Floats  # [N, N] second derivative of the rows, each times its multiplier
-    turned: Floats  # [3, N] what the bend of the rotation is made of
-
-
-@kernel
-def make_tangent(robot, joints):
-    """Room for a robot of so many joints."""
-    return Tangent(
-        np.empty(joints, dtype=np.int64),
-        np.empty((robot.bodies.shape[0], 3, 4)),
-        np.empty((3, 4)),
-        np.empty((TASK_ROWS, joints)),
-        np.empty(TASK_ROWS),
-        np.empty((TASK_ROWS, joints)),
-        np.empty(TASK_ROWS),
-        np.empty(TASK_ROWS),
-        np.empty(TASK_ROWS, dtype=np.int64),
-        np.empty(TASK_ROWS),
-        np.empty(joints),
-        np.empty((joints, joints)),
-        np.empty((joints, joints)),
-        np.empty((3, joints)),
-    )
 
 
 @inline_kernel
@@ -75,16 +44,16 @@ def list_moving(robot, ranges, out_moving):
 
 
 @leaf_kernel
-def place_tool(robot, target, index, length, q, tangent):
+def place_tool(robot, target, index, length, q, tables):
     """Poses and the tool's error at `q` [N]; returns its size in m and rad.
 
     Of an axis target the rotation has two rows, about the tool's own x and y.
     """
-    compute_bodies(robot, q, tangent.T_world_body)
-    compute_tool(robot, tangent.T_world_body, tangent.T_world_tool)
-    position, orientation = compute_error(target, index, length, tangent.T_world_tool, tangent.error)
+    compute_bodies(robot, q, tables.T_world_body)
+    compute_tool(robot, tables.T_world_body, tables.T_world_tool)
+    position, orientation = compute_error(target, index, length, tables.T_world_tool, tables.numbers[ERROR])
     if target.kind[index] == AXIS:
-        T, e = tangent.T_world_tool, tangent.error
+        T, e = tables.T_world_tool, tables.numbers[ERROR]
         x = e[3] * T[0, 0] + e[4] * T[1, 0] + e[5] * T[2, 0]
         y = e[3] * T[0, 1] + e[4] * T[1, 1] + e[5] * T[2, 1]
         e[3], e[4], e[5] = x, y, 0.0
@@ -92,12 +61,12 @@ def place_tool(robot, target, index, length, q, tangent):
 
 
 @inline_kernel
-def fill_rows(robot, kind, length, weight, count, tangent):
+def fill_rows(robot, kind, length, weight, count, tables):
     """The weighed Jacobian's rows over the moving joints; returns how many rows the target needs."""
-    compute_jacobian(robot, tangent.T_world_body, tangent.T_world_tool, tangent.jacobian)
-    J, T, rows = tangent.jacobian, tangent.T_world_tool, tangent.rows
+    J, T, rows = tables.vectors[JACOBIAN : JACOBIAN + 6], tables.T_world_tool, tables.vectors[ROWS : ROWS + 6]
+    compute_jacobian(robot, tables.T_world_body, T, J)
     for k in range(count):
-        joint = tangent.moving[k]
+        joint = tables.whole[MOVING, k]
         share = 1.0 / weight[joint]
         for i in range(3):
             rows[i, k] = share * J[i, joint]
@@ -112,26 +81,26 @@ def fill_rows(robot, kind, length, weight, count, tangent):
 
 
 @inline_kernel
-def find_longest_row(tangent, done, used, count):
+def find_longest_row(tables, done, used, count):
     """The row from `done` on of which most is left, and the square of that."""
     best, largest = done, -1.0
     for i in range(done, used):
         square = 0.0
         for k in range(done, count):
-            square += tangent.rows[i, k] * tangent.rows[i, k]
+            square += tables.vectors[ROWS + i, k] * tables.vectors[ROWS + i, k]
         if square > largest:
             best, largest = i, square
     return best, largest
 
 
 @inline_kernel
-def split(tangent, used, count):
+def split(tables, used, count):
     """A = L Q^T of the first `used` rows, the longest first; returns the rank."""
-    rows, order, least = tangent.rows, tangent.order, 0.0
+    rows, order, least = tables.vectors[ROWS : ROWS + 6], tables.whole[ORDER], 0.0
     for i in range(used):
         order[i] = i
     for done in range(min(used, count)):
-        best, square = find_longest_row(tangent, done, used, count)
+        best, square = find_longest_row(tables, done, used, count)
         if square <= least:
             return done
         if done == 0:
@@ -141,80 +110,81 @@ def split(tangent, used, count):
             for k in range(count):
                 rows[done, k], rows[best, k] = rows[best, k], rows[done, k]
         head, size = rows[done, done], math.sqrt(square)
-        tangent.diagonal[done] = -size if head >= 0.0 else size
-        rows[done, done] = head - tangent.diagonal[done]
-        tangent.scale[done] = 1.0 / (size * (size + abs(head)))
+        tables.numbers[DIAGONAL, done] = -size if head >= 0.0 else size
+        rows[done, done] = head - tables.numbers[DIAGONAL, done]
+        tables.numbers[SCALE, done] = 1.0 / (size * (size + abs(head)))
         for i in range(done + 1, used):
-            reflect(tangent, done, count, rows[i])
+            reflect(tables, done, count, rows[i])
     return min(used, count)
 
 
 @inline_kernel
-def reflect(tangent, which, count, x):
+def reflect(tables, which, count, x):
     """Apply one reflection to `x` [n], in place."""
     total = 0.0
     for k in range(which, count):
-        total += tangent.rows[which, k] * x[k]
-    total *= tangent.scale[which]
+        total += tables.vectors[ROWS + which, k] * x[k]
+    total *= tables.numbers[SCALE, which]
     for k in range(which, count):
-        x[k] -= total * tangent.rows[which, k]
+        x[k] -= total * tables.vectors[ROWS + which, k]
 
 
-@inline_kernel
-def apply(tangent, rank, count, x):
+@leaf_kernel
+def apply(tables, rank, count, x):
     """Q x, in place."""
     for which in range(rank - 1, -1, -1):
-        reflect(tangent, which, count, x)
+        reflect(tables, which, count, x)
 
 
-@inline_kernel
-def apply_transposed(tangent, rank, count, x):
+@leaf_kernel
+def apply_transposed(tables, rank, count, x):
     """Q^T x, in place: first the part that moves the tool, then the part that does not."""
     for which in range(rank):
-        reflect(tangent, which, count, x)
+        reflect(tables, which, count, x)
 
 
 @inline_kernel
-def solve_along(tangent, rank, out_x):
+def solve_along(tables, rank, out_x):
     """The first `rank` entries of Q^T p for the smallest motion p that takes the tool's error away; the weak damped."""
-    softest = SOFTEST * tangent.diagonal[0] * tangent.diagonal[0]
+    softest = SOFTEST * tables.numbers[DIAGONAL, 0] * tables.numbers[DIAGONAL, 0]
     for i in range(rank):
-        total = tangent.error[tangent.order[i]]
+        total = tables.numbers[ERROR, tables.whole[ORDER, i]]
         for k in range(i):
-            total -= tangent.rows[i, k] * out_x[k]
-        pivot = tangent.diagonal[i]
+            total -= tables.vectors[ROWS + i, k] * out_x[k]
+        pivot = tables.numbers[DIAGONAL, i]
         out_x[i] = total * pivot / (pivot * pivot + softest)
 
 
 @inline_kernel
-def set_multipliers(tangent, rank, used, x):
+def set_multipliers(tables, rank, used, x):
     """Multipliers of the target's rows from x = Q^T y: what of the motion `y` each row holds, by least squares."""
     for i in range(used):
-        tangent.multipliers[i] = 0.0
+        tables.numbers[MULTIPLIER, i] = 0.0
     for i in range(rank - 1, -1, -1):
         total = x[i]
         for k in range(i + 1, rank):
-            total -= tangent.rows[k, i] * tangent.multipliers[tangent.order[k]]
-        tangent.multipliers[tangent.order[i]] = total / tangent.diagonal[i]
+            total -= tables.vectors[ROWS + k, i] * tables.numbers[MULTIPLIER, tables.whole[ORDER, k]]
+        tables.numbers[MULTIPLIER, tables.whole[ORDER, i]] = total / tables.numbers[DIAGONAL, i]
 
 
 @inline_kernel
-def fill_null(tangent, rank, count):
+def fill_null(tables, rank, count):
     """The motions that leave the tool in place, a row each."""
     for row in range(count - rank):
         for k in range(count):
-            tangent.null[row, k] = 1.0 if k == rank + row else 0.0
-        apply(tangent, rank, count, tangent.null[row])
+            tables.matrices[NULL, row, k] = 1.0 if k == rank + row else 0.0
+        apply(tables, rank, count, tables.matrices[NULL, row])
 
 
 @inline_kernel
-def fill_bend(kind, length, weight, carrying, tangent):
+def fill_bend(kind, length, weight, carrying, tables):
     """Second derivative of the target's rows times their multipliers, over the joints that carry the tool.
 
     A joint that turns about z_j moves what a joint k behind it does to the tool: d J_k / d q_j = z_j x J_k. For the
     rotation vector of a pose half of that counts; for an axis z_j x (z_k x axis).
     """
-    J, T, m, turned = tangent.jacobian, tangent.T_world_tool, tangent.multipliers, tangent.turned
+    J, turned = tables.vectors[JACOBIAN : JACOBIAN + 6], tables.vectors[TURNED : TURNED + 3]
+    T, m = tables.T_world_tool, tables.numbers[MULTIPLIER]
     mx, my, mz = 0.0, 0.0, 0.0
     if kind == POSE:
         mx, my, mz = 0.5 * length * m[3], 0.5 * length * m[4], 0.5 * length * m[5]
@@ -223,18 +193,18 @@ def fill_bend(kind, length, weight, carrying, tangent):
         my = length * (m[4] * T[1, 0] - m[3] * T[1, 1])
         mz = length * (m[4] * T[2, 0] - m[3] * T[2, 1])
     for k in range(carrying):
-        joint = tangent.moving[k]
+        joint = tables.whole[MOVING, k]
         x, y, z = J[3, joint], J[4, joint], J[5, joint]
         if kind == AXIS:
             x, y, z = y * T[2, 2] - z * T[1, 2], z * T[0, 2] - x * T[2, 2], x * T[1, 2] - y * T[0, 2]
         turned[0, k], turned[1, k], turned[2, k] = x, y, z
     for j in range(carrying):
-        first = tangent.moving[j]
+        first = tables.whole[MOVING, j]
         x, y, z = J[3, first], J[4, first], J[5, first]
         ax, ay, az = m[1] * z - m[2] * y, m[2] * x - m[0] * z, m[0] * y - m[1] * x
         bx, by, bz = my * z - mz * y, mz * x - mx * z, mx * y - my * x
         for k in range(j, carrying):
-            joint = tangent.moving[k]
+            joint = tables.whole[MOVING, k]
             total = ax * J[0, joint] + ay * J[1, joint] + az * J[2, joint]
             total += bx * turned[0, k] + by * turned[1, k] + bz * turned[2, k]
-            tangent.bend[j, k] = tangent.bend[k, j] = total / (weight[first] * weight[joint])
+            tables.matrices[BEND, j, k] = tables.matrices[BEND, k, j] = total / (weight[first] * weight[joint])

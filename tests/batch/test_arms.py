@@ -32,6 +32,7 @@ def test_units_become_metres_and_radians(qiao):
         settings={"position_tolerance": 0.05, "orientation_tolerance": 1, "timeout_s": 2},
         ranges={"d_x": [-60, 60], "q1": [-90, 90]},
         near={"d_y": 100, "q2": 45},
+        weights={"q2": 2, "d_x": 0.5},
         freeze={"q_z": 30, "d_x": None},
         detector={"name": "own", "spheres": "typical", "pairs": "non_adjacent", "safe_distance": 5},
     )
@@ -42,6 +43,7 @@ def test_units_become_metres_and_radians(qiao):
     assert named["q1"] == pytest.approx((-np.pi / 2, np.pi / 2))
     assert named["q_z"] == pytest.approx((np.pi / 6, np.pi / 6))
     assert named["d_x"] == (0.0, 0.0)
+    assert problem.weights[[0, 4]].tolist() == [0.5, 2.0]
     assert problem.near[[1, 4]] == pytest.approx([0.1, np.pi / 4])
     assert (problem.robot.joints[0].lower, problem.robot.joints[0].upper) == pytest.approx((-0.06, 0.06))
     assert problem.collision.detector.safe_distance_m == pytest.approx(0.005)
@@ -113,6 +115,7 @@ def test_names_of_arms_can_name_files(qiao):
         ({"ranges": {"d_z": [0, 1]}}, "ranges.d_z: qiao2021 has no joint 'd_z' (did you mean"),
         ({"ranges": {"d_x": [1, 0]}}, "ranges.d_x: this range is upside down"),
         ({"near": {"elbow": 0}}, "near.elbow: qiao2021 has no joint 'elbow'; it has d_x"),
+        ({"weights": {"q1": 0}}, "weights.q1: expected a number from 1e-06 to 1e\\+06, got 0"),
         ({"near": {"q1": 1e9}}, "near.q1: expected at most 100000 m or rad"),
         ({"freeze": {"q1": 300}}, "freeze.q1: 5.23599 is outside the limits"),
     ],

@@ -344,6 +344,10 @@ def test_a_figure_is_written(cli, tmp_path):
         ("--freeze d_x=nan", "finite"),
         ("--freeze d_x=1,d_x=2", "d_x"),
         ("--near 1,2,3", "expected 9 joint values"),
+        ("--weights 1,2", "weights: expected name=value"),
+        ("--weights q9=1", "weights.q9: qiao2021 has no joint 'q9'"),
+        ("--weights q1=0", "weights.q1: expected a number from 1e-06 to 1e+06, got 0.0"),
+        ("--weights q1=x", "weights.q1: expected a number, got 'x'"),
         ("--near q9=1", "no joint is called 'q9'"),
         ("--near q1=nan", "finite"),
     ],
@@ -366,5 +370,20 @@ def test_an_unknown_convention_is_refused_before_the_search(refuse, monkeypatch)
     refuse(*SOLVE, "--convention", "dh")
 
 
+def test_weights_decide_what_moves_and_the_motion_is_stated(cli, qiao):
+    near = dict(zip(qiao.joint_names, [0.4, 0.3, 0.1, 0.2, 0.5, 0.4, 0.3, 0.2, 0.1], strict=True))
+    text = ",".join(f"{name}={value}" for name, value in near.items())
+    weights = {"d_x": 50.0, "d_y": 50.0}
+    data = cli(*SOLVE, "--near", text, "--weights", "d_x=50,d_y=50", "--json").data
+    own = [weights.get(joint.name, 1.0 / (joint.upper - joint.lower)) for joint in qiao.joints]
+    moved = [data["q"][name] - near[name] for name in qiao.joint_names]
+    assert data["motion"] == pytest.approx(sum((w * d) ** 2 for w, d in zip(own, moved, strict=True)) ** 0.5)
+    light = cli(*SOLVE, "--near", text, "--json").data
+    assert abs(moved[0]) < abs(light["q"]["d_x"] - near["d_x"])
+    assert f"{light['motion']:.6g} from near" in cli(*SOLVE, "--near", text).out
+    assert "from home, as weighed" in cli(*SOLVE).out
+
+
 def test_an_order_that_is_none_is_refused_also_of_one_solution(refuse):
-    assert "rank: expected one of motion, clearance, found, got 'nonsense'" in refuse(*SOLVE, "--rank", "nonsense")
+    expected = "rank: expected one of motion, clearance, limits, found, got 'nonsense'"
+    assert expected in refuse(*SOLVE, "--rank", "nonsense")

@@ -89,13 +89,24 @@ def test_each_slide_counts_by_itself(qiao, apart_m, distinct):
 
 
 def test_the_least_motion_from_home_or_near_comes_first(qiao):
-    widths = qiao.upper - qiao.lower
-    for near in (None, qiao.home + 0.2):
-        found = ikde.solve_distinct(qiao, TARGET, 6, seed=3, near=near)
+    some = {"d_x": 0.2, "q2": 1.0}
+    own = [{"d_x": 1.0, "d_y": 1.0}.get(j.name, 1.0 / (j.upper - j.lower)) for j in qiao.joints]
+    given = [some.get(j.name, w) for j, w in zip(qiao.joints, own, strict=True)]
+    for near, weights, weighed in ((None, None, own), (qiao.home + 0.2, None, own), (None, some, given)):
+        found = ikde.solve_distinct(qiao, TARGET, 6, seed=3, near=near, weights=weights)
         assert len(found) == 6
         start = qiao.home if near is None else near
-        costs = [np.sqrt(np.mean(((result.q - start) / widths) ** 2)) for result in found]
+        costs = [np.linalg.norm(np.array(weighed) * (result.q - start)) for result in found]
         assert costs == sorted(costs)
+        np.testing.assert_allclose([result.motion for result in found], costs, rtol=1e-12)
+
+
+def test_the_farthest_from_its_limits_comes_first(qiao):
+    found = ikde.solve_distinct(qiao, TARGET, 6, rank="limits", seed=3)
+    margins = [np.min(np.minimum(r.q - qiao.lower, qiao.upper - r.q) / (qiao.upper - qiao.lower)) for r in found]
+    assert margins == sorted(margins, reverse=True)
+    assert len(found) == 6
+    assert margins[0] > margins[-1]
 
 
 def test_the_largest_clearance_comes_first(qiao):
@@ -116,7 +127,7 @@ def test_an_arm_without_a_base_gives_its_families(rng):
 
 
 def test_an_unknown_rank_is_refused(qiao):
-    with pytest.raises(InputError, match="rank: expected one of motion, clearance, found"):
+    with pytest.raises(InputError, match="rank: expected one of motion, clearance, limits, found"):
         ikde.solve_distinct(qiao, TARGET, 2, rank="best")
 
 
