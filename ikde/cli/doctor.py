@@ -4,7 +4,6 @@ import os
 import platform
 import time
 from collections.abc import Mapping
-from importlib.metadata import version
 from typing import Any
 
 from ikde.cli.options import JsonOption
@@ -44,6 +43,8 @@ def judge(facts: Mapping[str, Any]) -> str:
 def describe_machine() -> dict[str, Any]:
     """Versions, cores, cache folder, and the seconds of importing, compiling or loading, and solving."""
     started = time.perf_counter()
+    from importlib.metadata import version
+
     import ikde
     from ikde.kernels.cache_folder import CACHE_FOLDER, CACHE_IS_WRITABLE
     from ikde.solver.search import usable_cores

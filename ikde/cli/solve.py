@@ -154,7 +154,7 @@ def _read_settings(
     de: str | None,
 ) -> "SolveSettings":
     """The method's own settings, but for what is given, in m and rad."""
-    from ikde.formats.entries import ANGLES_RAD, LENGTHS_M
+    from ikde.formats.units import ANGLES_RAD, LENGTHS_M
     from ikde.solver.settings import SolveSettings
 
     length_m, angle_rad = LENGTHS_M[units.length], ANGLES_RAD[units.angle]
