@@ -113,6 +113,7 @@ def solve(
     from ikde.io.target import make_target
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
+    from ikde.solver.background import LATER, compile_way
     from ikde.solver.distinct import check_rank, solve_distinct
     from ikde.solver.grade import confirm
     from ikde.solver.solve import solve as solve_one
@@ -128,7 +129,7 @@ def solve(
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
-    with working("searching ..."), note_compile() as clock:
+    with compile_way(LATER), working("searching ..."), note_compile() as clock:
         question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
         if count == 1:
             results = [confirm(model, solve_one(model, target, settings, **question))]

@@ -4,6 +4,7 @@ The answer is that of the long way (`solver.results`), bit for bit; what this wa
 """
 
 import time
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -14,6 +15,7 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.solver.background import answers_plainly
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.lm import prepare_answer
 from ikde.solver.engines.pool import runs_on_tables
@@ -34,7 +36,8 @@ class Quick:
 
     def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str, is_last: bool = False) -> None:
         self._problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-        self._answer, self._results = prepare_answer(self._problem, kind), ResultMaker(self._problem, ENGINE)
+        self._ways, self._kind = prepare_answer(self._problem, kind), kind
+        self._results = ResultMaker(self._problem, ENGINE)
         joints = len(collision.robot.joints)
         self._size, self._reached = size_of(joints, len(collision.pairs)), joints + METRICS + FIRST_COUNT + REACHED
         row, budget = ENGINES[ENGINE], settings.budget(ENGINE)
@@ -42,7 +45,7 @@ class Quick:
         self._all = budget if is_last or row.attempts_before_next is None else row.attempts_before_next
         if settings.timeout_s is not None:
             self._all = self._few
-        self._is_ready = False
+        self._answer: Callable[..., bool] | None = None  # machine code
 
     def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
         """A graded solution or a proof that there is none, or None if this target needs another engine, or a reason.
@@ -50,23 +53,26 @@ class Quick:
         `started`: when the caller began to wait, by `time.perf_counter`.
         """
         row, word = np.empty(self._size), seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
-        if not self._is_ready:
-            return self._compile(target, seed, stream)
-        if self._answer(target.T_world_tool, word, stream, 0, self._few, row):
+        answer = self._answer
+        if answer is None:
+            if not answers_plainly(self._ways, self._problem.collision, self._kind):
+                return self._compile(target, seed, stream)
+            answer, word = self._ways.plain, np.int64(word)
+        if answer(target.T_world_tool, word, stream, 0, self._few, row):
             return self._results.make(row, target, seed, stream, time.perf_counter() - started)
         if row.view(np.int64)[self._reached]:
             return None
         if prove(self._problem, target) != (0.0, 0.0):
             made = self._results.make(row, target, seed, stream, time.perf_counter() - started)
             return made.with_changes(**OUT_OF_REACH)
-        if self._all > self._few and self._answer(target.T_world_tool, word, stream, self._few, self._all, row):
+        if self._all > self._few and answer(target.T_world_tool, word, stream, self._few, self._all, row):
             return self._results.make(row, target, seed, stream, time.perf_counter() - started)
         return None
 
     def _compile(self, target: Target, seed: int, stream: int) -> SolveResult | None:
         """The first answer, whose time is that of a second try."""
-        self._is_ready = True
         with compile_clock() as clock:
+            self._answer = self._ways.compiled
             self.solve(target, seed, stream, 0.0)
         result = self.solve(target, seed, stream, time.perf_counter())
         return result and result.with_changes(compile_seconds=clock.seconds)

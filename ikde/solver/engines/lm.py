@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.flat_arguments import flatten_answer, flatten_search
+from ikde.kernels.jit import Bound
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges
@@ -28,11 +29,11 @@ def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
     return partial(load_kernels(problem.collision, kind).solve_target.compiled, *pack_block(problem, kind))
 
 
-def prepare_answer(problem: Problem, kind: str) -> Callable[..., bool]:
+def prepare_answer(problem: Problem, kind: str) -> Bound:
     """The same and the grade in one call: `answer(T_world_tool, seed, stream, begin, end, out)` (`answer_target`)."""
     *search, pool, pool_T = pack_block(problem, kind)
     block = flatten_answer(search, pack_grader(problem.collision, problem.settings), KINDS.index(kind), problem.turns)
-    return partial(load_kernels(problem.collision, kind).answer_target.compiled, *block, pool, pool_T)
+    return load_kernels(problem.collision, kind).answer_target.bind(*block, pool, pool_T)
 
 
 class DampedLeastSquares:
