@@ -8,7 +8,7 @@ import typer
 from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
-from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color, working
+from ikde.cli.output import name_work, note_compile, print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
@@ -129,7 +129,8 @@ def solve(
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
-    with compile_way(LATER), working("searching ..."), note_compile() as clock:
+    work = name_work(f"{target.kind} targets", checked)
+    with compile_way(LATER), working("searching ..."), note_compile(work=work) as clock:
         question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
         if count == 1:
             results = [confirm(model, solve_one(model, target, settings, **question))]
