@@ -10,6 +10,7 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 # Kernels written for a robot are compiled for that robot alone, 10 s a kind of target. What is not about them uses the
 # data-driven instance of the same engine, which serves all robots; `tests/kernels/test_lm.py` compares the two.
 os.environ.setdefault("IKDE_KERNELS", "tables")
+os.environ.setdefault("IKDE_COMPILE", "wait")  # tests are about what is compiled; a few say otherwise
 
 import numpy as np
 import pytest

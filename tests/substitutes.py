@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import contextmanager
+from functools import partial
 
 import pytest
 
@@ -30,6 +31,10 @@ class BothWays:
 
     def __init__(self, function):
         self.compiled = self.plain = function
+
+    def bind(self, *arguments):
+        """The function with its first arguments."""
+        return BothWays(partial(self.compiled, *arguments))
 
 
 def never(*arguments, **options):

@@ -8,7 +8,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption, note_unchecked
-from ikde.cli.output import note_compile, print_json, print_note, print_result, use_color
+from ikde.cli.output import name_work, note_compile, print_json, print_note, print_result, use_color
 from ikde.cli.progress import show_progress
 
 if TYPE_CHECKING:
@@ -78,12 +78,16 @@ def _preview(
         check_folder(out, plan, overwrite=overwrite)
     if cluster["dask"] is not None:
         print_note("a dry run solves its sample on this machine: the cluster is left alone")
-    with note_compile():
+    with note_compile(work=_name(plan)):
         preview = preview_batch(plan, threads=threads)
     if as_json:
         print_json(preview_json(preview))
     else:
         print_result(format_preview(preview, color=use_color()))
+
+
+def _name(plan: "Batch") -> str:
+    return name_work("many targets", *(arm.problem.collision for arm in plan.arms))
 
 
 def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
@@ -92,7 +96,7 @@ def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
     from ikde.batch.run import run_batch
 
     try:
-        with show_progress(f"{plan.name} → {out}") as tell, note_compile():
+        with show_progress(f"{plan.name} → {out}") as tell, note_compile(work=_name(plan)):
             return run_batch(plan, out, progress=tell, **solving)
     except KeyboardInterrupt:
         raise typer.Abort(f"ikde: interrupted; {GO_ON}") from None

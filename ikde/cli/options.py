@@ -80,13 +80,14 @@ def read_q(
     robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None, key: str = "q"
 ) -> "Floats":
     """Joint values [N] in the robot's own convention; joints that are not named stay at home."""
-    from ikde.io.joint_text import parse_joints
     from ikde.model.convention import convention_offsets
-    from ikde.solver.joints import read_joints
 
     convention_offsets(robot, convention)  # a wrong name is an error even if nothing is to be converted
     if text is None:
         return robot.home
+    from ikde.io.joint_text import parse_joints
+    from ikde.solver.joints import read_joints
+
     return read_joints(robot, parse_joints(robot, text, unit, angles, key), convention, default=robot.home)
 
 
@@ -97,7 +98,7 @@ def read_collision(
     from dataclasses import replace
 
     from ikde.errors import InputError
-    from ikde.formats.entries import LENGTHS_M
+    from ikde.formats.units import LENGTHS_M
     from ikde.model.collision_model import CollisionModel
     from ikde.model.names import MAX_NAME_LENGTH
 
@@ -131,11 +132,11 @@ def read_freeze(
     robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None
 ) -> Mapping[str, float | None] | None:
     """Frozen joints with their value in the robot's own convention, or None for their start."""
+    if text is None:
+        return None
     from ikde.io.joint_text import parse_freeze
     from ikde.solver.joints import read_joints
 
-    if text is None:
-        return None
     frozen = parse_freeze(robot, text, unit, angles)
     given = {name: value for name, value in frozen.items() if value is not None}
     own = dict(zip(robot.joint_names, read_joints(robot, given, convention, default=robot.home), strict=True))
@@ -218,10 +219,10 @@ def check_positive(value: float | None, option: str, most: float | None = None) 
 
 def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None) -> None:
     """Draw a configuration if a path is given."""
+    if path is None:
+        return
     from ikde.plot.pose import plot_pose, save_figure
     from ikde.scene.drawn_pose import draw_pose
 
-    if path is None:
-        return
     pose = draw_pose(collision, q, target=target)  # type: ignore[arg-type]
     save_figure(plot_pose(pose), path)

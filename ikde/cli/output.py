@@ -4,9 +4,12 @@ import json
 import sys
 from contextlib import AbstractContextManager, nullcontext
 from shutil import get_terminal_size
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ikde.errors import printable
+
+if TYPE_CHECKING:
+    from ikde.model.collision_model import CollisionModel
 
 
 def print_result(text: str) -> None:
@@ -57,10 +60,19 @@ def as_words(text: str) -> Any:
     return Text(printable(text))
 
 
-def note_compile(takes: str = "10 s to a minute") -> AbstractContextManager[Any]:
-    """Say once, on stderr, that kernels must be compiled inside the block, if they must."""
+def name_work(what: str, *collisions: "CollisionModel") -> str:
+    """What is compiled, in words: `pose targets of ur5, detector default`."""
+    from ikde.model.robot import NO_DETECTOR
+
+    robots = ", ".join(dict.fromkeys(c.robot.name for c in collisions))
+    detectors = dict.fromkeys(c.detector.name if c.detector else NO_DETECTOR for c in collisions)
+    return f"{what} of {robots}, detector {', '.join(detectors)}"
+
+
+def note_compile(takes: str = "10 s to a minute", work: str = "") -> AbstractContextManager[Any]:
+    """Say once, on stderr, that kernels must be compiled inside the block, if they must, and for what work."""
     from ikde.kernels.cache_folder import CACHE_IS_WRITABLE
     from ikde.kernels.jit import compile_clock
 
     often = "once on this machine" if CACHE_IS_WRITABLE else "every time, since no cache folder can be used"
-    return compile_clock(lambda: print_note(f"compiling the kernels: {often}, {takes} ..."))
+    return compile_clock(lambda: print_note(f"compiling the kernels{work and f' for {work}'}: {often}, {takes} ..."))

@@ -11,7 +11,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
-from ikde.cli.output import as_words, note_compile, print_json, print_result, use_color, working
+from ikde.cli.output import as_words, name_work, note_compile, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -83,7 +83,7 @@ def _follow(plan: "TrackPlan") -> "TrackSummary":
     from ikde.track.run import run_track
     from ikde.track.summary import summarise_track
 
-    with note_compile("a minute or two"):
+    with note_compile("a minute or two", name_work("tracks", plan.collision)):
         trajectory = run_track(plan)
     return summarise_track(plan.collision, trajectory)
 

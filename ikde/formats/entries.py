@@ -1,6 +1,5 @@
 """Entries that all kinds of files share, robot files among them: numbers, units, orientations, tables, detectors."""
 
-import math
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args
 
@@ -8,12 +7,11 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from ikde.errors import InputError
 from ikde.formats.names import Name, Text
+from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.model.validate import NON_ADJACENT
 
 OrientationKind = Literal["axis", "rpy", "quat_wxyz"]
 ORIENTATIONS: tuple[OrientationKind, ...] = get_args(OrientationKind)
-LENGTHS_M = {"mm": 1e-3, "m": 1.0}
-ANGLES_RAD = {"deg": math.pi / 180.0, "rad": 1.0}
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]  # beyond, digits are lost
 Count = Annotated[int, Field(strict=True, ge=1, le=10**9)]
 Interval = Annotated[list[Number], Field(min_length=2, max_length=2)]

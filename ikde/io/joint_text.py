@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.formats.entries import ANGLES_RAD, LENGTHS_M
+from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.yaml_file import read_yaml
 from ikde.model.robot import Robot
 

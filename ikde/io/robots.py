@@ -4,8 +4,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from ikde.errors import InputError, nearest
-from ikde.io.robot_file import parse_robot
-from ikde.io.yaml_file import read_yaml
+from ikde.io.ready_robot import read_ready
 from ikde.model.robot import Robot
 
 FOLDER = Path(__file__).parent.parent / "robots"
@@ -43,9 +42,17 @@ def load_robot(name_or_path: str | Path) -> Robot:
         FileError: for a file that cannot be read or is wrong, with its line and key.
     """
     path = robot_path(name_or_path)
-    return _load_shipped(path) if path.parent == FOLDER else parse_robot(read_yaml(path))
+    return _load_shipped(path) if path.parent == FOLDER else parse_file(path)
 
 
 @lru_cache
 def _load_shipped(path: Path) -> Robot:
+    return read_ready(path) or parse_file(path)
+
+
+def parse_file(path: Path) -> Robot:
+    """The robot that a file describes; pydantic is imported here, since it takes as long as a solve without it."""
+    from ikde.io.robot_file import parse_robot
+    from ikde.io.yaml_file import read_yaml
+
     return parse_robot(read_yaml(path))

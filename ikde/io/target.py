@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.formats.entries import ANGLES_RAD, LENGTHS_M
+from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.model.rotation import rotation_from_quat_wxyz, rotation_from_rpy
 from ikde.model.target import Target
 

@@ -5,6 +5,7 @@ import os
 import shutil
 import stat
 import tempfile
+import threading
 import warnings
 from pathlib import Path
 
@@ -14,6 +15,10 @@ from ikde.kernels.cache_folder import find_fault
 SEAL = hashlib.sha256().digest_size  # bytes
 FLAGS = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)  # no links, and no waiting for a pipe
 WARNED: set[str] = set()
+WRITING = threading.Lock()
+"""Held while a file is written: what ends this process meanwhile would leave half of it."""
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(before=WRITING.acquire, after_in_parent=WRITING.release, after_in_child=WRITING.release)
 
 
 def read_file(path: Path) -> bytes | None:
@@ -35,22 +40,27 @@ def read_file(path: Path) -> bytes | None:
 def write_file(path: Path, content: bytes) -> bool:
     """Write a file whole or not at all: another process may write the same at the same moment. True if it is there."""
     try:
-        path.parent.mkdir(stat.S_IRWXU, parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(handle)
-            if path.is_dir():
-                discard(path, "is no file")
-            Path(temporary).replace(path)
-        finally:
-            Path(temporary).unlink(missing_ok=True)
+        with WRITING:
+            _write(path, content)
     except OSError as error:
         _tell_once("full", f"{path} cannot be written ({error.strerror}): the next process compiles again")
         return False
     return True
+
+
+def _write(path: Path, content: bytes) -> None:
+    path.parent.mkdir(stat.S_IRWXU, parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(handle)
+        if path.is_dir():
+            discard(path, "is no file")
+        Path(temporary).replace(path)
+    finally:
+        Path(temporary).unlink(missing_ok=True)
 
 
 def read_sealed(path: Path) -> bytes | None:

@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from types import FunctionType
 
 from ikde.errors import CacheWarning
 
@@ -60,6 +61,16 @@ def prepare(folder: Path) -> str | None:
     except OSError as error:
         return f"{error.filename} cannot be written: {error.strerror}"
     return None
+
+
+def name_code(function: FunctionType) -> str:
+    """What the files of a function's machine code begin with."""
+    return f"{Path(function.__code__.co_filename).stem}.{function.__name__.strip('<>')}."
+
+
+def is_kept(function: FunctionType) -> bool:
+    """True if there is machine code of a function, for some types of arguments; what a file holds is checked later."""
+    return CACHE_IS_WRITABLE and any((CACHE_FOLDER / MACHINE_CODE).glob(f"{name_code(function)}*"))
 
 
 def find_fault(state: os.stat_result) -> str | None:

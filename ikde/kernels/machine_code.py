@@ -9,7 +9,7 @@ cannot be loaded is removed and compiled again.
 import hashlib
 import pickle
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from types import FunctionType
@@ -43,10 +43,10 @@ class Clock(Protocol):
 class MachineCode(NullCache):
     """What numba asks for compiled code and reports of it: the methods of its own caches that a dispatcher calls."""
 
-    def __init__(self, function: Callable[..., Any], source: str, folder: Path) -> None:
+    def __init__(self, function: FunctionType, source: str, folder: Path) -> None:
         code = function.__code__
         self._folder = folder
-        self._name = f"{Path(code.co_filename).stem}.{function.__name__.strip('<>')}"
+        self._name = cache_folder.name_code(function)
         body = hashlib.sha256(code.co_code).hexdigest()
         self._identity = (*VERSIONS, source, function.__qualname__, code.co_firstlineno, body)
 
@@ -73,7 +73,7 @@ class MachineCode(NullCache):
     def _find(self, sig: Any, target_context: Any) -> tuple[Path, Any]:
         """Where code for these types and this processor is kept, and what it is for."""
         key = (sig, target_context.codegen().magic_tuple(), self._identity)
-        return self._folder / f"{self._name}.{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}.nbc", key
+        return self._folder / f"{self._name}{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}.nbc", key
 
 
 def compile_function(function: FunctionType, options: dict[str, Any]) -> Any:

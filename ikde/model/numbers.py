@@ -14,7 +14,7 @@ def is_number(value: object) -> bool:
 
 def read_numbers(values: ArrayLike, where: tuple[str | int, ...]) -> Floats:
     """A copy as an array; raises `InputError` for text, complex numbers, and masked values."""
-    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+    if hasattr(values, "mask") and np.ma.is_masked(values):
         raise InputError("expected numbers, but some are masked", where)
     if isinstance(values, np.ndarray) and values.dtype.kind == "c":
         raise InputError("expected numbers, got complex ones", where)

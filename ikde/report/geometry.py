@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from ikde.formats.entries import LENGTHS_M
+from ikde.formats.units import LENGTHS_M
 from ikde.kernels.arrays import Floats
 from ikde.model.convention import to_convention
 from ikde.model.robot import Robot

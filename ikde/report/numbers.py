@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from ikde.formats.entries import ANGLES_RAD, LENGTHS_M
+from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.model.robot import Joint
 
 

@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import Any
 
-from ikde.formats.entries import LENGTHS_M
+from ikde.formats.units import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import explain_no_detector
 from ikde.model.robot import NO_DETECTOR

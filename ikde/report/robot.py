@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from ikde.formats.entries import LENGTHS_M
+from ikde.formats.units import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Joint, Robot, Wheels
 from ikde.report.numbers import Units

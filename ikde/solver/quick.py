@@ -15,6 +15,7 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.solver.background import answers_plainly
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.lm import pack_answer
 from ikde.solver.engines.pool import load_kernels, runs_on_tables

@@ -4,7 +4,6 @@ import os
 import threading
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 
 import numpy as np
@@ -201,6 +200,8 @@ def _on_threads(run: Callable[[range], None], pieces: Sequence[range], threads: 
         for piece in pieces:
             run(piece)
         return
+    from concurrent.futures import ThreadPoolExecutor  # 0.01 s, which one target need not pay
+
     with ThreadPoolExecutor(threads) as pool:
         try:
             for _ in pool.map(run, pieces):

@@ -9,6 +9,7 @@ from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
+from ikde.solver.background import WAIT, compile_way
 from ikde.solver.engine_table import ENGINES, SEVERAL
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import BulkOptions, SolveSettings
@@ -62,7 +63,7 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
     for number, stage in enumerate(stages):
         if progress is not None:
             progress(number, stage)
-        with compile_clock() as clock:
+        with compile_clock() as clock, compile_way(WAIT):
             stage.run()
         done.append(Compiled(name=stage.name, seconds=clock.seconds))
     return done

@@ -4,6 +4,7 @@ import inspect
 import os
 import subprocess
 import sys
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -56,6 +57,25 @@ def test_a_kernel_that_is_defined_later_is_plain_as_well():
     exec("@kernel\ndef two():\n    return 2\n\n@kernel\ndef three():\n    return one() + two()\n", space)
     assert space["three"].plain() == 3
     assert space["three"].plain.__globals__["two"] is space["two"].plain
+
+
+def test_a_kernel_with_its_first_arguments_has_both_ways():
+    bound = count_halvings.bind(10.0)
+    assert bound.plain(1.0) == bound.compiled(1.0) == 4
+
+
+def test_plain_python_goes_on_with_infinite_numbers_as_machine_code_does():
+    divide = jit.kernel(lambda x: x / x).bind(np.float64(0.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.isnan(divide.plain())
+
+
+def test_where_nothing_is_to_be_compiled_a_kernel_is_plain(monkeypatch):
+    monkeypatch.setenv(jit.COMPILE, "never")
+    triple = multiply_by(3.0)
+    assert triple(2.0) == 6.0
+    assert triple.compiled is triple.plain
 
 
 WITHOUT_NUMBA = """

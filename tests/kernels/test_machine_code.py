@@ -52,6 +52,13 @@ def test_a_kernel_is_compiled_once(folder):
     assert only_file(folder).name.startswith("test_machine_code.double.")
 
 
+def test_whether_there_is_machine_code_is_known_without_numba(folder):
+    assert not cache_folder.is_kept(double)
+    run(2.0)
+    assert cache_folder.is_kept(double)
+    assert not cache_folder.is_kept(make_closure)
+
+
 def test_other_types_of_arguments_are_compiled_and_kept_beside(folder):
     frozen = np.ones(2)
     frozen.setflags(write=False)

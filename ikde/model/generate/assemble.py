@@ -3,16 +3,15 @@
 import re
 from pathlib import Path
 
-import numpy as np
-
 from ikde.kernels import analytic, lm
 from ikde.kernels.arrays import RobotArrays
 from ikde.kernels.tables import LANES
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
-from ikde.model.generate.collision import count_sphere_pairs, count_tests, list_tests
+from ikde.model.generate.collision import count_sphere_pairs, count_tests
 from ikde.model.generate.functions import format_find, format_step, format_steps
-from ikde.model.generate.proofs import drop_implied, drop_proved, proof_margin
+from ikde.model.generate.left_tests import find_left
+from ikde.model.generate.proofs import proof_margin
 from ikde.model.pack import pack_robot
 
 SWAPPED = re.compile(r"^from ikde\.kernels\.tables import .*\n", re.MULTILINE)
@@ -68,15 +67,11 @@ def format_module(collision: CollisionModel, kind: str) -> str:
 
 def _format_tests(arrays: RobotArrays, collision: CollisionModel) -> list[str]:
     """What is left out, in words; then `make_buffers` and `find_collision` as straight-line code."""
-    margin, limits = proof_margin(collision), collision.robot.drawn  # one turn of a joint is as good as many
-    every = list_tests(collision.arrays)
-    needed = drop_implied(every)
-    tests = drop_proved(arrays, needed, margin, *limits) if np.isfinite(margin) else needed
-    implied, proved = len(every) - len(needed), len(needed) - len(tests)
-    tested = f"{len(every)} tests of rows and spheres, {implied} of them implied by others,"
-    never = f"{proved} proved never to fail inside the joint limits, for a safe distance up to {margin:g} m"
-    counts = f"{count_sphere_pairs(collision.arrays)} pairs of spheres; {tested}\n{never}; {len(tests)} left."
-    return [counts, NO_TABLES, format_find(arrays, tests, *limits)]
+    left, margin = find_left(arrays, collision), proof_margin(collision)
+    tested = f"{left.every} tests of rows and spheres, {left.implied} of them implied by others,"
+    never = f"{left.proved} proved never to fail inside the joint limits, for a safe distance up to {margin:g} m"
+    counts = f"{count_sphere_pairs(collision.arrays)} pairs of spheres; {tested}\n{never}; {len(left.tests)} left."
+    return [counts, NO_TABLES, format_find(arrays, left.tests, *collision.robot.drawn)]
 
 
 def _split(source: Path) -> tuple[str, str]:

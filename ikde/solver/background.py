@@ -1,0 +1,134 @@
+"""Whether a question waits for machine code: the first are answered in plain Python while a child process compiles.
+
+`$IKDE_COMPILE` may say `wait` (compile when it is needed, as all kernels but these do), or `never` (numba is not even
+imported: everything is a hundred times as slow). The child is one a process and one a cache folder, has the lowest
+priority and ends with its parent; what it compiles comes to its parent by the cache folder alone.
+"""
+
+import atexit
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from typing import Any
+
+from ikde.errors import InputError, quoted
+from ikde.kernels import cache_folder
+from ikde.kernels.jit import COMPILE, Bound
+from ikde.model.collision_model import CollisionModel
+from ikde.model.plain_data import encode
+
+BACKGROUND, WAIT, NEVER = WAYS = ("background", "wait", "never")
+LATER = "later"
+"""Plain Python until that has failed, and no child: for a process of one answer, which ends before it were compiled."""
+UNLESS_TOLD: ContextVar[str] = ContextVar("way", default=BACKGROUND)
+GRACE_S = 0.5
+START = "import json, sys; q = json.loads(sys.stdin.readline()); sys.path[:] = q['path']; "
+START += "from ikde.solver.compiler_process import run; run(q)"
+
+
+@contextmanager
+def compile_way(way: str) -> Iterator[None]:
+    """What is done inside the block, unless `$IKDE_COMPILE` says otherwise."""
+    token = UNLESS_TOLD.set(way)
+    try:
+        yield
+    finally:
+        UNLESS_TOLD.reset(token)
+
+
+def choose_way() -> str:
+    """One of `WAYS`, or `LATER`; raises `InputError` for another word in `$IKDE_COMPILE`."""
+    given = os.environ.get(COMPILE)
+    if given and given not in WAYS:
+        raise InputError(f"expected {', '.join(WAYS)}, got {quoted(given)}", (f"${COMPILE}",))
+    return given or UNLESS_TOLD.get()
+
+
+def answers_plainly(answer: Bound, collision: CollisionModel, kind: str) -> bool:
+    """True while a question is to be answered in plain Python; the child is started if there is something to do."""
+    way = choose_way()
+    if way in (NEVER, LATER):
+        return True
+    if way == WAIT or not _can_start() or (not CHILD.is_at_work and answer.is_kept):
+        return False
+    return CHILD.compile(collision, kind)
+
+
+def _can_start() -> bool:
+    """A child needs a cache to put its work into, and a Python to run: in a frozen program that is the program."""
+    return cache_folder.CACHE_IS_WRITABLE and bool(sys.executable) and not getattr(sys, "frozen", False)
+
+
+class Child:
+    """The process that compiles, if there is one."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._asked: set[tuple[CollisionModel, str]] = set()
+
+    @property
+    def is_at_work(self) -> bool:
+        """True while it runs."""
+        return self._process is not None and self._process.poll() is None
+
+    def compile(self, collision: CollisionModel, kind: str) -> bool:
+        """True if it is at work, or has been started for this; False if it has ended without: it is not tried again."""
+        with self._lock:
+            if self.is_at_work:
+                return True
+            if (collision, kind) in self._asked:
+                return False
+            self._asked.add((collision, kind))
+            question = {"robot": encode(collision.robot), "detector": encode(collision.detector), "kind": kind}
+            with suppress(OSError):
+                self._process = start(question)
+            return self.is_at_work
+
+    def stop(self) -> None:
+        """Let it end: it does when its standard input is closed."""
+        process = self._process
+        if process is None or process.poll() is not None:
+            return
+        with suppress(OSError):
+            process.stdin.close()  # type: ignore[union-attr]
+        try:
+            process.wait(GRACE_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+    def forget(self) -> None:
+        """After a fork: the child belongs to the process that started it, and its standard input stays open there."""
+        self.__init__()
+
+
+def start(question: dict[str, Any]) -> "subprocess.Popen[bytes]":
+    """Start a child that finds modules where this process does, and give it its question."""
+    flags: dict[str, Any] = {"start_new_session": True}  # Ctrl-C in a terminal is not for it
+    if sys.platform == "win32":
+        flags = {"creationflags": subprocess.IDLE_PRIORITY_CLASS | subprocess.CREATE_NO_WINDOW}
+    environment = {**os.environ, COMPILE: WAIT, "IKDE_CACHE_DIR": str(cache_folder.CACHE_FOLDER.parent)}
+    process: Any = subprocess.Popen(
+        [sys.executable, "-P", "-c", START],
+        env=environment,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        **flags,
+    )
+    told = {**question, "path": sys.path, "parent": os.getpid(), "cache": str(cache_folder.CACHE_FOLDER)}
+    process.stdin.write(json.dumps(told).encode() + b"\n")
+    process.stdin.flush()
+    return process
+
+
+CHILD = Child()
+atexit.register(CHILD.stop)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=CHILD.forget)

@@ -1,0 +1,75 @@
+"""The process behind `solver/background.py`: compiles what one question needs into the cache, and ends.
+
+It is told by its parent, on standard input, a robot as plain data: no code, no pickle, no name of a file but that of
+the cache folder. Nothing is imported before it is its turn, so that those which wait take no room.
+"""
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+LOCK = "compiling.lock"
+LOOK_S = 0.5
+
+
+def run(question: dict[str, Any]) -> None:
+    """Wait for the turn, compile, end; at the lowest priority."""
+    if hasattr(os, "nice"):
+        os.nice(19)
+    threading.Thread(target=_end_with, args=(question["parent"],), daemon=True).start()
+    threading.Thread(target=_end_with_input, daemon=True).start()
+    with take_turn(Path(question["cache"])):
+        compile_answer(question)
+
+
+def compile_answer(question: dict[str, Any]) -> None:
+    """Compile what answers one target of a kind."""
+    from ikde.model.collision_model import CollisionModel
+    from ikde.model.plain_data import decode
+    from ikde.model.robot import NO_DETECTOR, Detector, Robot
+    from ikde.solver.warmup import list_stages, warm_up
+
+    detector = decode(Detector | None, question["detector"])
+    collision = CollisionModel.of(decode(Robot, question["robot"]), detector or NO_DETECTOR)
+    wanted = f"lm, one {question['kind']}"
+    warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == wanted])
+
+
+@contextmanager
+def take_turn(cache: Path) -> Iterator[None]:
+    """Be the only one that compiles into a cache folder; where files cannot be locked there may be two, and no harm."""
+    handle = os.open(cache / LOCK, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o600)
+    try:
+        with suppress(ImportError, OSError):
+            import fcntl
+
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _end_with(parent: int) -> None:
+    """End when the parent has: another process may have inherited the other end of standard input."""
+    while os.getppid() == parent:
+        time.sleep(LOOK_S)
+    leave()
+
+
+def _end_with_input() -> None:
+    """End when the parent closes standard input, which its own end does."""
+    sys.stdin.read()
+    leave()
+
+
+def leave() -> None:
+    """End at once, but for a file of the cache that is being written."""
+    writing = sys.modules.get("ikde.kernels.cache_files")
+    if writing is not None:
+        writing.WRITING.acquire()
+    os._exit(1)

@@ -1,0 +1,79 @@
+"""The child compiles what it is told, one at a time in a cache folder, and leaves no half of a file."""
+
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+import ikde
+from ikde.kernels import cache_files
+from ikde.model.plain_data import encode
+from ikde.solver import compiler_process, warmup
+from ikde.solver.compiler_process import compile_answer, take_turn
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("kind", ["position", "pose"])
+def test_it_compiles_one_kind_of_target_for_the_robot_that_it_is_told(substitute, kind):
+    robot, done = ikde.load_robot("ur5"), []
+    substitute(warmup.warm_up, done.extend)
+    detector = robot.detectors[robot.default_detector]
+    compile_answer({"robot": encode(robot), "detector": encode(detector), "kind": kind})
+    (stage,) = done
+    assert stage.name == f"lm, one {kind}"
+    asked, target, *_ = stage.run.args
+    assert (asked.name, target.kind) == ("ur5", kind)
+    assert stage.run.keywords["collision"].detector == detector
+
+
+def test_without_a_detector_it_compiles_without_one(substitute):
+    robot, done = ikde.load_robot("ur5"), []
+    substitute(warmup.warm_up, done.extend)
+    compile_answer({"robot": encode(robot), "detector": None, "kind": "axis"})
+    assert done[0].run.keywords["collision"].detector is None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs locks of files")
+def test_one_waits_for_another(tmp_path):
+    script = f"import sys; sys.path[:] = {sys.path!r}\nfrom pathlib import Path\n" + (
+        "from ikde.solver.compiler_process import take_turn\n"
+        f"with take_turn(Path({str(tmp_path)!r})):\n    print('mine', flush=True)\n    input()\n"
+    )
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, **pipes) as other:
+        assert other.stdout.readline() == "mine\n"
+        mine = threading.Event()
+
+        def wait():
+            with take_turn(tmp_path):
+                mine.set()
+
+        thread = threading.Thread(target=wait)
+        thread.start()
+        assert not mine.wait(0.3)
+        other.communicate("\n")
+        thread.join(20.0)
+        assert mine.is_set()
+
+
+def test_it_does_not_end_in_the_middle_of_a_file(monkeypatch):
+    ended = []
+    monkeypatch.setattr(compiler_process.os, "_exit", ended.append)
+    with cache_files.WRITING:
+        thread = threading.Thread(target=compiler_process.leave)
+        thread.start()
+        time.sleep(0.1)
+        assert ended == []
+    thread.join(20.0)
+    cache_files.WRITING.release()
+    assert ended == [1]
+
+
+def test_while_it_waits_nothing_is_imported():
+    script = "import sys; from ikde.solver import compiler_process; print({'numpy', 'numba'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
