@@ -1,7 +1,7 @@
 """The engine `analytic`: the closed form of a UR-type arm, whose base stands still or is drawn from the seeds.
 
-An arm that stands still has at most eight branches, whole turns left aside: one attempt knows them all. `answer_target`
-makes it for one target, `answer_targets` for many: the same moves, the same bits.
+An arm that stands still has at most eight branches, whole turns left aside: one attempt knows them all. `solve_pose`
+makes it for one target, `solve_poses` for many: the same moves, the same bits.
 
 `model/generate` writes this file once more for a robot, after `kernels/lm.py`, with its own collision check.
 """
@@ -166,7 +166,7 @@ def rank_branches(arm, ranges, seed, stream, attempt, count, solutions, state, o
 
 
 @inline_kernel
-def answer(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs):
+def try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs):
     """One attempt on one target [3, 4]: branch after branch, until one is free of collision.
 
     The outputs are those of `lm.solve_target`; an evaluation is one branch that exists inside the ranges. If all
@@ -199,7 +199,7 @@ def answer(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state
 
 
 @kernel
-def answer_target(
+def solve_pose(
     numbers,
     whole,
     pool,
@@ -226,14 +226,14 @@ def answer_target(
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
     buffers, outputs = make_buffers(models[0], models[1], out_q.size), (out_q, out_score, out_counts, out_pairs)
-    answer(models, arm, ranges, T_world_tool[index], seed, stream, first, room, state, buffers, outputs)
+    try_branches(models, arm, ranges, T_world_tool[index], seed, stream, first, room, state, buffers, outputs)
 
 
 @kernel
-def answer_targets(
+def solve_poses(
     numbers, whole, T_world_tool, rows, seed, streams, attempts, out_q, out_score, out_counts, out_pairs
 ):
-    """`answer_target` for rows[0] .. rows[1] - 1: streams [T], attempts [rows, 2], outputs a row a target."""
+    """`solve_pose` for rows[0] .. rows[1] - 1: streams [T], attempts [rows, 2], outputs a row a target."""
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
     buffers = make_buffers(models[0], models[1], out_q.shape[1])
@@ -241,4 +241,4 @@ def answer_targets(
         first, last = attempts[row - rows[0], 0], attempts[row - rows[0], 1]
         if first < last:
             outputs = (out_q[row], out_score[row], out_counts[row], out_pairs[row])
-            answer(models, arm, ranges, T_world_tool[row], seed, streams[row], first, room, state, buffers, outputs)
+            try_branches(models, arm, ranges, T_world_tool[row], seed, streams[row], first, room, state, buffers, outputs)

@@ -81,6 +81,12 @@ def find_ur_arm(robot: Robot) -> URArm | None:
     return arm if arm is not None and _agrees(arrays, chain, arm) else None
 
 
+def find_still_arm(robot: Robot, lower: Floats, upper: Floats) -> URArm | None:
+    """The robot's UR-type arm if nothing but its joints may move inside ranges [N]: eight branches are then all."""
+    arm = find_ur_arm(robot)
+    return arm if arm is not None and np.delete(upper - lower, arm.coordinates).max(initial=0.0) == 0.0 else None
+
+
 def pack_ur_arm(arm: URArm, weights: Floats | None = None) -> ClosedFormArrays:
     """Pack an arm for the kernels; `weights` [N]: how much a radian of each joint counts as motion, by default 1."""
     own = np.ones(6) if weights is None else weights[list(arm.coordinates)]
