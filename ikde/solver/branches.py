@@ -78,6 +78,8 @@ def judge_branches(problem: Problem, targets: Targets) -> Judged:
     outside = (_measure_excess(problem, q) > slack).any(axis=-1) & ~found.missing
     colliding = np.zeros((*outside.shape, len(problem.collision.pairs)), dtype=bool)
     tested = np.isfinite(slack).all(axis=-1) & ~outside & ~found.missing
+    if not problem.collision.pairs:
+        return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding)
     room = find_motions(problem.collision).bound_m(slack[tested][:, joints], *tolerances)
     colliding[tested] = compute_gaps(problem.collision, q[tested]) + room <= problem.collision.limit_m
     return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding)
