@@ -1,6 +1,6 @@
 """The engine `analytic`: the closed form of a UR-type arm, whose base stands still or is drawn from the seeds.
 
-An arm that stands still has at most eight branches, whole turns left aside: one attempt knows them all. `solve_pose`
+An arm that stands still has at most eight branches, whole turns left aside: one attempt knows them all. `answer_pose`
 makes it for one target, `solve_poses` for many: the same moves, the same bits.
 
 `model/generate` writes this file once more for a robot, after `kernels/lm.py`, with its own collision check.
@@ -8,9 +8,10 @@ makes it for one target, `solve_poses` for many: the same moves, the same bits.
 
 import numpy as np
 
+from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH
 from ikde.kernels.closed_form import ANGLES, BRANCHES, Room, solve_ur_arm
-from ikde.kernels.flat_arguments import unpack_closed_form, unpack_models
+from ikde.kernels.flat_arguments import unpack_answer, unpack_closed_form, unpack_models
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_index, seed_stream
@@ -199,41 +200,28 @@ def try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room,
 
 
 @kernel
-def solve_pose(
-    numbers,
-    whole,
-    pool,
-    pool_T,
-    kinds,
-    T_world_tool,
-    index,
-    seed,
-    stream,
-    first,
-    last,
-    out_q,
-    out_score,
-    out_counts,
-    out_pairs,
-):
-    """Attempt number `first` on one pose by an arm that stands still; those up to `last` - 1 would show nothing new.
+def answer_pose(numbers, whole, T_world_tool, seed, stream, first, last, out):
+    """All branches for one pose [3, 4], and the grade of the one that is free, from one call of Python.
 
-    Arguments and outputs are those of `lm.solve_target`, but for the block, which is `unpack_closed_form`'s; no pool is
-    read.
+    As `lm.answer_target`, but that one attempt, `first`, shows all there is. True if it is reached and accepted.
     """
-    if first >= last:
-        return
+    grader, terms, kinds, turns = unpack_answer(numbers, whole)
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
-    buffers, outputs = make_buffers(models[0], models[1], out_q.size), (out_q, out_score, out_counts, out_pairs)
-    try_branches(models, arm, ranges, T_world_tool[index], seed, stream, first, room, state, buffers, outputs)
+    buffers, outputs = make_buffers(models[0], models[1], whole[0]), open_row(whole[0], first, out)
+    word = np.uint64(seed)
+    try_branches(models, arm, ranges, T_world_tool, word, stream, first, room, state, buffers, outputs)
+    if outputs[2][REACHED] == 0:
+        return False
+    return grade_row(grader, terms, kinds, T_world_tool.reshape((1, 3, 4)), turns, whole[0], out)
 
 
 @kernel
-def solve_poses(
-    numbers, whole, T_world_tool, rows, seed, streams, attempts, out_q, out_score, out_counts, out_pairs
-):
-    """`solve_pose` for rows[0] .. rows[1] - 1: streams [T], attempts [rows, 2], outputs a row a target."""
+def solve_poses(numbers, whole, T_world_tool, rows, seed, streams, attempts, out_q, out_score, out_counts, out_pairs):
+    """All branches for each of rows[0] .. rows[1] - 1: streams [T], attempts [rows, 2], outputs a row a target.
+
+    `numbers` and `whole` are those of `unpack_closed_form`. Of several attempts the first shows all there is.
+    """
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
     buffers = make_buffers(models[0], models[1], out_q.shape[1])
@@ -241,4 +229,6 @@ def solve_poses(
         first, last = attempts[row - rows[0], 0], attempts[row - rows[0], 1]
         if first < last:
             outputs = (out_q[row], out_score[row], out_counts[row], out_pairs[row])
-            try_branches(models, arm, ranges, T_world_tool[row], seed, streams[row], first, room, state, buffers, outputs)
+            try_branches(
+                models, arm, ranges, T_world_tool[row], seed, streams[row], first, room, state, buffers, outputs
+            )

@@ -161,9 +161,7 @@ def unpack_search(numbers, whole, q, T_world_tool):
 def unpack_closed_form(numbers, whole):
     """Ranges [3, N], `ClosedFormArrays` and the body that carries the arm, as views; behind them stand both models."""
     joints, n = whole[0], numbers[1 + 3 * whole[0] :]
-    arm = ClosedFormArrays(
-        whole[4:10].view(np.uint64), n[:24].reshape((2, 3, 4)), n[24:32], n[32:50].reshape((3, 6))
-    )
+    arm = ClosedFormArrays(whole[4:10].view(np.uint64), n[:24].reshape((2, 3, 4)), n[24:32], n[32:50].reshape((3, 6)))
     return numbers[1 : 1 + 3 * joints].reshape((3, joints)), arm, whole[1]
 
 

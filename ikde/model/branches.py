@@ -77,9 +77,7 @@ def _find_wrist(arm: URArm, T: Floats, moves: float, turns: float) -> _Wrist:
     sine, five = np.hypot(out[..., 0], out[..., 1]), np.arctan2(np.hypot(out[..., 0], out[..., 1]), out[..., 2])
     six = np.arctan2(-out[..., 1], out[..., 0])
     s6, c6 = -out[..., 1] / sine, out[..., 0] / sine
-    turn = np.arctan2(
-        -(s6 * along[..., 0] + c6 * along[..., 1]), s6 * T[:, None, 2, 0] + c6 * T[:, None, 2, 1]
-    )
+    turn = np.arctan2(-(s6 * along[..., 0] + c6 * along[..., 1]), s6 * T[:, None, 2, 0] + c6 * T[:, None, 2, 1])
     five_slack = one_slack + turns
     least = np.minimum(np.sin(five - five_slack), np.sin(five + five_slack))
     least = np.where((least > 0.0) & (five_slack < LARGEST_SLACK), least, np.nan)

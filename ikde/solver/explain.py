@@ -7,8 +7,8 @@ import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.target import Target
-from ikde.solver.digits import at_least
 from ikde.solver.branches import tell_branches
+from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.fixed import tell_fixed

@@ -9,8 +9,8 @@ from ikde.kernels.arrays import REACHED, Floats
 from ikde.model.bounds import find_bounds
 from ikde.model.robot import MAX_MAGNITUDE, Joint
 from ikde.model.target import Target
-from ikde.solver.digits import round_up
 from ikde.solver.branches import find_beyond
+from ikde.solver.digits import round_up
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.problem import Problem
@@ -83,7 +83,9 @@ def hint_at_bounds(problem: Problem, target: Target) -> str:
 def hint_at_branches(problem: Problem, target: Target) -> str | None:
     """The joints that stand in the way of a branch of the closed form that is free of collision."""
     q = find_beyond(problem, target)
-    if q is None or not meets(problem.with_ranges(np.minimum(problem.lower, q), np.maximum(problem.upper, q)), target, q):
+    if q is None or not meets(
+        problem.with_ranges(np.minimum(problem.lower, q), np.maximum(problem.upper, q)), target, q
+    ):
         return None
     outside = (q < problem.lower) | (q > problem.upper)
     names = [joint.name for joint, is_out in zip(problem.robot.joints, outside, strict=True) if is_out]

@@ -88,6 +88,7 @@ def test_nothing_is_said_for_tolerances_that_are_no_longer_small(rng):
 def test_a_wrist_beside_the_first_axis_is_missing_only_as_far_as_the_tolerances_tell():
     """d4 of the axis: nearer the wrist centre cannot come."""
     arm = find_ur_arm(UR5)
+
     def at(radius):
         T = np.eye(4)
         T[:3, 3] = radius, 0.0, 0.5
