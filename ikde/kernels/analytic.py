@@ -229,6 +229,5 @@ def solve_poses(numbers, whole, T_world_tool, rows, seed, streams, attempts, out
         first, last = attempts[row - rows[0], 0], attempts[row - rows[0], 1]
         if first < last:
             outputs = (out_q[row], out_score[row], out_counts[row], out_pairs[row])
-            try_branches(
-                models, arm, ranges, T_world_tool[row], seed, streams[row], first, room, state, buffers, outputs
-            )
+            question = (T_world_tool[row], seed, streams[row], first)
+            try_branches(models, arm, ranges, *question, room, state, buffers, outputs)

@@ -1,11 +1,11 @@
 """All branches of a UR-type arm in plain numpy, and how far they move while the tool stays within tolerances.
 
-The formulas are those of `kernels/closed_form.py` [Hawkins2013], with which nothing is shared. A *slack* bounds how much
-a number can change while the tool moves by at most `position_m` and turns by at most `orientation_rad`: so what is true
-of a branch and all within its slack is true of every pose that the tolerances accept. Slacks may be too large, never too
-small. A sum moves by what its parts move by; a direction of length l whose end moves by e turns by at most asin(e / l);
-the common perpendicular of two axes at an angle b turns by at most asin(sin(e) / sin(b)) when one of them turns by e (law
-of sines on the sphere). Where a bound does not hold, at a singularity or near one, the slack is NaN.
+The formulas are those of `kernels/closed_form.py` [Hawkins2013], with which nothing is shared. A *slack* bounds how
+much a number can change while the tool moves by at most `position_m` and turns by at most `orientation_rad`: what is
+true of a branch and of all within its slack is true of every pose that the tolerances accept. Slacks may be too large,
+never too small. A sum moves by what its parts move by; a direction of length l whose end moves by e turns by at most
+asin(e / l); the common perpendicular of two axes at an angle b turns by at most asin(sin(e) / sin(b)) when one of them
+turns by e (law of sines on the sphere). Where a bound does not hold, at a singularity or near one, the slack is NaN.
 """
 
 from dataclasses import dataclass

@@ -83,9 +83,10 @@ def hint_at_bounds(problem: Problem, target: Target) -> str:
 def hint_at_branches(problem: Problem, target: Target) -> str | None:
     """The joints that stand in the way of a branch of the closed form that is free of collision."""
     q = find_beyond(problem, target)
-    if q is None or not meets(
-        problem.with_ranges(np.minimum(problem.lower, q), np.maximum(problem.upper, q)), target, q
-    ):
+    if q is None:
+        return None
+    wide = problem.with_ranges(np.minimum(problem.lower, q), np.maximum(problem.upper, q))
+    if not meets(wide, target, q):
         return None
     outside = (q < problem.lower) | (q > problem.upper)
     names = [joint.name for joint, is_out in zip(problem.robot.joints, outside, strict=True) if is_out]

@@ -28,7 +28,7 @@ def pack_still(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
 
 
 def prepare_answer(problem: Problem) -> Callable[..., bool]:
-    """One target by an arm that alone may move: `answer(T_world_tool, seed, stream, begin, end, out)` (`answer_pose`)."""
+    """One target, by an arm that alone may move: `answer(T_world_tool, seed, stream, 0, 1, out)` (`answer_pose`)."""
     block = pack_still(problem, check_closed_form(problem.robot))
     block = flatten_answer(block, pack_grader(problem.collision, problem.settings), POSE, problem.turns)
     return partial(load_kernels(problem.collision, "pose").answer_pose.compiled, *block)
