@@ -8,23 +8,21 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import POSE, Floats, Ints
 from ikde.kernels.flat_arguments import flatten_answer, flatten_closed_form
-from ikde.kernels.turns import TURN
 from ikde.model.closed_form import URArm, find_still_arm, find_ur_arm, pack_ur_arm
 from ikde.model.robot import Robot
 from ikde.solver.engines.engine import SearchInputs, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.metrics import pack_grader
-from ikde.solver.problem import ROUNDING, Problem, pack_searched
+from ikde.solver.problem import Problem, pack_searched
 
 
 def pack_still(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
     """All that stays from target to target, as `solve_poses` takes it, of an arm that alone may move."""
-    robot = problem.robot
     ranges = np.array([problem.lower, problem.upper, problem.lower])
     ranges[2] = np.clip(problem.centre, problem.lower, problem.upper)
-    width = robot.upper - robot.lower
-    weights = 1.0 / np.where(np.isinf(width), TURN, np.maximum(width, ROUNDING))
-    return flatten_closed_form(*pack_searched(problem.collision), ranges, pack_ur_arm(arm, weights), arm.carrier)
+    return flatten_closed_form(
+        *pack_searched(problem.collision), ranges, pack_ur_arm(arm, problem.weights), arm.carrier
+    )
 
 
 def prepare_answer(problem: Problem) -> Callable[..., bool]:
