@@ -201,6 +201,7 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, subs
             "excess_rad": nothing,
             "seconds": nothing,
             "engine": np.zeros(1, dtype=np.int64),
+            "ruled_out": np.full(1, -1),
             "metrics": compute_metrics(CollisionModel.of(qiao), targets, qiao.home[None]),
         }
         return SearchState(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)

@@ -18,11 +18,9 @@ from ikde.solver.problem import Problem, pack_searched
 
 def pack_still(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
     """All that stays from target to target, as `solve_poses` takes it, of an arm that alone may move."""
-    ranges = np.array([problem.lower, problem.upper, problem.lower])
-    ranges[2] = np.clip(problem.centre, problem.lower, problem.upper)
-    return flatten_closed_form(
-        *pack_searched(problem.collision), ranges, pack_ur_arm(arm, problem.weights), arm.carrier
-    )
+    centre = np.clip(problem.centre, problem.lower, problem.upper)
+    models, ranges = pack_searched(problem.collision), np.array([problem.lower, problem.upper, centre])
+    return flatten_closed_form(*models, ranges, pack_ur_arm(arm, problem.weights), arm.carrier)
 
 
 def prepare_answer(problem: Problem) -> Callable[..., bool]:
