@@ -97,7 +97,10 @@ def explain(
     if prove(problem, target) != (0.0, 0.0):
         return explain_reach(problem, target)
     if found.ruled_out[0] >= 0:
-        return _ruled_out(problem, target, found, graded, seed=seed, stream=stream)
+        touching = (
+            _never_free(problem, _read_counts(problem, found), graded) if found.ruled_out[0] == _COLLISION else None
+        )
+        return touching or _ruled_out(problem, target, found, graded, seed=seed, stream=stream)
     met, timeout_s = _read_counts(problem, found), problem.settings.timeout_s
     if stop_from_counts(problem, found)[0] == _TIMED_OUT:
         return _timed_out(found, graded, timeout_s, met.blocking)

@@ -71,7 +71,7 @@ def test_nothing_is_said_near_a_singularity(joint, value, rng):
     qs[:, joint] = arm.signs[joint] * (value - arm.offsets[joint])
     found = find_branches(arm, pose(arm, qs), 1e-4, 1e-3)
     apart = turn_apart(found.angles, arm.angles(qs)[:, None, :])[:, :, joint]
-    own = np.where(np.isfinite(apart), apart, 0.0) < 2e-4
+    own = apart < 1.5e-4 + abs(np.sin(value)) * 1e-3  # NaN is none of them
     assert own.any(axis=1).all()
     assert not found.missing[own].any()
     assert np.isnan(found.slack[own]).any(axis=-1).all()
