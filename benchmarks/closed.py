@@ -1,13 +1,13 @@
 """A UR5 on a fixed base: `ikde.solve`, which answers by its closed form, beside `lm` alone and EAIK's closed form.
 
-    python benchmarks/closed.py [--targets N] [--rounds N]
+    python benchmarks/closed.py [--targets N] [--rounds N] [--sets ordinary hard none]
 
 needs EAIK (`pip install eaik`). Each round asks every way for every target, all in one shuffled order, from Python, on
 one core, and reads the clock around each call. EAIK's `HPRobot.IK` gives all branches; the first that is exact, inside
 the limits and free by the checker that all peers share (compiled) is its answer. Figures are of each target's median
 over the rounds; every answer is graded by plain numpy. Bulk is microseconds a target of `solve_many` on one thread.
 Ordinary and hard poses as in `benchmarks/peers/cases.py`; *none* are poses of which no branch is free, or none exists.
-Writes benchmarks/results/closed.json.
+With all sets it writes benchmarks/results/closed.json.
 """
 
 import argparse
@@ -35,6 +35,7 @@ from checker import make_checker
 RESULTS = Path(__file__).parent / "results" / "closed.json"
 SEED = 20261
 BULK = 20_000
+SETS = ["ordinary", "hard", "none"]
 SETTINGS = ikde.SolveSettings()
 Solve = Callable[[int], Floats | None]
 
@@ -44,15 +45,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--targets", type=int, default=1000, help="of each set")
     parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--sets", nargs="+", default=SETS, choices=SETS)
     asked = parser.parse_args()
     robot, records = ikde.load_robot("ur5"), []
-    for name in ("ordinary", "hard", "none"):
+    for name in asked.sets:
         targets = make_targets(robot, name, asked.targets if name != "none" else asked.targets // 10)
         ways = make_ways(robot, targets)
         if name == "none":  # `lm` goes on to its last attempt, a second or so
             del ways["ikde.solve, lm"]
         times, answers = time_ways(ways, len(targets), asked.rounds)
-        print(f"{name}: {len(targets)} poses", flush=True)
         for way, spent in times.items():
             record = {
                 "set": name,
@@ -61,9 +62,11 @@ def main() -> None:
                 **spread(spent),
             }
             records.append({**record, "targets": len(targets)})
-    bulk = {name: time_bulk(robot, name, asked.rounds) for name in ("ordinary", "hard")}
+            print(json.dumps(records[-1]), flush=True)
+    bulk = {name: time_bulk(robot, name, asked.rounds) for name in asked.sets if name != "none"}
     show(records, bulk)
-    RESULTS.write_text(json.dumps({"machine": describe(), "sets": records, "bulk_us": bulk}, indent=1) + "\n")
+    if asked.sets == SETS:
+        RESULTS.write_text(json.dumps({"machine": describe(), "sets": records, "bulk_us": bulk}, indent=1) + "\n")
 
 
 def make_targets(robot: ikde.Robot, name: str, count: int) -> list[ikde.Target]:

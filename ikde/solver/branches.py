@@ -166,7 +166,7 @@ def tell_branches(problem: Problem, target: Target) -> tuple[str, dict[tuple[str
     words = []
     if outside.any():
         beyond = _measure_excess(problem, judged.q[0][outside]) > 0.0
-        names = [joint.name for joint, out in zip(problem.robot.joints, beyond.any(axis=0), strict=True) if out]
+        names = [problem.robot.joint_names[k] for k in np.flatnonzero(beyond.any(axis=0)).tolist()]
         words.append(f"{outside.sum()} outside the limits of {', '.join(names)}")
     if colliding:
         worst = ", ".join(f"{a}-{b} in {n}" for (a, b), n in list(blocking.items())[:3])

@@ -187,9 +187,7 @@ def test_a_pose_that_only_colliding_branches_reach_is_proved_to_have_no_solution
     result = ask_of_ur5([0.3, -1.0, 2.95, 0.4, 1.2, 0.0])
     assert (result.reached, result.stop_reason, result.hint) == (False, "collision", None)
     assert result.attempts == 1 + ENGINES["lm"].attempts_before_proof
-    told = re.fullmatch(
-        r"no solution, proved: of (\d) configurations with this pose \1 in collision \((.*)\)", result.reason
-    )
+    told = re.fullmatch(r"no solution, proved: of (\d) .* with this pose \1 in collision \((.*)\)", result.reason)
     worst, count = next(iter(result.blocking_pairs.items()))
     assert told[2].startswith(f"{worst[0]}-{worst[1]} in {count}")
     assert result.position_error_m < 1e-9
