@@ -29,8 +29,8 @@ class StopReason(StrEnum):
     """The pose was met, but only by configurations that collide with themselves, as far as trying tells, or as the
     reason says: proved, of all that are inside the limits."""
     LIMITS = "limits"
-    """The pose is met only outside the joint limits (or with a frozen joint set free), as far as trying tells, or as the
-    reason says: proved."""
+    """The pose is met only outside the joint limits (or with a frozen joint set free), as far as trying tells, or if the
+    reason says so proved."""
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
     TIMED_OUT = "timed_out"
