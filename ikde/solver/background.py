@@ -49,14 +49,17 @@ def choose_way() -> str:
     return given or UNLESS_TOLD.get()
 
 
-def answers_plainly(answer: Bound, collision: CollisionModel, kind: str) -> bool:
-    """True while a question is to be answered in plain Python; the child is started if there is something to do."""
+def answers_plainly(answer: Bound, collision: CollisionModel, stage: str) -> bool:
+    """True while a question is to be answered in plain Python; the child is started if there is something to do.
+
+    `stage`: what is to be compiled, a name of `warmup.list_stages`.
+    """
     way = choose_way()
     if way in (NEVER, LATER):
         return True
     if way == WAIT or not _can_start() or (not CHILD.is_at_work and answer.is_kept):
         return False
-    return CHILD.compile(collision, kind)
+    return CHILD.compile(collision, stage)
 
 
 def _can_start() -> bool:
@@ -77,15 +80,15 @@ class Child:
         """True while it runs."""
         return self._process is not None and self._process.poll() is None
 
-    def compile(self, collision: CollisionModel, kind: str) -> bool:
+    def compile(self, collision: CollisionModel, stage: str) -> bool:
         """True if it is at work, or has been started for this; False if it has ended without: it is not tried again."""
         with self._lock:
             if self.is_at_work:
                 return True
-            if (collision, kind) in self._asked:
+            if (collision, stage) in self._asked:
                 return False
-            self._asked.add((collision, kind))
-            question = {"robot": encode(collision.robot), "detector": encode(collision.detector), "kind": kind}
+            self._asked.add((collision, stage))
+            question = {"robot": encode(collision.robot), "detector": encode(collision.detector), "stage": stage}
             with suppress(OSError):
                 self._process = start(question)
             return self.is_at_work

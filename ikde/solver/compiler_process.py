@@ -28,7 +28,7 @@ def run(question: dict[str, Any]) -> None:
 
 
 def compile_answer(question: dict[str, Any]) -> None:
-    """Compile what answers one target of a kind."""
+    """Compile what answers one question."""
     from ikde.model.collision_model import CollisionModel
     from ikde.model.plain_data import decode
     from ikde.model.robot import NO_DETECTOR, Detector, Robot
@@ -36,8 +36,7 @@ def compile_answer(question: dict[str, Any]) -> None:
 
     detector = decode(Detector | None, question["detector"])
     collision = CollisionModel.of(decode(Robot, question["robot"]), detector or NO_DETECTOR)
-    wanted = f"lm, one {question['kind']}"
-    warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == wanted])
+    warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == question["stage"]])
 
 
 @contextmanager

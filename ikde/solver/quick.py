@@ -4,29 +4,31 @@ The answer is that of the long way (`solver.results`), bit for bit; what this wa
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels.answer import FIRST_COUNT, METRICS, size_of
-from ikde.kernels.arrays import REACHED
-from ikde.kernels.jit import compile_clock
+from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE, size_of
+from ikde.kernels.arrays import REACHED, Floats
+from ikde.kernels.jit import Kernel, compile_clock
+from ikde.model.closed_form import find_still_arm
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.background import answers_plainly
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.lm import pack_answer
+from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.pool import load_kernels, runs_on_tables
 from ikde.solver.explain import explain_reach
-from ikde.solver.problem import make_problem
+from ikde.solver.problem import Problem, make_problem
 from ikde.solver.proof import prove
 from ikde.solver.result import ResultMaker, SolveResult, StopReason
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings, choose_settings
 
-ENGINE = "lm"
+LM, CLOSED = "lm", "analytic"
 HALF_WORDS = 2**63
 OUT_OF_REACH = {"reached": False, "stop_reason": StopReason.OUT_OF_REACH, "_explain": explain_reach}
 
@@ -35,73 +37,174 @@ Answer = Callable[..., bool]
 `lm.answer_target`."""
 
 
-class Stages:
-    """How one question is asked of the engine `lm`: a few attempts, a bound, and then all that it has."""
+class Way:
+    """A kernel that answers one target: in plain Python, until there is machine code."""
 
-    def __init__(self, collision: CollisionModel, settings: SolveSettings, *, is_last: bool) -> None:
-        joints, row, budget = len(collision.robot.joints), ENGINES[ENGINE], settings.budget(ENGINE)
-        self._size, self._reached = size_of(joints, len(collision.pairs)), joints + METRICS + FIRST_COUNT + REACHED
-        self._few = min(row.attempts_before_proof, budget)
-        self._all = budget if is_last or row.attempts_before_next is None else row.attempts_before_next
-        if settings.timeout_s is not None:
-            self._all = self._few
+    def __init__(self, kernel: Kernel, collision: CollisionModel, stage: str) -> None:
+        self._kernel, self._collision, self._stage = kernel, collision, stage
+        self.machine: Answer | None = None
+        self.waited_s, self.compile_s = 0.0, 0.0
 
-    def ask(
-        self, answer: Answer, maker: ResultMaker, target: Target, seed: int, stream: int, started: float
-    ) -> SolveResult | None:
+    def begin(self, *arguments: Any) -> bool:
+        """A call while machine code is not there, or the one that waits for it."""
+        *block, T_world_tool, seed, stream, first, last, row = arguments
+        bound = self._kernel.bind(*block)
+        if first > 0 or answers_plainly(bound, self._collision, self._stage):
+            return bound.plain(T_world_tool, np.int64(seed), stream, first, last, row)
+        started = time.perf_counter()
+        with compile_clock() as clock:
+            self._kernel.compiled(*arguments)
+        self.machine = answer = self._kernel.compiled
+        self.waited_s, self.compile_s = time.perf_counter() - started, clock.seconds
+        return answer(*arguments)
+
+
+class Ways:
+    """Those of one collision model and kind of target, for each engine, with `near` and without."""
+
+    def __init__(self, collision: CollisionModel, kind: str) -> None:
+        kernels = load_kernels(collision, kind)
+        self._ways = {
+            (LM, False): Way(kernels.answer_target, collision, f"lm, one {kind}"),
+            (LM, True): Way(kernels.answer_near, collision, f"lm, near {kind}"),
+        }
+        if hasattr(kernels, "answer_pose"):
+            self._ways[CLOSED, False] = Way(kernels.answer_pose, collision, f"analytic, one {kind}")
+            self._ways[CLOSED, True] = Way(kernels.answer_pose_near, collision, f"analytic, near {kind}")
+
+    def find(self, engine: str, is_near: bool) -> Way:
+        """The way of an engine."""
+        return self._ways[engine, is_near]
+
+    def take_waited_s(self) -> tuple[float, float]:
+        """For how long machine code has been waited for since this was asked last, and how much of it was compiling."""
+        waited = sum(way.waited_s for way in self._ways.values()), sum(way.compile_s for way in self._ways.values())
+        for way in self._ways.values():
+            way.waited_s, way.compile_s = 0.0, 0.0
+        return waited
+
+
+class Plan(NamedTuple):
+    """How a question is asked: of the closed form, or of `lm`, a few attempts, a bound, and then all that it has."""
+
+    size: int
+    """Of a row."""
+    counts: int
+    """Where in a row whole numbers begin."""
+    is_closed: bool
+    has_lm: bool
+    few: int
+    all: int
+
+
+def make_plan(collision: CollisionModel, settings: SolveSettings, engines: Sequence[str]) -> Plan | None:
+    """None if another engine comes first, or without written kernels: then engine and grader would share their code."""
+    if runs_on_tables() or engines[0] not in (LM, CLOSED):
+        return None
+    joints, row, budget = len(collision.robot.joints), ENGINES[LM], settings.budget(LM)
+    few = min(row.attempts_before_proof, budget)
+    all_of_it = budget if engines[-1] == LM or row.attempts_before_next is None else row.attempts_before_next
+    return Plan(
+        size=size_of(joints, len(collision.pairs)),
+        counts=joints + METRICS,
+        is_closed=engines[0] == CLOSED,
+        has_lm=LM in engines,
+        few=few,
+        all=few if settings.timeout_s is not None else all_of_it,
+    )
+
+
+class Quick:
+    """A question with its plan, about one target after another; `lay_out` gives what stays of an engine's call."""
+
+    def __init__(self, problem: Problem, plan: Plan, ways: Ways, lay_out: Callable[[str], Sequence[Any]]) -> None:
+        self._problem, self._plan, self._ways, self._lay_out = problem, plan, ways, lay_out
+        self._first = CLOSED if plan.is_closed else LM
+        self._maker = ResultMaker(problem, self._first)
+        self._answer, self._is_ready = self._bind(self._first)
+
+    def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
         """A graded solution or a proof that there is none, or None if this target needs another engine, or a reason.
 
         `started`: when the caller began to wait, by `time.perf_counter`.
         """
-        row, word = np.empty(self._size), seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
-        if answer(target.T_world_tool, word, stream, 0, self._few, row):
-            return maker.make(row, target, seed, stream, time.perf_counter() - started)
-        if row.view(np.int64)[self._reached]:
+        if not self._is_ready:
+            return self._solve_first(target, seed, stream, started)
+        return self._ask(target, seed, stream, started)
+
+    def _bind(self, engine: str) -> tuple[Answer, bool]:
+        """The call of an engine, and whether it is machine code."""
+        way = self._ways.find(engine, self._problem.near is not None)
+        return partial(way.machine or way.begin, *self._lay_out(engine)), way.machine is not None
+
+    def _ask(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
+        plan, word = self._plan, seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
+        row = np.empty(plan.size)
+        if self._answer(target.T_world_tool, word, stream, 0, 1 if plan.is_closed else plan.few, row):
+            return self._maker.make(row, target, seed, stream, time.perf_counter() - started)
+        whole = row[plan.counts :].view(np.int64)
+        if whole[FIRST_COUNT + REACHED] or not plan.has_lm:
             return None
-        if prove(maker.problem, target) != (0.0, 0.0):
-            made = maker.make(row, target, seed, stream, time.perf_counter() - started)
-            return made.with_changes(**OUT_OF_REACH)
-        if self._all > self._few and answer(target.T_world_tool, word, stream, self._few, self._all, row):
-            return maker.make(row, target, seed, stream, time.perf_counter() - started)
+        made = self._go_on(row, target, word, stream) if plan.is_closed else self._prove(row, target, word, stream)
+        return made and made(target, seed, stream, time.perf_counter() - started)
+
+    def _prove(self, row: Floats, target: Target, word: int, stream: int) -> Callable[..., SolveResult] | None:
+        """What a few attempts of `lm` did not reach: a proof, or what further ones reach."""
+        plan = self._plan
+        if prove(self._problem, target) != (0.0, 0.0):
+            return partial(make_unreachable, self._maker, row)
+        if plan.all > plan.few and self._answer(target.T_world_tool, word, stream, plan.few, plan.all, row):
+            return partial(self._maker.make, row)
         return None
 
+    def _go_on(self, tried: Floats, target: Target, word: int, stream: int) -> Callable[..., SolveResult] | None:
+        """What no branch reaches: a few attempts of `lm`, counted with those of the closed form, and a proof."""
+        plan, maker = self._plan, ResultMaker(self._problem, LM)
+        row, (answer, _) = np.empty(plan.size), self._bind(LM)
+        is_reached = answer(target.T_world_tool, word, stream, 0, plan.few, row)
+        if not is_reached and prove(self._problem, target) == (0.0, 0.0):
+            return None
+        for part in (slice(FIRST_COUNT, SCORE), slice(BLOCKED, None)):
+            row[plan.counts :].view(np.int64)[part] += tried[plan.counts :].view(np.int64)[part]
+        return partial(maker.make if is_reached else partial(make_unreachable, maker), row)
 
-class Quick:
-    """The engine `lm` and the grader, for one collision model, settings and kind of target."""
-
-    def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str, *, is_last: bool = False) -> None:
-        problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-        answer = partial(load_kernels(collision, kind).answer_target.compiled, *pack_answer(problem, kind))
-        stages, maker = Stages(collision, settings, is_last=is_last), ResultMaker(problem, ENGINE)
-        self._ask, self._is_ready = partial(stages.ask, answer, maker), False
-
-    def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
-        """As `Stages.ask`; the first one compiles."""
-        if self._is_ready:
-            return self._ask(target, seed, stream, started)
-        self._is_ready = True
-        return compile_first(self._ask, target, seed, stream)
+    def _solve_first(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
+        """An answer while there is no machine code, or the first with it: waiting for it is not solving."""
+        result = self._ask(target, seed, stream, started)
+        self._answer, self._is_ready = self._bind(self._first)
+        waited_s, compile_s = self._ways.take_waited_s()
+        if result is None or not waited_s:
+            return result
+        return result.with_changes(solve_seconds=result.solve_seconds - waited_s, compile_seconds=compile_s)
 
 
-def compile_first(ask: Callable[..., SolveResult | None], target: Target, seed: int, stream: int) -> SolveResult | None:
-    """The first answer, whose time is that of a second try."""
-    with compile_clock() as clock:
-        ask(target, seed, stream, 0.0)
-    result = ask(target, seed, stream, time.perf_counter())
-    return result and result.with_changes(compile_seconds=clock.seconds)
+def make_unreachable(
+    maker: ResultMaker, row: Floats, target: Target, seed: int, stream: int, solve_seconds: float
+) -> SolveResult:
+    """A result of what is proved to be out of reach; the proof is put into words when it is asked for."""
+    return maker.make(row, target, seed, stream, solve_seconds).with_changes(**OUT_OF_REACH)
+
+
+def lay_out(problem: Problem, kind: str, engine: str) -> Sequence[Any]:
+    """What stays from target to target of an engine's call."""
+    return analytic.pack_answer(problem) if engine == CLOSED else lm.pack_answer(problem, kind)
 
 
 @lru_cache(maxsize=64)
 def find_quick(
     robot: Robot, settings: SolveSettings | None, method: str, choice: CollisionChoice, kind: str
 ) -> Quick | None:
-    """The quick way of a question, or None: it needs the engine `lm` to be the first to try, and written kernels.
-
-    On tables, engine and grader would share their code.
-    """
+    """The quick way of a question, or None: `make_plan`, or a robot that cannot move."""
     chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
+    problem = make_problem(robot, chosen, collision=collision, near=None, freeze=None)
     engines = choose_engines(robot, chosen, {kind})
-    may_move = bool((robot.lower < robot.upper).any())
-    if engines[0] != ENGINE or runs_on_tables() or not may_move:
+    plan = None if problem.is_fixed else make_plan(collision, chosen, engines)
+    if plan is None or not fits(problem, plan, kind):
         return None
-    return Quick(collision, chosen, kind, is_last=len(engines) == 1)
+    return Quick(problem, plan, Ways(collision, kind), partial(lay_out, problem, kind))
+
+
+def fits(problem: Problem, plan: Plan, kind: str) -> bool:
+    """Whether the closed form, if it comes first, is that of an arm that alone may move, and asked for a pose."""
+    still = find_still_arm(problem.robot, problem.lower, problem.upper) is not None
+    return not plan.is_closed or (still and kind in ENGINES[CLOSED].target_kinds)

@@ -4,70 +4,63 @@ What stays is laid out once; ranges and `near` are written into a copy of it, in
 way (`solver.results`), bit for bit, and what this way cannot answer is left to that one.
 """
 
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
+from typing import Any
 
-from ikde.kernels.arrays import Floats, Ints, SeedArrays
+import numpy as np
+
 from ikde.kernels.flat_arguments import set_ranges
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
-from ikde.solver.engines.engine import make_ranges
-from ikde.solver.engines.lm import pack_answer
-from ikde.solver.engines.pool import load_kernels, make_seeds, runs_on_tables
+from ikde.solver.engines import analytic, lm
+from ikde.solver.engines.engine import make_descent, make_ranges
+from ikde.solver.engines.pool import make_seeds
 from ikde.solver.problem import Problem
-from ikde.solver.quick import ENGINE, Answer, Stages, compile_first
-from ikde.solver.result import ResultMaker, SolveResult
+from ikde.solver.quick import CLOSED, LM, Plan, Quick, Ways, fits, make_plan
+from ikde.solver.result import SolveResult
 from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings
 
-Block = tuple[Floats, Ints, Floats, Floats]
-
 
 class QuickNear:
-    """The engine `lm` and the grader, for one collision model, settings and kind of target, in ranges that change."""
+    """One collision model, settings and kind of target, in ranges that change."""
 
     def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str) -> None:
         self._collision, self._settings, self._kind = collision, settings, kind
-        self._blocks: dict[bool, tuple[SeedArrays, Block]] = {}  # with `near`, and without
-        self._stages = lru_cache(maxsize=64)(self._make_stages)
-        self._ready: set[bool] = set()
+        self._ways, self._plans = Ways(collision, kind), lru_cache(maxsize=64)(self._make_plan)
+        self._kept: dict[str, tuple[Any, Sequence[Any]]] = {}
 
     def solve(self, problem: Problem, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
-        """As `Stages.ask`, or None where another engine is the first to try; the first one compiles."""
-        is_near, stages = problem.near is not None, self._stages(problem.frozen)
-        if stages is None:
+        """As `Quick.solve`."""
+        plan = self._plans(problem.frozen)
+        if plan is None or not fits(problem, plan, self._kind):
             return None
-        ask = partial(stages.ask, self._prepare(problem), ResultMaker(problem, ENGINE))
-        if is_near in self._ready:
-            return ask(target, seed, stream, started)
-        self._ready.add(is_near)
-        return compile_first(ask, target, seed, stream)
+        return Quick(problem, plan, self._ways, partial(self._lay_out, problem)).solve(target, seed, stream, started)
 
-    def _make_stages(self, frozen: tuple[str, ...]) -> Stages | None:
-        """None without written kernels, if nothing may move, or if another engine than `lm` comes first."""
+    def _make_plan(self, frozen: tuple[str, ...]) -> Plan | None:
         robot = self._collision.robot
         free = {k for k in find_free(robot.lower, robot.upper) if robot.joint_names[k] not in frozen}
-        if not free or runs_on_tables():
-            return None
         engines = choose_engines(robot, self._settings, {self._kind}, free=free)
-        return Stages(self._collision, self._settings, is_last=len(engines) == 1) if engines[0] == ENGINE else None
+        return make_plan(self._collision, self._settings, engines) if free else None
 
-    def _prepare(self, problem: Problem) -> Answer:
-        """The compiled call, ready for a target."""
-        kernels, is_near = load_kernels(self._collision, self._kind), problem.near is not None
-        numbers, *others = self._lay_out(problem, is_near)
-        numbers = set_ranges(numbers, make_ranges(problem), problem.turns)
-        if is_near:
-            return partial(kernels.answer_near.compiled, numbers, *others, problem.weights)
-        return partial(kernels.answer_target.compiled, numbers, *others)
-
-    def _lay_out(self, problem: Problem, is_near: bool) -> Block:
-        """What the last call of this kind was laid out to, if its seeds are these."""
-        kept = self._blocks.get(is_near)
-        if kept and is_near:
-            return kept[1]
+    def _lay_out(self, problem: Problem, engine: str) -> Sequence[Any]:
+        """The call of an engine as it was laid out for the one before, with the ranges of this one."""
+        is_near = problem.near is not None
+        if engine == CLOSED:
+            numbers, whole = self._keep(CLOSED, problem.weights, lambda: analytic.pack_answer(problem))
+            block = set_ranges(numbers, analytic.make_still_ranges(problem), problem.turns), whole
+            return (*block, np.array(make_descent(problem, self._kind)), problem.weights) if is_near else block
         seeds = make_seeds(problem, self._kind)
-        if kept is None or kept[0] is not seeds:
-            kept = self._blocks[is_near] = seeds, pack_answer(problem, self._kind, seeds)
+        numbers, *others = self._keep(LM, seeds, lambda: lm.pack_answer(problem, self._kind, seeds))
+        block = set_ranges(numbers, make_ranges(problem), problem.turns), *others
+        return (*block, problem.weights) if is_near else block
+
+    def _keep(self, engine: str, source: Any, make: Callable[[], Sequence[Any]]) -> Sequence[Any]:
+        """What was made of the same source by the call before, else made now."""
+        kept = self._kept.get(engine)
+        if kept is None or kept[0] is not source:
+            kept = self._kept[engine] = source, make()
         return kept[1]
 
 

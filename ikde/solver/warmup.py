@@ -49,8 +49,10 @@ def list_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
         settings = SolveSettings.for_method(name).with_changes(restarts=1)
         settings = settings.with_changes(de=settings.de and {"generations": 1})
         for kind in row.compiled_kinds:
-            if row.one_by_one:
+            if row.one_by_one or row.is_closed_form:
                 stages[f"{name}, one {kind}"] = partial(one, targets[kind], settings)
+                stages[f"{name}, near {kind}"] = partial(one, targets[kind], settings, near=robot.home)
+            if row.one_by_one:
                 stages[f"{name}, many of {kind}"] = partial(many, [targets[kind]] * SEVERAL, settings)
             else:
                 stages[name] = partial(many, [targets[kind]] * SEVERAL, settings)

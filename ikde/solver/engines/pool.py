@@ -157,6 +157,7 @@ def pack_pool(pool: Pool, kept: Kept) -> SeedArrays:
     return sort_pool(pool.robot, q, pool.base if len(q) else NO_BASE, pool.grid, kept.scale, pool.kind)
 
 
+@lru_cache(maxsize=64)
 def no_pool(robot: Robot, first_box: float) -> SeedArrays:
     """Seeds that are drawn uniformly, in boxes that grow from this share of each range."""
     grid = np.array(GRIDS["position"])
