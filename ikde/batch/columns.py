@@ -108,7 +108,7 @@ def _reasons(rows: SolveResults, missed: Ints) -> tuple[Ints, list[str]]:
     own = np.array([row if row in stories else -1 for row in missed.tolist()] if stories else np.full(len(missed), -1))
     facts = (own, rows.stop_reasons[missed], found.engine[missed], rows.attempts[missed], rows.rejected[missed])
     _, first, which = np.unique(
-        np.column_stack([*facts, found.excess_m[missed], found.excess_rad[missed]]),
+        np.column_stack([*facts, found.excess_m[missed], found.excess_rad[missed], found.ruled_out[missed]]),
         axis=0,
         return_index=True,
         return_inverse=True,

@@ -1,17 +1,23 @@
-"""The engine `analytic`: the closed form of a UR-type arm, its base drawn from the seeds until a branch is free.
+"""The engine `analytic`: the closed form of a UR-type arm, whose base stands still or is drawn from the seeds.
+
+An arm that stands still has at most eight branches, whole turns left aside: one attempt knows them all. `answer_pose`
+makes it for one target, `solve_poses` for many: the same moves, the same bits.
 
 `model/generate` writes this file once more for a robot, after `kernels/lm.py`, with its own collision check.
 """
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH
-from ikde.kernels.closed_form import ANGLES, BRANCHES, solve_ur_arm
+from ikde.kernels.answer import grade_row, open_row
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
+from ikde.kernels.closed_form import ANGLES, BRANCHES, Room, solve_ur_arm
+from ikde.kernels.flat_arguments import unpack_answer, unpack_closed_form, unpack_models
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.seeds import draw_seed
-from ikde.kernels.tables import find_collision, make_buffers
+from ikde.kernels.tables import find_collision, make_buffers, unpack_used
+from ikde.kernels.turns import unwind
 
 
 @inline_kernel
@@ -113,3 +119,117 @@ def solve_branches(
             if chosen >= 0:
                 out_counts[row, REACHED] = 1
                 break
+
+
+@kernel
+def make_room(numbers, whole, ranges, carrier):
+    """Room for attempts; the carrier's pose and the joints that are frozen are in it already."""
+    q, T_world_carrier = ranges[0].copy(), np.eye(4)[:3].copy()
+    if carrier > 0:
+        robot, _ = unpack_models(numbers[whole[2] :], whole[whole[3] :])
+        T_world_body = np.empty((robot.bodies.shape[0], 3, 4))
+        compute_bodies(robot, q, T_world_body)
+        T_world_carrier[:] = T_world_body[carrier]
+    return Room(
+        T_world_carrier,
+        np.empty((3, 4)),
+        np.empty((2, ANGLES)),
+        np.empty((BRANCHES, 6)),
+        np.empty(BRANCHES, dtype=np.int64),
+        np.empty(BRANCHES),
+        q,
+    )
+
+
+@inline_kernel
+def find_first(far, count):
+    """The branch to be tried next: the least of the first `count` of `far`, the first of equals."""
+    best = 0
+    for branch in range(1, count):
+        if far[branch] < far[best]:
+            best = branch
+    return best
+
+
+@inline_kernel
+def rank_branches(arm, ranges, seed, stream, attempt, count, solutions, state, out_far):
+    """Attempt 0 begins with the branch of least motion from ranges[2], later ones with any: streams show others."""
+    for branch in range(count):
+        motion = 0.0
+        for joint in range(6):
+            way = arm.angles[2, joint] * (solutions[branch, joint] - ranges[2, arm.coordinates[joint]])
+            motion += way * way
+        out_far[branch] = motion
+    if attempt > 0:
+        seed_stream(seed, stream, attempt, state)
+        first = next_index(state, count)
+        for branch in range(count):
+            out_far[branch] = np.float64((branch + count - first) % count)
+
+
+@inline_kernel
+def try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs):
+    """One attempt on one target [3, 4]: branch after branch, until one is free of collision.
+
+    The outputs are those of `lm.solve_target`; an evaluation is one branch that exists inside the ranges. If all
+    collide, the one that was tried first is kept.
+    """
+    q, far, (out_q, out_score, out_counts, out_pairs) = room.q, room.far, outputs
+    find_carried(room.T_world_carrier, T_world_tool, room.T_carrier_tool)
+    count = solve_ur_arm(arm, ranges, room.T_carrier_tool, room.sides, room.solutions, room.codes)
+    out_counts[ATTEMPTS] += 1
+    out_counts[EVALUATIONS] += count
+    if count == 0:
+        return
+    rank_branches(arm, ranges, seed, stream, attempt, count, room.solutions, state, far)
+    first = chosen = find_first(far, count)
+    for _ in range(count):
+        place_arm(arm, chosen, room.solutions, q)
+        pair = find_collision(models[0], models[1], q, buffers)
+        if pair < 0:
+            out_counts[REACHED] = 1
+            break
+        out_counts[COLLIDING] += 1
+        out_pairs[pair] += 1
+        far[chosen] = np.inf
+        chosen = find_first(far, count)
+    is_free = out_counts[REACHED] == 1
+    place_arm(arm, chosen if is_free else first, room.solutions, q)
+    out_score[0], out_score[1] = 0.0, 0.0 if is_free else UNKNOWN_DEPTH
+    for k in range(q.size):
+        out_q[k] = q[k]
+
+
+@kernel
+def answer_pose(numbers, whole, T_world_tool, seed, stream, first, last, out):
+    """All branches for one pose [3, 4], and the grade of the one that is free, from one call of Python.
+
+    As `lm.answer_target`, but that one attempt, `first`, shows all there is. True if it is reached and accepted.
+    """
+    grader, terms, kinds, turns = unpack_answer(numbers, whole)
+    models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
+    room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
+    buffers, outputs = make_buffers(models[0], models[1], whole[0]), open_row(whole[0], first, out)
+    word = np.uint64(seed)
+    try_branches(models, arm, ranges, T_world_tool, word, stream, first, room, state, buffers, outputs)
+    if outputs[2][REACHED] == 0:
+        return False
+    unwind(turns[0], turns[1], turns[2], turns[3], outputs[0])
+    return grade_row(grader, terms, TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), whole[0], out)
+
+
+@kernel
+def solve_poses(numbers, whole, T_world_tool, rows, seed, streams, attempts, out_q, out_score, out_counts, out_pairs):
+    """All branches for each of rows[0] .. rows[1] - 1: streams [T], attempts [rows, 2], outputs a row a target.
+
+    `numbers` and `whole` are those of `unpack_closed_form`. Of several attempts the first shows all there is.
+    """
+    models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
+    room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
+    buffers = make_buffers(models[0], models[1], out_q.shape[1])
+    for row in range(rows[0], rows[1]):
+        first, last = attempts[row - rows[0], 0], attempts[row - rows[0], 1]
+        if first < last:
+            outputs = (out_q[row], out_score[row], out_counts[row], out_pairs[row])
+            question = (T_world_tool[row], seed, streams[row], first)
+            try_branches(models, arm, ranges, *question, room, state, buffers, outputs)

@@ -119,7 +119,7 @@ class ClosedFormArrays(NamedTuple):
     coordinates: Indices  # [6] coordinate of q of each joint
     transforms: Floats  # [2, 3, 4] T_base_carrier and T_tool_wrist, m
     lengths: Floats  # [8] a1, a2, a3, a4, d4, d5 in m, a2^2 + a3^2 in m^2, 1 / (2 a2 a3) in 1/m^2
-    angles: Floats  # [2, 6] sign, and offset in rad
+    angles: Floats  # [3, 6] sign, offset in rad, and how much a radian of it counts as motion
 
 
 class MemeticArrays(NamedTuple):

@@ -9,9 +9,11 @@ that cost 0.35 of 0.6 us.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
+from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.jit import inline_kernel
 from ikde.kernels.trig import full_angle, sin_cos
 
@@ -25,6 +27,18 @@ A1, A2, A3, A4, D4, D5, SQUARES, SCALE = range(8)  # of `ClosedFormArrays.length
 # Indices without a sign, for being arguments: numba compiles a function anew for every literal integer.
 Q1, Q2, Q3, Q4, Q5, Q6 = (np.uint64(k) for k in range(6))
 X, Y, Z = (np.uint64(k) for k in range(3))
+
+
+class Room(NamedTuple):
+    """What an attempt of an arm that stands still writes to."""
+
+    T_world_carrier: Floats  # [3, 4]
+    T_carrier_tool: Floats  # [3, 4]
+    sides: Floats  # [2, ANGLES]
+    solutions: Floats  # [BRANCHES, 6] rad
+    codes: Ints  # [BRANCHES]
+    far: Floats  # [BRANCHES] the least is tried first
+    q: Floats  # [N]
 
 
 @inline_kernel

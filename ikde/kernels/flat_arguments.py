@@ -10,7 +10,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import CollisionArrays, DescentArrays, Floats, Indices, Ints, RobotArrays, SeedArrays
+from ikde.kernels.arrays import (
+    ClosedFormArrays,
+    CollisionArrays,
+    DescentArrays,
+    Floats,
+    Indices,
+    Ints,
+    RobotArrays,
+    SeedArrays,
+)
 from ikde.kernels.jit import inline_view_kernel, kernel
 
 Value = Floats | Ints | Indices | float
@@ -37,6 +46,18 @@ def flatten_search(
     whole[2:4] = len(numbers), len(whole)
     numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
     return _freeze(numbers), _freeze(whole), q, T_world_tool
+
+
+def flatten_closed_form(
+    robot: RobotArrays, collision: CollisionArrays, ranges: Floats, arm: ClosedFormArrays, carrier: int
+) -> tuple[Floats, Ints]:
+    """What `unpack_closed_form` takes: safe distance and ranges stand where `flatten_search` puts them."""
+    sizes = np.array([ranges.shape[1], carrier, 0, 0])
+    numbers, whole = _flatten(collision.safe_distance, ranges, arm.transforms, arm.lengths, arm.angles, sizes, arm[0])
+    models = _flatten(*_list_models(robot, collision))
+    whole[2:4] = len(numbers), len(whole)
+    numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
+    return _freeze(numbers), _freeze(whole)
 
 
 def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms) -> tuple[Floats, Ints]:
@@ -144,6 +165,14 @@ def unpack_search(numbers, whole, q, T_world_tool):
         n[8 + scale],
     )
     return numbers[1 : 1 + 3 * joints].reshape((3, joints)), descent, seeds
+
+
+@kernel
+def unpack_closed_form(numbers, whole):
+    """Ranges [3, N], `ClosedFormArrays` and the body that carries the arm, as views; behind them stand both models."""
+    joints, n = whole[0], numbers[1 + 3 * whole[0] :]
+    arm = ClosedFormArrays(whole[4:10].view(np.uint64), n[:24].reshape((2, 3, 4)), n[24:32], n[32:50].reshape((3, 6)))
+    return numbers[1 : 1 + 3 * joints].reshape((3, joints)), arm, whole[1]
 
 
 @kernel

@@ -81,8 +81,15 @@ def find_ur_arm(robot: Robot) -> URArm | None:
     return arm if arm is not None and _agrees(arrays, chain, arm) else None
 
 
-def pack_ur_arm(arm: URArm) -> ClosedFormArrays:
-    """Pack an arm for the kernels."""
+def find_still_arm(robot: Robot, lower: Floats, upper: Floats) -> URArm | None:
+    """The robot's UR-type arm if nothing but its joints may move inside ranges [N]: eight branches are then all."""
+    arm = find_ur_arm(robot)
+    return arm if arm is not None and np.delete(upper - lower, arm.coordinates).max(initial=0.0) == 0.0 else None
+
+
+def pack_ur_arm(arm: URArm, weights: Floats | None = None) -> ClosedFormArrays:
+    """Pack an arm for the kernels; `weights` [N]: how much a radian of each joint counts as motion, by default 1."""
+    own = np.ones(6) if weights is None else weights[list(arm.coordinates)]
     squares, scale = arm.a2 * arm.a2 + arm.a3 * arm.a3, 0.5 / (arm.a2 * arm.a3)
     coordinates = np.array(arm.coordinates, dtype=np.uint64)
     coordinates.setflags(write=False)
@@ -90,7 +97,7 @@ def pack_ur_arm(arm: URArm) -> ClosedFormArrays:
         coordinates=coordinates,
         transforms=_floats([np.linalg.inv(T)[:3] for T in (arm.T_carrier_base, arm.T_wrist_tool)]),
         lengths=_floats([arm.a1, arm.a2, arm.a3, arm.a4, arm.d4, arm.d5, squares, scale]),
-        angles=_floats([arm.signs, arm.offsets]),
+        angles=_floats([arm.signs, arm.offsets, own]),
     )
 
 

@@ -90,7 +90,7 @@ NO_ENGINE = "none"
 NAMES = (*ENGINES, NO_ENGINE)
 SEVERAL = 1 + max(row.one_by_one for row in ENGINES.values())
 """Targets: as many are solved side by side."""
-AUTO = ("lm", "analytic", "memetic")
+AUTO = ("analytic", "lm", "memetic")
 """What `auto` tries, in this order, of those that fit; each takes over what the one before leaves."""
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.target import Target
+from ikde.solver.branches import tell_branches
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
@@ -14,6 +15,7 @@ from ikde.solver.fixed import tell_fixed
 from ikde.solver.hints import (
     Probe,
     hint_at_bounds,
+    hint_at_branches,
     hint_at_stream,
     hint_at_tolerance,
     try_freeing,
@@ -29,6 +31,12 @@ from ikde.solver.touching import find_always_touching
 from ikde.solver.verify import Grade
 
 COUNTED = 64  # attempts whose collisions are counted pair by pair
+
+PROVED = {
+    StopReason.OUT_OF_REACH: "no configuration of the arm, whatever its limits, has this pose",
+    StopReason.LIMITS: "every configuration with this pose is outside the limits",
+    StopReason.COLLISION: "every configuration with this pose collides or is outside the limits",
+}
 
 MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and looks into what is in the way"
 
@@ -61,7 +69,8 @@ def stop_from_counts(problem: Problem, found: SearchState) -> Ints:
     stops = np.where(found.counts[:, COLLIDING] > 0, _COLLISION, _BUDGET)
     if timeout_s is not None:
         stops[found.seconds >= timeout_s] = _TIMED_OUT
-    return np.where(found.is_excluded(), _OUT_OF_REACH, stops)
+    stops = np.where(found.is_excluded(), _OUT_OF_REACH, stops)
+    return np.where(found.ruled_out >= 0, found.ruled_out, stops)
 
 
 def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_s: float | None) -> str:
@@ -74,6 +83,11 @@ def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_
     return f"{_count(attempts)} spent"
 
 
+def reason_from_proof(stop: StopReason) -> str:
+    """One line that says it of a pose that is ruled out."""
+    return f"no solution, proved: {PROVED[stop]}"
+
+
 def explain(
     problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
 ) -> Explanation:
@@ -82,6 +96,11 @@ def explain(
         return _explain_fixed(problem, target, found, graded)
     if prove(problem, target) != (0.0, 0.0):
         return explain_reach(problem, target)
+    if found.ruled_out[0] >= 0:
+        touching = (
+            _never_free(problem, _read_counts(problem, found), graded) if found.ruled_out[0] == _COLLISION else None
+        )
+        return touching or _ruled_out(problem, target, found, graded, seed=seed, stream=stream)
     met, timeout_s = _read_counts(problem, found), problem.settings.timeout_s
     if stop_from_counts(problem, found)[0] == _TIMED_OUT:
         return _timed_out(found, graded, timeout_s, met.blocking)
@@ -151,6 +170,17 @@ def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | Non
         hint=hint if is_enough else None,
         blocking_pairs=met.blocking,
     )
+
+
+def _ruled_out(
+    problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
+) -> Explanation:
+    """What the closed form proves; what would help without a search, but for what is frozen."""
+    reason, blocking = tell_branches(problem, target)
+    hint = try_freeing(problem, Probe(target, seed, stream, float(found.seconds[0])))
+    hint = hint or hint_at_branches(problem, target) or hint_at_tolerance(problem, target, found.q[0], graded)
+    stop = STOP_REASONS[found.ruled_out[0]]
+    return Explanation(stop_reason=stop, reason=reason, hint=hint, blocking_pairs=blocking)
 
 
 def _colliding(met: _Met, remedy: str | None) -> Explanation:

@@ -9,6 +9,7 @@ from ikde.kernels.arrays import REACHED, Floats
 from ikde.model.bounds import find_bounds
 from ikde.model.robot import MAX_MAGNITUDE, Joint
 from ikde.model.target import Target
+from ikde.solver.branches import find_beyond
 from ikde.solver.digits import round_up
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState
@@ -77,6 +78,19 @@ def hint_at_bounds(problem: Problem, target: Target) -> str:
     asked = ["a target closer to the robot"] if far_m > 0.0 else []
     asked += [f"another orientation ({_name_cone(widest, target)})"] if off_rad > 0.0 else []
     return f"{' and '.join(asked)}; no joint range brings the tool there"
+
+
+def hint_at_branches(problem: Problem, target: Target) -> str | None:
+    """The joints that stand in the way of a branch of the closed form that is free of collision."""
+    q = find_beyond(problem, target)
+    if q is None:
+        return None
+    wide = problem.with_ranges(np.minimum(problem.lower, q), np.maximum(problem.upper, q))
+    if not meets(wide, target, q):
+        return None
+    outside = (q < problem.lower) | (q > problem.upper)
+    names = [joint.name for joint, is_out in zip(problem.robot.joints, outside, strict=True) if is_out]
+    return f"a wider range for {', '.join(names)}: a solution was found beyond the limits" if names else None
 
 
 def hint_at_tolerance(problem: Problem, target: Target, q: Floats, graded: Grade) -> str | None:

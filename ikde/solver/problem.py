@@ -14,7 +14,7 @@ from ikde.model.numbers import is_number
 from ikde.model.pack import pack_robot
 from ikde.model.robot import MAX_MAGNITUDE, Robot
 from ikde.solver.joints import JointValues, read_joints
-from ikde.solver.motion import Weights, read_weights
+from ikde.solver.motion import Weights, default_weights, read_weights
 from ikde.solver.settings import SolveSettings
 
 Freeze = Mapping[str, float | None] | Iterable[str]
@@ -70,6 +70,11 @@ class Problem:
         robot = self.robot
         lower, upper = np.maximum(self.lower, robot.lower), np.minimum(self.upper, robot.upper)
         return lower, upper, ~robot.is_prismatic, self.centre
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the call itself says nothing of ranges, weights, or what to stay near to."""
+        return self.near is None and not self.frozen and self.weights is default_weights(self.robot)
 
     @property
     def is_fixed(self) -> bool:

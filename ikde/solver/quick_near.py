@@ -48,7 +48,7 @@ class QuickNear:
         free = {k for k in find_free(robot.lower, robot.upper) if robot.joint_names[k] not in frozen}
         if not free or runs_on_tables():
             return None
-        engines = choose_engines(robot, self._settings, {self._kind}, free=free)
+        engines = choose_engines(robot, self._settings, {self._kind}, free=free, is_plain=False)
         return Stages(self._collision, self._settings, is_last=len(engines) == 1) if engines[0] == ENGINE else None
 
     def _prepare(self, problem: Problem) -> Answer:

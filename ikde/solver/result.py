@@ -24,11 +24,13 @@ class StopReason(StrEnum):
 
     REACHED = "reached"
     OUT_OF_REACH = "out_of_reach"
-    """A bound proves that no joint values bring the tool there, or turn it so."""
+    """A bound, or the closed form, proves that no joint values bring the tool there, or turn it so."""
     COLLISION = "collision"
-    """The pose was met, but only by configurations that collide with themselves, as far as trying tells."""
+    """The pose was met, but only by configurations that collide with themselves, as far as trying tells, or as the
+    reason says: proved, of all that are inside the limits."""
     LIMITS = "limits"
-    """As far as trying tells, the pose is met only outside the joint limits (or with a frozen joint set free)."""
+    """The pose is met only outside the joint limits (or with a frozen joint set free), as far as trying tells, or where
+    the reason says so, proved."""
     BUDGET = "budget"
     """The attempts were spent and nothing tells why."""
     TIMED_OUT = "timed_out"

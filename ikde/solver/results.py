@@ -11,7 +11,7 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
-from ikde.solver.explain import Explanation, reason_from_counts, tell_out_of_reach
+from ikde.solver.explain import Explanation, reason_from_counts, reason_from_proof, tell_out_of_reach
 from ikde.solver.fixed import tell_fixed
 from ikde.solver.grade import Outcomes, grade
 from ikde.solver.motion import measure_motion
@@ -133,6 +133,8 @@ class SolveResults:
         if self.problem.is_fixed and stop is not StopReason.BUDGET:
             closest = self.problem.collision.pairs[self.closest_pair[index]] if self.collision[index] else None
             return tell_fixed(*excess, closest)
+        if self.found.ruled_out[index] >= 0:
+            return reason_from_proof(stop)
         if stop is StopReason.OUT_OF_REACH:
             return tell_out_of_reach(*excess)
         counts = int(self.attempts[index]), int(self.rejected[index])

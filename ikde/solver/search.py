@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
-from ikde.model.closed_form import find_ur_arm
+from ikde.model.closed_form import find_still_arm, find_ur_arm
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target, Targets
+from ikde.solver.branches import rule_out
 from ikde.solver.cancellation import get_cancel_check
 from ikde.solver.engine_table import AUTO, ENGINES, NAMES
 from ikde.solver.engines.engine import Engine, SearchInputs
@@ -65,7 +66,7 @@ def search(
         lanes = _Lanes(make_engine(name, inputs), found, threads or usable_cores(), left_s)
         few = min(ENGINES[name].attempts_before_proof, budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
-        if attempts is None:
+        if attempts is None and not (ENGINES[name].is_closed_form and name != plan[-1][0]):
             _exclude(problem, targets, found)
         lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
         _go_on(lanes, referee, found, spent, first_attempt + budget)
@@ -81,12 +82,19 @@ def make_engine(name: str, inputs: SearchInputs) -> Engine:
 
 
 def choose_engines(
-    robot: Robot, settings: SolveSettings, kinds: set[str], *, inside: bool = True, free: set[int] | None = None
+    robot: Robot,
+    settings: SolveSettings,
+    kinds: set[str],
+    *,
+    inside: bool = True,
+    free: set[int] | None = None,
+    is_plain: bool = True,
 ) -> list[str]:
     """Engines in the order in which they try; the later ones take over what the first leaves.
 
     `kinds` of the targets. `inside`: the joint ranges are within the limits. `free`: the joints that may move; by
-    default those that the limits leave free.
+    default those that the limits leave free. `is_plain`: `Problem.is_plain`; what is not is asked of `lm` first, which
+    takes ranges, weights and what to stay near to of each call's own in microseconds.
     """
     if not inside:
         return [name for name in settings.engines if not ENGINES[name].stays_in_limits] or [AUTO[-1]]
@@ -95,7 +103,8 @@ def choose_engines(
     arm, free = find_ur_arm(robot), find_free(robot.lower, robot.upper) if free is None else free
     is_closed = arm is not None and free == set(arm.coordinates)
     rows = {name: ENGINES[name] for name in settings.engines}
-    return [n for n, row in rows.items() if kinds <= {*row.target_kinds} and (is_closed or not row.is_closed_form)]
+    names = [n for n, row in rows.items() if kinds <= {*row.target_kinds} and (is_closed or not row.is_closed_form)]
+    return names if is_plain else sorted(names, key=NAMES.index)
 
 
 def find_free(lower: Floats, upper: Floats) -> set[int]:
@@ -105,12 +114,12 @@ def find_free(lower: Floats, upper: Floats) -> set[int]:
 
 def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[tuple[str, int]]:
     """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""
-    robot, settings, arm = problem.robot, problem.settings, find_ur_arm(problem.robot)
+    robot, settings = problem.robot, problem.settings
     inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
     kinds = {KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
     free = find_free(problem.lower, problem.upper)
-    names = choose_engines(robot, settings, kinds, inside=inside, free=free)
-    stands_still = arm is not None and free <= set(arm.coordinates)
+    names = choose_engines(robot, settings, kinds, inside=inside, free=free, is_plain=problem.is_plain)
+    stands_still = find_still_arm(robot, problem.lower, problem.upper) is not None
 
     def budget(name: str) -> int:
         if stands_still and ENGINES[name].is_closed_form:
@@ -122,10 +131,12 @@ def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[
 
 
 def _exclude(problem: Problem, targets: Targets, found: SearchState) -> None:
-    """Find out which of the unreached targets are out of reach."""
+    """Find out which of the unreached targets are out of reach, or reached by no branch of the closed form."""
     rows = np.flatnonzero(found.counts[:, REACHED] == 0)
     if len(rows):
         found.excess_m[rows], found.excess_rad[rows] = prove_many(problem, targets.take(rows))
+        rows = rows[~found.is_excluded()[rows]]
+        found.ruled_out[rows] = rule_out(problem, targets.take(rows))
 
 
 class _Lanes:

@@ -50,7 +50,7 @@ def solve(
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
-        where plain numpy was not asked: of what `lm` reaches by kernels written for the robot. `result.grade`
+        where plain numpy was not asked: of what written kernels of `lm` or the closed form reach. `result.grade`
         asks it. docs/design.md tells what each grader shares with the search.
 
     Raises:

@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from ikde.kernels.arrays import DescentArrays
-from ikde.kernels.flat_arguments import flatten_grader, flatten_search, unpack_grader, unpack_search
+from ikde.kernels.flat_arguments import (
+    flatten_closed_form,
+    flatten_grader,
+    flatten_search,
+    unpack_closed_form,
+    unpack_grader,
+    unpack_search,
+)
 from ikde.kernels.tables import unpack_used
+from ikde.model.closed_form import find_ur_arm, pack_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from tests.conftest import random_q
@@ -45,6 +53,19 @@ def test_the_search_comes_back(qiao, rng):
             assert (back == ranges).all()
             for ours, theirs in zip(packed, (robot, collision, *others), strict=True):
                 assert_same(ours, theirs)
+
+
+@pytest.mark.parametrize("carrier", [0, 3])
+def test_the_closed_form_comes_back(qiao, carrier):
+    arm, ranges = pack_ur_arm(find_ur_arm(qiao), np.arange(9.0)), np.array([qiao.lower, qiao.upper, qiao.home])
+    models = pack_robot(qiao), CollisionModel.of(qiao).arrays
+    numbers, whole = flatten_closed_form(*models, ranges, arm, carrier)
+    back, own, body = unpack_closed_form(numbers, whole)
+    assert (back == ranges).all()
+    assert body == carrier
+    assert own.angles[2].tolist() == [3.0, 4.0, 5.0, 6.0, 7.0, 8.0]
+    for ours, theirs in zip((*models, arm), (*unpack_used(numbers, whole), own), strict=True):
+        assert_same(ours, theirs)
 
 
 def test_what_is_unpacked_often_is_still_there(qiao):

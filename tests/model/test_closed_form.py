@@ -54,7 +54,7 @@ def test_only_what_comes_before_the_arm_is_left_to_others():
 
 @every_ur_robot
 def test_packed_arrays_are_ordered_and_read_only(robot):
-    shapes = {"coordinates": (6,), "transforms": (2, 3, 4), "lengths": (8,), "angles": (2, 6)}
+    shapes = {"coordinates": (6,), "transforms": (2, 3, 4), "lengths": (8,), "angles": (3, 6)}
     for name, array in pack_ur_arm(find_ur_arm(robot))._asdict().items():
         assert array.shape == shapes[name]
         assert array.flags.c_contiguous

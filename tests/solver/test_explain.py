@@ -11,7 +11,9 @@ import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.bounds import find_bounds
 from ikde.model.collision_model import CollisionModel
+from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import make_search_state
+from ikde.solver.explain import PROVED
 from ikde.solver.metrics import compute_metrics
 from ikde.solver.search import SearchState, search
 from ikde.solver.settings import BulkOptions
@@ -20,6 +22,7 @@ from tests.bare_robot import BARE
 from tests.flat_settings import flat_settings
 from tests.scara import make_scara
 from tests.substitutes import never
+from tests.targets import make_target
 
 QUICK = flat_settings(restarts=6, generations=500)
 TARGET = ikde.Target((0.8, 0.5, 1.0))
@@ -169,6 +172,63 @@ def test_a_target_that_frozen_joints_exclude_names_them(qiao):
     assert ikde.solve(qiao, CLOSE).reached
 
 
+def ask_of_ur5(q, **ranges):
+    """What a UR5 with other ranges is told of the tool's pose at `q`, after how many attempts."""
+    robot = ikde.load_robot("ur5")
+    target = make_target(robot, np.array(q), "pose")
+    joints = tuple(
+        replace(joint, lower=ranges[joint.name][0], upper=ranges[joint.name][1]) if joint.name in ranges else joint
+        for joint in robot.joints
+    )
+    return ikde.solve(replace(robot, joints=joints), target)
+
+
+def test_a_pose_that_only_colliding_branches_reach_is_proved_to_have_no_solution():
+    result = ask_of_ur5([0.3, -1.0, 2.95, 0.4, 1.2, 0.0])
+    assert (result.reached, result.stop_reason, result.hint) == (False, "collision", None)
+    assert result.attempts == 1 + ENGINES["lm"].attempts_before_proof
+    told = re.fullmatch(r"no solution, proved: of (\d) .* with this pose \1 in collision \((.*)\)", result.reason)
+    worst, count = next(iter(result.blocking_pairs.items()))
+    assert told[2].startswith(f"{worst[0]}-{worst[1]} in {count}")
+    assert result.position_error_m < 1e-9
+
+
+def test_a_pose_that_all_branches_reach_beyond_the_limits_names_the_joint_in_the_way():
+    result = ask_of_ur5([0.3, -1.2, 1.4, -1.5, 1.3, 0.4], wrist_2_joint=(-0.5, 0.5))
+    assert (result.reached, result.stop_reason) == (False, "limits")
+    assert result.reason.startswith("no solution, proved: of 8 configurations with this pose 8 outside the limits of ")
+    assert re.search(r"\bwrist_2_joint\b", result.reason)
+    assert result.hint == "a wider range for wrist_2_joint: a solution was found beyond the limits"
+
+
+def test_a_pose_that_no_branch_reaches_is_out_of_reach_without_a_bound_on_the_arm():
+    """Near enough, but the wrist would have to be inside the shoulder."""
+    target = ikde.Target((0.0, 0.05, 0.5), R_world_tool=np.eye(3))
+    result = ikde.solve(ikde.load_robot("ur5"), target)
+    assert result.stop_reason == "out_of_reach"
+    assert result.reason == "no solution, proved: no configuration of the arm, whatever its limits, has this pose"
+
+
+def test_a_pose_that_a_frozen_base_rules_out_names_it(qiao):
+    target = make_target(qiao, qiao.home + 0.1, "pose")
+    away = {"d_x": float(qiao.home[0]) + 0.6, "d_y": float(qiao.home[1]), "q_z": float(qiao.home[2])}
+    result = ikde.solve(qiao, target, freeze=away)
+    if result.stop_reason != "reached":
+        assert result.reason.startswith(("no solution, proved: ", "out of reach"))
+        assert "d_x" in result.hint
+
+
+def test_unexplained_rows_say_what_is_proved_and_no_more(rng):
+    robot = ikde.load_robot("ur5")
+    targets = ikde.Targets(rng.uniform(-0.9, 0.9, (200, 3)), R_world_tool=np.tile(np.eye(3), (200, 1, 1)))
+    rows = ikde.solve_many(robot, targets, bulk=BulkOptions(explain=False))
+    proved = np.flatnonzero(rows.found.ruled_out >= 0)
+    assert len(proved) > 10
+    for row in proved.tolist():
+        assert rows.stop_reasons[row] == rows.found.ruled_out[row]
+        assert rows[row].reason == f"no solution, proved: {PROVED[rows[row].stop_reason]}"
+
+
 def test_a_spent_budget_is_called_so(qiao):
     settings = QUICK.with_changes(restarts=1, de={"generations": 3})
     result = ikde.solve(qiao, TARGET, settings)
@@ -201,6 +261,7 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, subs
             "excess_rad": nothing,
             "seconds": nothing,
             "engine": np.zeros(1, dtype=np.int64),
+            "ruled_out": np.full(1, -1),
             "metrics": compute_metrics(CollisionModel.of(qiao), targets, qiao.home[None]),
         }
         return SearchState(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)

@@ -9,16 +9,19 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.lm import prepare_answer
 from ikde.solver.grade import confirm
-from ikde.solver.quick import Quick, find_quick
+from ikde.solver.quick import Quick, QuickPose, find_quick
 from ikde.solver.result import FIELDS
 from ikde.solver.results import solve_rows
 from ikde.solver.search import choose_engines
 from ikde.solver.settings import SolveSettings
+from tests.conftest import random_q
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
@@ -162,12 +165,68 @@ def test_written_kernels_and_their_pool_serve_the_next_process_with_the_same_bit
     assert len(list(tmp_path.rglob("*.npz"))) == 1
 
 
-def test_a_fixed_arm_falls_back_on_its_closed_form():
-    robot = ikde.load_robot("ur5")
-    assert choose_engines(robot, AUTO, {"pose"}) == ["lm", "analytic", "memetic"]
-    assert choose_engines(robot, AUTO, {"pose", "axis"}) == ["lm", "memetic"]
-    target = make_target(robot, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
-    assert ikde.solve(robot, target).method == "lm"
+UR5 = ikde.load_robot("ur5")
+
+
+def test_a_fixed_arm_is_answered_by_its_closed_form():
+    assert choose_engines(UR5, AUTO, {"pose"}) == ["analytic", "lm", "memetic"]
+    assert choose_engines(UR5, AUTO, {"pose", "axis"}) == ["lm", "memetic"]
+    target = make_target(UR5, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
+    assert ikde.solve(UR5, target).method == "analytic"
+
+
+def test_the_closed_form_answers_quickly_what_it_answers_the_long_way(rng):
+    """Poses of any configuration, free or not: reached, out of reach, or left to the long way."""
+    quick, told = QuickPose(CollisionModel.of(UR5), AUTO), set()
+    targets = [make_target(UR5, random_q(UR5, rng), "pose") for _ in range(60)]
+    targets += [ikde.Target(p, R_world_tool=np.eye(3)) for p in rng.uniform(-1.0, 1.0, (20, 3))]
+    for stream, target in enumerate(targets):
+        short = quick.solve(target, 4, stream, 0.0)
+        if short is None:
+            told.add(None)
+            continue
+        long = solve_long(UR5, target, AUTO, 4, stream)
+        assert short.q.tobytes() == long.q.tobytes()
+        own = {"q", "target", "solve_seconds", "compile_seconds", "verify", "verified"}
+        for name in set(FIELDS) - own:
+            assert getattr(short, name) == getattr(long, name), name
+        told.add((str(short.stop_reason), short.method))
+    assert {("reached", "analytic"), ("out_of_reach", "lm")} <= told
+
+
+def test_where_no_branch_is_free_lm_goes_on_with_what_was_counted(rng, monkeypatch):
+    """A pose whose closed form is made to find nothing: `lm` finds a solution, and the counts are those of both."""
+    quick = QuickPose(CollisionModel.of(UR5), AUTO)
+    quick.solve(make_target(UR5, UR5.home, "pose"), 4, 0, 0.0)
+    target = make_target(UR5, free_q(UR5, rng), "pose")
+    alone = Quick(CollisionModel.of(UR5), AUTO, "pose").solve(target, 4, 0, 0.0)
+
+    def fail(T, seed, stream, first, last, out):
+        whole = out[len(UR5.joints) + METRICS :].view(np.int64)
+        whole[:] = 0
+        whole[FIRST_COUNT + ATTEMPTS], whole[FIRST_COUNT + COLLIDING], whole[BLOCKED] = 1, 2, 2
+        return False
+
+    monkeypatch.setattr(quick, "_answer", fail)
+    result = quick.solve(target, 4, 0, 0.0)
+    assert (result.method, result.q.tobytes()) == ("lm", alone.q.tobytes())
+    assert (result.attempts, result.rejected) == (alone.attempts + 1, alone.rejected + 2)
+    pair = CollisionModel.of(UR5).pairs[0]
+    assert result.blocking_pairs[pair] == alone.blocking_pairs.get(pair, 0) + 2
+    monkeypatch.setattr(quick, "_has_next", False)
+    assert quick.solve(target, 4, 0, 0.0) is None
+
+
+def test_the_quick_way_for_poses_is_that_of_arms_that_alone_may_move(monkeypatch):
+    monkeypatch.delenv("IKDE_KERNELS")
+    qiao, find = ikde.load_robot("qiao2021"), find_quick.__wrapped__
+    assert isinstance(find(UR5, None, "auto", None, "pose"), QuickPose)
+    assert isinstance(find(UR5, None, "analytic", None, "pose"), QuickPose)
+    assert isinstance(find(UR5, None, "lm", None, "pose"), Quick)
+    assert isinstance(find(UR5, None, "auto", None, "axis"), Quick)
+    assert isinstance(find(qiao, None, "auto", None, "pose"), Quick)
+    for robot, kind in ((qiao, "pose"), (UR5, "axis")):
+        assert find(robot, None, "analytic", None, kind) is None
 
 
 def test_no_more_attempts_are_made_than_the_settings_allow(rng):

@@ -1,18 +1,37 @@
-"""`analytic`: every branch of a UR-type arm in closed form, the base drawn from the seeds."""
+"""`analytic`: every branch of a UR-type arm in closed form; a base that may move is drawn from the seeds."""
+
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import POSE, Ints
-from ikde.model.closed_form import find_ur_arm, pack_ur_arm
+from ikde.kernels.arrays import POSE, Floats, Ints
+from ikde.kernels.flat_arguments import flatten_answer, flatten_closed_form
+from ikde.model.closed_form import URArm, find_still_arm, find_ur_arm, pack_ur_arm
 from ikde.model.robot import Robot
 from ikde.solver.engines.engine import SearchInputs, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
-from ikde.solver.problem import pack_searched
+from ikde.solver.metrics import pack_grader
+from ikde.solver.problem import Problem, pack_searched
+
+
+def pack_still(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
+    """All that stays from target to target, as `solve_poses` takes it, of an arm that alone may move."""
+    centre = np.clip(problem.centre, problem.lower, problem.upper)
+    models, ranges = pack_searched(problem.collision), np.array([problem.lower, problem.upper, centre])
+    return flatten_closed_form(*models, ranges, pack_ur_arm(arm, problem.weights), arm.carrier)
+
+
+def prepare_answer(problem: Problem) -> Callable[..., bool]:
+    """One target, by an arm that alone may move: `answer(T_world_tool, seed, stream, 0, 1, out)` (`answer_pose`)."""
+    block = pack_still(problem, check_closed_form(problem.robot))
+    block = flatten_answer(block, pack_grader(problem.collision, problem.settings), POSE, problem.turns)
+    return partial(load_kernels(problem.collision, "pose").answer_pose.compiled, *block)
 
 
 class Analytic:
-    """Poses only; an arm on a base that cannot move is done with one attempt: it has no other branches."""
+    """Poses only; of an arm that alone may move one attempt shows all branches."""
 
     name = "analytic"
     rows_per_call = 1024
@@ -20,29 +39,36 @@ class Analytic:
 
     def __init__(self, inputs: SearchInputs) -> None:
         self._inputs, problem = inputs, inputs.problem
-        check_closed_form(problem.robot)
+        arm = check_closed_form(problem.robot)
         if (inputs.targets.kind != POSE).any():
             raise InputError("the closed form needs a whole pose: a position and an orientation", ("method",))
-        self._arm = find_ur_arm(problem.robot)
-        self._kernels, models = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
-        self._models = models[0], self._kernels.use_models(*models)[1]
-        self._seeds = make_seeds(problem, "pose")
+        stands_still = find_still_arm(problem.robot, problem.lower, problem.upper) is not None
+        self._search = self._prepare_still(arm) if stands_still else self._prepare_driving(arm)
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
-        asked, arm = self._inputs, self._arm
-        if arm is None:
-            return
-        attempts = asked.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))
-        where = (asked.targets, np.array([rows.start, rows.stop]), make_ranges(asked.problem), self._seeds)
+        attempts = self._inputs.attempts(rows, first, np.minimum(last, first + self.attempts_per_call))
         with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
-            self._kernels.solve_branches(
-                *(*self._models, pack_ur_arm(arm), arm.carrier, *where),
-                *(asked.seed, asked.streams, attempts, *asked.outputs),
-            )
+            self._search(np.array([rows.start, rows.stop]), attempts)
+
+    def _prepare_still(self, arm: URArm) -> Callable[[Ints, Ints], None]:
+        asked, problem = self._inputs, self._inputs.problem
+        solve = partial(load_kernels(problem.collision, "pose").solve_poses, *pack_still(problem, arm))
+        T_world_tool = asked.targets.T_world_tool
+        return lambda rows, attempts: solve(T_world_tool, rows, asked.seed, asked.streams, attempts, *asked.outputs)
+
+    def _prepare_driving(self, arm: URArm) -> Callable[[Ints, Ints], None]:
+        asked, problem = self._inputs, self._inputs.problem
+        kernels, (robot, collision) = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
+        models = robot, kernels.use_models(robot, collision)[1]
+        solve = partial(kernels.solve_branches, *models, pack_ur_arm(arm), arm.carrier, asked.targets)
+        own = make_ranges(problem), make_seeds(problem, "pose"), asked.seed, asked.streams
+        return lambda rows, attempts: solve(rows, *own, attempts, *asked.outputs)
 
 
-def check_closed_form(robot: Robot) -> None:
-    """Raise `InputError` for a robot without a closed form."""
-    if find_ur_arm(robot) is None:
+def check_closed_form(robot: Robot) -> URArm:
+    """The robot's arm; raises `InputError` for a robot without a closed form."""
+    arm = find_ur_arm(robot)
+    if arm is None:
         raise InputError(f"{robot.name} has no closed form: its last six joints are no UR-type arm", ("method",))
+    return arm

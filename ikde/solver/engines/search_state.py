@@ -20,13 +20,14 @@ class SearchState:
     pair_counts: Ints  # [T, P]
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
     excess_rad: Floats  # [T] by how much its orientation is, likewise
+    ruled_out: Ints  # [T] why branches prove that it has no solution: index into `result.STOP_REASONS`; -1: not proved
     seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time evenly
     engine: Ints  # [T] which one answered: its place in `engine_table.NAMES`
     metrics: Metrics  # of `q`, by the grader; what it refuses is not reached
 
     def is_excluded(self, rows: slice = slice(None)) -> Bools:
-        """Which of these targets are proved to be out of reach [T]."""
-        return (self.excess_m[rows] > 0.0) | (self.excess_rad[rows] > 0.0)
+        """Which of these targets are proved to have no solution [T]."""
+        return (self.excess_m[rows] > 0.0) | (self.excess_rad[rows] > 0.0) | (self.ruled_out[rows] >= 0)
 
     def row(self, index: int) -> "SearchState":
         """One target's share."""
@@ -46,6 +47,7 @@ def make_search_state(problem: Problem, count: int) -> SearchState:
         pair_counts=np.zeros((count, pairs), dtype=np.int64),
         excess_m=np.zeros(count),
         excess_rad=np.zeros(count),
+        ruled_out=np.full(count, -1),
         seconds=np.zeros(count),
         engine=np.zeros(count, dtype=np.int64),
         metrics=make_metrics(count),
