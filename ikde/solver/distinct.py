@@ -2,7 +2,8 @@
 
 import time
 from collections.abc import Callable
-from typing import Any, Literal, get_args
+from dataclasses import replace
+from typing import Any, Literal, TypedDict, Unpack, get_args
 
 import numpy as np
 
@@ -27,9 +28,19 @@ SAMPLES = 16  # solves for each solution that is wanted, to choose from
 MAX_WANTED = 10_000  # solutions
 ROUNDS = 4  # as often, if they were too much alike
 
+NOTHING_ELSE: dict[str, Any] = {"collision": None, "near": None, "freeze": None}
 UNEXPLAINED = BulkOptions(verify="all", explain=False)
 
 Rank = Literal["motion", "clearance", "limits", "found"]
+
+
+class Question(TypedDict, total=False):
+    """What `solve` is asked beside the target, too."""
+
+    collision: CollisionChoice
+    near: JointValues | None
+    freeze: Freeze | None
+    weights: Weights | None
 
 
 def solve_distinct(
@@ -41,10 +52,7 @@ def solve_distinct(
     rank: Rank = "motion",
     seed: int = 0,
     method: str = "auto",
-    collision: CollisionChoice = None,
-    near: JointValues | None = None,
-    freeze: Freeze | None = None,
-    weights: Weights | None = None,
+    **question: Unpack[Question],
 ) -> list[SolveResult]:
     """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
 
@@ -62,25 +70,22 @@ def solve_distinct(
             first being that of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
-        collision: as for `solve`.
-        near: as for `solve`.
-        freeze: as for `solve`.
-        weights: as for `solve`.
+        question: `collision`, `near`, `freeze` and `weights`, as for `solve`. With `near` the first that is found is a
+            local minimum of the motion; the others are as the search finds them, since few are.
     """
     if not 1 <= count <= MAX_WANTED:
         raise InputError(f"expected a whole number of at least 1, up to {MAX_WANTED:,}, got {count}", ("count",))
     check_rank(rank)
     chosen = choose_settings(settings, method)
-    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
+    problem = make_problem(robot, chosen, **{**NOTHING_ELSE, **question})
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
     options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
-    question = {"collision": collision, "near": near, "freeze": freeze, "weights": weights}
     first = confirm(robot, solve(robot, target, chosen, seed=seed, **question))
     if not first.reached or count == 1 or problem.is_fixed:
         return [first]
     look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
-    solutions = look(problem, target, count, first, options)
+    solutions = look(replace(problem, descends=False), target, count, first, options)
     return sort_solutions(robot, solutions, rank)[:count]
 
 

@@ -37,6 +37,8 @@ class Problem:
     frozen: tuple[str, ...]
     weights: Floats
     """[N] of the joints in the motion from `centre`, per m or rad."""
+    descends: bool = True
+    """Whether what is found is moved to a local minimum of the motion from `near`."""
 
     @property
     def robot(self) -> Robot:

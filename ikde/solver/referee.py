@@ -41,7 +41,7 @@ class Referee:
         some = rows if len(rows) < len(targets) else slice(None)  # mostly all at once, without a copy
         asked, Q = targets.take(some), found.q[some]
         unwind_rows(*self._turns, Q)
-        if problem.near is not None:
+        if problem.near is not None and problem.descends:
             stay_near(problem, asked, np.flatnonzero(found.counts[some, REACHED] == 1), Q)
         found.q[some] = Q
         found.metrics.put(some, compute_metrics(problem.collision, asked, Q, problem.settings, limits=self._limits))

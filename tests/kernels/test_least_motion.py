@@ -1,5 +1,7 @@
 """A descent to the least motion: a local minimum by scipy and by its conditions, and never a worse answer."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -110,14 +112,19 @@ def test_near_itself_is_the_answer_to_the_bit(any_robot, kind, rng):
 
 
 def test_near_is_no_answer_if_it_collides(qiao, rng):
-    near = next(q for q in iter(lambda: random_q(qiao, rng), None) if ikde.check(qiao, q).collision)
-    target = make_target(qiao, near, "position")
-    problem, q = problem_of(qiao, near=near), ikde.solve(qiao, target).q
+    usual, one = CollisionModel.of(qiao), free_q(qiao, rng)
+    target, gap = make_target(qiao, one, "position"), 0.0
+    while gap < 1e-3:  # two answers, of which a larger safe distance makes one collide
+        far = problem_of(qiao, near=beside(qiao, one, rng, 0.8))
+        near, q = sorted([one, reduce_motion(far, target, one)], key=lambda x: room(usual, x).min())
+        gap = room(usual, q).min() - room(usual, near).min()
+    limit = usual.limit_m + room(usual, near).min() + 0.5 * gap
+    strict = CollisionModel(robot=qiao, detector=replace(usual.detector, safe_distance_m=limit))
+    problem = problem_of(qiao, near=near, collision=strict)
     end = reduce_motion(problem, target, q)
-    assert not ikde.check(qiao, end).collision
+    assert ikde.verify(qiao, target, end, collision=strict).accepted
     assert 0.0 < motion(problem.weights, near, end) <= motion(problem.weights, near, q)
-    unchecked = problem_of(qiao, near=near, collision="none")
-    assert reduce_motion(unchecked, target, q).tobytes() == near.tobytes()
+    assert reduce_motion(problem_of(qiao, near=near), target, q).tobytes() == near.tobytes()
 
 
 @pytest.mark.parametrize("kind", ["position", "axis"])
