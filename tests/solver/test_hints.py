@@ -301,7 +301,7 @@ def test_a_joint_without_limits_is_freed_and_never_widened():
     robot, settings = load_text(ENDLESS), ikde.SolveSettings(method="memetic", restarts=1)
     q = robot.home + np.array([2.0, 0.0, 0.0, 0.5, 0.0, 0.5])
     result = ikde.solve(robot, make_target(robot, q, "pose"), settings, freeze={"pan": 50.0})
-    assert result.hint == "free pan: a solution was found without freezing"
+    assert result.hint.startswith("free pan: ")
     q[1] = 2.2  # beyond its limit
     hinted = try_widening(problem_of(robot, settings), Probe(make_target(robot, q, "pose"), 0, 0, 0.0))
     assert "lift" in hinted
