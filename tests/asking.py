@@ -95,7 +95,7 @@ def draw_question(grader, rng, most, *, kinds=KINDS, detectors=None, methods=MET
     kinds = ("pose",) if method == "analytic" else kinds
     count = min(most, MOST[method], MAX_BY_CALL[how])
     freeze = _draw_freeze(grader, rng) if rng.random() < 0.2 else {}
-    near = rng.uniform(grader.lower, grader.upper) if rng.random() < 0.15 else None
+    near = _far_out(grader, rng.uniform(*grader.drawn)) if rng.random() < 0.15 else None
     least = -9.0 if rng.random() < 0.9 else -12.0
     detectors = detectors or [None, None, None, "none", *grader.file.get("detectors", {})]
     mixed = rng.choice(kinds, count) if rng.random() < 0.6 else np.full(count, rng.choice(kinds))
@@ -115,8 +115,8 @@ def draw_question(grader, rng, most, *, kinds=KINDS, detectors=None, methods=MET
 
 def draw_poses(grader, rng, count, freeze=None):
     """Poses [count, 3, 4] of the tool: half of random configurations, some at limits, half from around those."""
-    Q = rng.uniform(grader.lower, grader.upper, (count, len(grader.joints)))
-    Q = np.where(rng.random(Q.shape) < 0.05, rng.choice([grader.lower, grader.upper], count), Q)
+    Q = rng.uniform(*grader.drawn, (count, len(grader.joints)))
+    Q = np.where(rng.random(Q.shape) < 0.05, rng.choice(grader.drawn, count), Q)
     for name, value in (freeze or {}).items():
         Q[:, grader.joints.index(name)] = value
     R, p = grader.place(Q)[grader.tool]
@@ -135,7 +135,14 @@ def _draw_freeze(grader, rng):
     """Up to a third of the joints, each at a value inside its limits."""
     count = int(rng.integers(1, max(2, len(grader.joints) // 3 + 1)))
     chosen = rng.choice(len(grader.joints), count, replace=False)
-    return {grader.joints[k]: float(rng.uniform(grader.lower[k], grader.upper[k])) for k in chosen}
+    lower, upper = grader.drawn
+    values = _far_out(grader, np.array([rng.uniform(*ends) for ends in zip(lower, upper, strict=True)]))
+    return {grader.joints[k]: float(values[k]) for k in chosen}
+
+
+def _far_out(grader, q):
+    """Joints without limits several turns away."""
+    return np.where(grader.is_endless, 5.0 * q, q)
 
 
 # ---- answers
@@ -202,7 +209,7 @@ def _read_results(lists):
 def grade_answers(grader, question, answers):
     """The tally of one question's answers: what is called reached and is not, and what is told and is not so."""
     own = np.column_stack(grader.grade(answers.q, _asked(question, answers), question.detector))
-    options = {"detector": question.detector, "frozen": question.freeze}
+    options = {"detector": question.detector, "frozen": question.freeze, "near": question.near}
     faults = find_faults(grader, answers.q, own, question.tolerances, **options)
     accepted = ~np.any(list(faults.values()), axis=0)
     gaps = _find_gaps(question, answers, own)

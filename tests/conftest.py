@@ -66,9 +66,9 @@ def substitute():
 
 
 def random_q(robot, rng, count=None):
-    """Uniform joint values inside the limits, [N] or [count, N]."""
+    """Uniform joint values inside the limits, within a turn where there are none, [N] or [count, N]."""
     size = len(robot.joints) if count is None else (count, len(robot.joints))
-    return rng.uniform(robot.lower, robot.upper, size)
+    return rng.uniform(*robot.drawn, size)
 
 
 def is_whole(config):

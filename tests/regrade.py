@@ -24,16 +24,24 @@ class Grader:
         self.file, self.frames, self.tool = file, file["frames"], file["tool"]
         self.joints = list(file["joints"])
         self.is_prismatic = {name: entry["kind"] == "prismatic" for name, entry in file["joints"].items()}
-        self.lower, self.upper, self.home = (self._read_limits(key) for key in ("lower", "upper", "home"))
+        missing = {"lower": -np.inf, "upper": np.inf, "home": 0.0}
+        self.lower, self.upper, self.home = (self._read_limits(*item) for item in missing.items())
+        self.is_endless = np.isinf(self.upper)
 
     @classmethod
     def of_text(cls, text):
         """Every value is a word until this class reads it as a number: nobody else's rules for numbers hold."""
         return cls(yaml.load(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader)))
 
-    def _read_limits(self, key):
+    @property
+    def drawn(self):
+        """Where to draw configurations: inside the limits; once around home where there are none."""
+        ends = (self.lower, self.home - np.pi), (self.upper, self.home + np.pi)
+        return tuple(np.where(self.is_endless, around, limit) for limit, around in ends)
+
+    def _read_limits(self, key, missing):
         units = [self.length if self.is_prismatic[name] else self.angle for name in self.joints]
-        return np.array([float(entry.get(key, 0)) for entry in self.file["joints"].values()]) * units
+        return np.array([float(entry.get(key, missing)) for entry in self.file["joints"].values()]) * units
 
     # ---- where everything is
 
@@ -193,11 +201,12 @@ def compute_angle(a, b):
     return 2.0 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
 
 
-def find_faults(grader, Q, figures, tolerances, *, detector=None, frozen=None):
+def find_faults(grader, Q, figures, tolerances, *, detector=None, frozen=None, near=None):
     """What is wrong with answers Q [T, N] if they are called reached: name -> which [T].
 
     `figures` [T, 3] are those of `grade`, and nothing is allowed for rounding in them. Joint values are given 1e-12:
     their limits' units are converted, and the last bit depends on how. `frozen`: joint -> value that it must have.
+    `near` [N]: where whole turns should have brought the joints, home without it.
     """
     position, orientation, clearance = figures.T
     values = np.array([(frozen or {}).get(name, np.nan) for name in grader.joints])
@@ -206,6 +215,17 @@ def find_faults(grader, Q, figures, tolerances, *, detector=None, frozen=None):
         "out of position tolerance": ~(position <= tolerances[0]),
         "out of orientation tolerance": ~(orientation <= tolerances[1]),
         "outside the limits": ~((lower <= Q) & (upper >= Q)).all(axis=1),
+        "a full turn nearer is inside the limits": _is_wound(grader, Q, grader.home if near is None else near, values),
         "frozen joint moved": (np.abs(Q - values) > ROUNDING).any(axis=1),
         "in collision": ~(clearance > grader.safe_distance(detector)),
     }
+
+
+def _is_wound(grader, Q, centre, frozen):
+    """Whether a full turn of a joint of Q [T, N] that is not `frozen` [N], else NaN, brings it nearer `centre` [N]."""
+    slides = np.array(list(grader.is_prismatic.values()))
+    wound = np.zeros(len(Q), dtype=bool)
+    for turned in (Q - 2.0 * np.pi, Q + 2.0 * np.pi):
+        fits = (grader.lower + ROUNDING <= turned) & (turned <= grader.upper - ROUNDING) & np.isnan(frozen) & ~slides
+        wound |= (fits & (np.abs(turned - centre) < np.abs(Q - centre) - ROUNDING)).any(axis=1)
+    return wound

@@ -14,6 +14,7 @@ MAX_JOINTS = 12
 SAMPLES = 300  # configurations that tell how often a robot is free
 MIN_FREE = 0.2  # of them
 WIDE = np.pi * np.array([1.0, 1.0, 2.0, 3.0])
+ENDLESS = 0.15  # of the joints that turn
 WORDS = ("j", "Gelenk ", "axis-", "関節")
 
 
@@ -28,6 +29,7 @@ class _Draft:
 
     def __init__(self, rng, seed):
         self.rng, self.name = rng, f"random {seed}"
+        self.endless = np.random.default_rng([seed, 1])  # of its own: all else is drawn as if there were limits
         self.joints, self.frames, self.spheres, self.bodies = {}, {}, {}, {"world": ["world"]}
         self.word = str(rng.choice(WORDS))
         count = int(rng.integers(1, MAX_JOINTS + 1))
@@ -85,6 +87,8 @@ class _Draft:
         lower, upper = limits or self._draw_limits(kind)
         home = float(self.rng.uniform(lower, upper)) if self.rng.random() < 0.5 or not lower <= 0.0 <= upper else 0.0
         self.joints[name] = {"kind": kind, "lower": lower, "upper": upper, "home": home}
+        if kind == "revolute" and lower < upper and self.endless.random() < ENDLESS:
+            self.joints[name] = {"kind": "continuous", "home": home}
         self.frames[frame] = {
             "parent": parent if plain else str(self.rng.choice(self.bodies[parent])),
             **({"xyz": xyz} if plain else self._draw_offset()),
@@ -201,7 +205,7 @@ class _Draft:
         return {"adjacent": {"pairs": {a: dict.fromkeys(b, "drawn: no harm") for a, b in _nest(listed).items()}}}
 
     def _find_hits(self, grader, detector):
-        Q = np.random.default_rng(0).uniform(grader.lower, grader.upper, (SAMPLES, len(grader.joints)))
+        Q = np.random.default_rng(0).uniform(*grader.drawn, (SAMPLES, len(grader.joints)))
         safe = grader.safe_distance(detector)
         return {pair: gaps <= safe for pair, gaps in grader.clearances(Q, detector).items()}
 
@@ -241,8 +245,8 @@ def _to_millimetres(file):
     """The same robot in mm and deg."""
     for joint in file["joints"].values():
         unit = 1e3 if joint["kind"] == "prismatic" else 180.0 / np.pi
-        joint |= {key: float(joint[key] * unit) for key in ("lower", "upper", "home")}
-        joint["home"] = min(max(joint["home"], joint["lower"]), joint["upper"])
+        joint |= {key: float(joint[key] * unit) for key in ("lower", "upper", "home") if key in joint}
+        joint["home"] = min(max(joint["home"], joint.get("lower", -np.inf)), joint.get("upper", np.inf))
     for frame in file["frames"].values():
         frame |= {key: [v * u for v in frame[key]] for key, u in (("xyz", 1e3), ("rpy", 180.0 / np.pi)) if key in frame}
     for row in (row for rows in file.get("spheres", {}).values() for row in rows):

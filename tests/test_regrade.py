@@ -168,7 +168,8 @@ ODDITIES = [
     lambda grader: "adjacent" in grader.file,
     lambda grader: len(grader.file.get("detectors", ())) > 1,
     lambda grader: "world" in grader.components().values(),
-    lambda grader: np.any(grader.upper - grader.lower > 3.0 * np.pi),
+    lambda grader: np.any((grader.upper - grader.lower > 3.0 * np.pi) & ~grader.is_endless),
+    lambda grader: grader.is_endless.any(),
 ]
 
 
@@ -294,4 +295,4 @@ def test_a_pair_without_account_is_found_out(spoil):
     assert account_for_pairs(spoil(robot), grader).faults
 
 
-SPOILT, LISTED = 1, 6
+SPOILT, LISTED = 4, 6

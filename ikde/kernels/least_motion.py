@@ -6,6 +6,7 @@ collision. Each step is Newton's for the Lagrangian [Nocedal2006, ch. 18], with 
 start, with linearised contacts (`kernels/contacts.py`), every step of it free.
 """
 
+from ikde.kernels.arrays import COORDINATE, PRISMATIC
 from ikde.kernels.attempt import is_inside
 from ikde.kernels.clearance import find_closest_spheres
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
@@ -50,8 +51,10 @@ from ikde.kernels.tool_tangent import (
     set_multipliers,
     split,
 )
+from ikde.kernels.turns import unwind
 
 MAX_STEPS = 40
+MOST_TURNS = 4  # walks, each from where a full turn brings a joint nearer
 TRIALS = 10  # of one step: halved, or turned away from a contact
 CORRECTIONS = 2  # of one step that goes into a contact
 DONE = 1e-6  # square of the last step, as a share of |y|^2: a next one would be as its square
@@ -238,16 +241,38 @@ def is_answer(robot, collision, target, index, ranges, descent, q, work):
 
 
 @leaf_kernel
-def descend_to_near(robot, collision, target, index, ranges, descent, weight, q, work):
-    """`reduce_motion` with the buffers given."""
-    if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
-        copy(ranges[2], q)
-        return
+def turn_back(robot, ranges, q):
+    """Take from `q` [N] the whole turns that a walk has made too many; whether there are any."""
+    is_changed = False
+    for body in range(1, robot.bodies.shape[0]):
+        k = robot.bodies[body, COORDINATE]
+        if robot.bodies[body, PRISMATIC] == 0:
+            before, here = q[k], slice(k, k + 1)
+            unwind(ranges[0, here], ranges[1, here], (1,), ranges[2, here], q[here])
+            is_changed |= q[k] != before
+    return is_changed
+
+
+@leaf_kernel
+def descend_once(robot, collision, target, index, ranges, descent, weight, q, work):
+    """One walk that may slide along what is in the way, if one that does not ends in a collision."""
     for slides in range(2):
         if not walk(robot, collision, target, index, ranges, descent, weight, slides == 1, q, work):
             return
         if slides == 1 or is_answer(robot, collision, target, index, ranges, descent, work.tables.vectors[BEST], work):
             copy(work.tables.vectors[BEST], q)
+            return
+
+
+@leaf_kernel
+def descend_to_near(robot, collision, target, index, ranges, descent, weight, q, work):
+    """`reduce_motion` with the buffers given: again from where a joint has moved so far that a full turn is nearer."""
+    if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
+        copy(ranges[2], q)
+        return
+    for _ in range(MOST_TURNS):
+        descend_once(robot, collision, target, index, ranges, descent, weight, q, work)
+        if not turn_back(robot, ranges, q):
             return
 
 

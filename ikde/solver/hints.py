@@ -17,7 +17,7 @@ from ikde.solver.problem import Problem
 from ikde.solver.proof import prove
 from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
-from ikde.solver.verify import Grade, verify_many
+from ikde.solver.verify import Bools, Grade, verify_many
 
 WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
@@ -138,7 +138,7 @@ def try_widening(problem: Problem, probe: Probe) -> str | None:
     """Whether a short search finds a solution beyond the limits of the joints that may move."""
     wide = problem.with_ranges(*_widen(problem))
     found = probe.run(wide)
-    outside = (found.q[0] < problem.lower) | (found.q[0] > problem.upper)
+    outside = _leave_ranges(problem, found.q[0])
     if not (outside.any() and probe.confirms(wide, found)):
         return None
     names = [joint.name for joint, is_out in zip(problem.robot.joints, outside, strict=True) if is_out]
@@ -177,6 +177,13 @@ def _name_cone(problem: Problem, target: Target) -> str:
 
 def _numbers(vector: Sequence[float]) -> str:
     return " ".join(f"{value + 0.0:.3g}" for value in np.round(vector, 6).tolist())  # no -0
+
+
+def _leave_ranges(problem: Problem, q: Floats) -> Bools:
+    """Which joints of `q` [N] stand outside their ranges, whatever whole turns are taken [N]."""
+    lower, upper, turn = problem.lower, problem.upper, np.where(problem.robot.is_prismatic, 0.0, 2.0 * np.pi)
+    turned = q + turn * np.ceil((lower - q) / (2.0 * np.pi))
+    return ~((lower <= q) & (q <= upper)) & ~((lower <= turned) & (turned <= upper))
 
 
 def _find_fewest(names: Names, helps: Callable[[Names], bool]) -> list[Names]:

@@ -20,7 +20,7 @@ from ikde.solver.settings import SolveSettings
 Freeze = Mapping[str, float | None] | Iterable[str]
 
 NEAR_FIRST_BOX = 1.0 / 64.0  # half-width of the first box around `near`, as a share of each joint range
-SEARCHED_TURNS = 2.0  # on either side, of a joint without limits: no attempt of `lm` ends there, and others rarely do
+SEARCHED_TURNS = 2.0  # either way, of a joint without limits: half to a seed, and 12 steps of `lm` are one and a half
 ROUNDING = 1e-12  # m, rad: the search keeps this far from every bound, so that rounding cannot turn `verify`'s verdict
 
 

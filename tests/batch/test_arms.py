@@ -7,6 +7,8 @@ from ikde.batch.arms import describe_arm, make_arm, make_arms
 from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.errors import InputError
 from ikde.formats.entries import UnitsEntry
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 
 MM_DEG = UnitsEntry(length="mm", angle="deg")
 SI = UnitsEntry()
@@ -132,3 +134,11 @@ def test_the_description_holds_what_the_answers_hang_on(qiao):
     assert (plain["ranges"]["d_x"], plain["ranges"]["d_y"]) == ([-1.0, 1.0], [-5.0, 5.0])
     assert plain["detector"]["spheres"] == "improved"
     assert (plain["method"], plain["settings"]["method"], plain["settings"]["de"]) == ("auto", "auto", None)
+
+
+def test_the_description_of_a_joint_without_limits_has_nulls():
+    robot = load_text(ENDLESS)
+    plain = describe_arm(make_arm("a", robot, SolveEntry.model_validate({"freeze": {"pan": 100}}), SI))
+    assert (plain["ranges"]["pan"], plain["freeze"]) == ([None, None], {"pan": 100.0})
+    ranged = describe_arm(make_arm("a", robot, SolveEntry.model_validate({"ranges": {"pan": [-7, 7]}}), SI))
+    assert ranged["ranges"]["pan"] == [-7.0, 7.0]

@@ -8,6 +8,8 @@ import numpy as np
 import ikde
 from ikde.batch.recipe import array_digest, as_plain, digest, ikde_version, robot_digest
 from ikde.solver.settings import SolveSettings
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 
 
 def test_plain_data_survives_json(qiao):
@@ -42,3 +44,11 @@ def test_arrays_differ_by_shape_and_bits():
 
 def test_the_version_is_that_of_the_package():
     assert ikde_version() == ikde.__version__
+
+
+def test_what_has_no_end_is_null():
+    robot = load_text(ENDLESS)
+    assert as_plain((np.inf, -np.inf, np.array([np.inf, 1.0]))) == [None, None, [None, 1.0]]
+    assert as_plain(robot.joints[0])["lower"] is None
+    other = (replace(robot.joints[0], home=1.0), *robot.joints[1:])
+    assert robot_digest(robot) != robot_digest(replace(robot, joints=other))

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from ikde.batch.arms import make_arm
-from ikde.batch.spec import BatchSpec
+from ikde.batch.recipe import digest
+from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.batch.targets import make_source
 from ikde.errors import InputError
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 
 UNITS = {"length": "mm", "angle": "deg"}
 DOWN = {"axis": [0, 0, -1]}
@@ -64,6 +67,16 @@ def test_reachable_targets_lie_in_the_ranges_of_solve(make):
     ranges = recipe["reachable"]["ranges"]
     assert (ranges["d_x"], ranges["d_y"]) == ([-0.01, 0.01], [0.1, 0.1])
     assert (recipe["reachable"]["detector"]["name"], source.read(0, 1)[0].kind) == ("improved", "axis")
+
+
+def test_reachable_targets_of_a_joint_without_limits_are_drawn_once_around_home(tmp_path):
+    robot = load_text(ENDLESS)
+    spec = BatchSpec.model_validate({"robot": "r", "units": UNITS, "targets": {"reachable": {"count": 5}}})
+    problem = make_arm("a", robot, SolveEntry.model_validate({"near": {"pan": 9000}}), spec.units).problem
+    recipe = make_source(spec, problem, tmp_path)[1]["reachable"]
+    assert recipe["ranges"]["pan"] == [-np.pi, np.pi]
+    assert recipe["ranges"]["spin"] == [-0.5 * np.pi, 1.5 * np.pi]
+    digest(recipe)
 
 
 def test_a_table_counts_by_its_numbers_and_not_by_its_name(make, tmp_path):

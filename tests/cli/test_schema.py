@@ -22,7 +22,15 @@ def test_the_schema_of_a_track_file_explains_its_keys(cli):
 
 
 def test_the_schema_of_a_robot_file_is_there_too(cli):
-    assert {"joints", "frames", "tool"} <= set(cli("schema", "robot").data["required"])
+    data = cli("schema", "robot").data
+    assert {"joints", "frames", "tool"} <= set(data["required"])
+    joint = data["$defs"]["JointEntry"]
+    assert joint["properties"]["kind"]["enum"] == ["revolute", "prismatic", "continuous"]
+    assert joint["if"]["properties"]["kind"] == {"const": "continuous"}
+    assert (joint["then"]["properties"], joint["else"]["required"]) == (
+        {"lower": False, "upper": False},
+        ["lower", "upper"],
+    )
 
 
 @pytest.mark.parametrize(

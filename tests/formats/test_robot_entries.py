@@ -7,6 +7,8 @@ import pytest
 from ikde.errors import InputError
 from ikde.formats.entries import DetectorEntry, UnitsEntry
 from ikde.formats.robot_entries import read_collision, to_si, with_ranges
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 
 SI, MM_DEG = UnitsEntry(), UnitsEntry(length="mm", angle="deg")
 
@@ -39,6 +41,14 @@ def test_ranges_replace_those_of_the_robot(qiao):
     assert with_ranges(qiao, {}, SI) is qiao
     with pytest.raises(InputError, match=r"^ranges\.d_x: this range is upside down"):
         with_ranges(qiao, {"d_x": [1, -1]}, SI)
+
+
+def test_a_continuous_joint_with_a_range_is_one_with_limits():
+    robot = load_text(ENDLESS)
+    ranged = with_ranges(robot, {"pan": [-90, 400], "lift": [0, 10]}, MM_DEG)
+    assert [joint.kind for joint in ranged.joints] == ["revolute"] * 5 + ["continuous"]
+    assert (ranged.joints[0].lower, ranged.joints[0].upper) == pytest.approx((-1.5707963267948966, 6.981317007977318))
+    assert ranged.joints[2:] == robot.joints[2:]
 
 
 @pytest.mark.parametrize("interval", [[-1.01e5, 0], [0, 1.01e5]])

@@ -9,7 +9,9 @@ from ikde.io.mjcf import format_mjcf
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_components, compute_gaps
 from tests.conftest import ROBOTS, random_q
+from tests.endless_robot import ENDLESS
 from tests.random_robots import make_frame, make_robot, random_robot
+from tests.robot_files import load_text
 
 COUNT = 50
 EXACT = {"rtol": 0, "atol": 1e-12}
@@ -92,6 +94,15 @@ def test_a_joint_that_cannot_move_is_read():
     frames = [make_frame("tool", "world", (1, 0, 0), joint="stiff", axis=(0, 0, 1))]
     reader = Reader(make_robot({"stiff": "revolute"}, frames, lower=0.25, upper=0.25))
     assert reader.model.joint("stiff").range == pytest.approx(0.25, abs=1e-15)
+
+
+def test_a_joint_without_limits_has_none(rng):
+    robot = load_text(ENDLESS)
+    reader = Reader(robot)
+    limited = [bool(reader.model.joint(name).limited) for name in robot.joint_names]
+    assert limited == np.isfinite(robot.lower).tolist()
+    reader.move(q := random_q(robot, rng) + 10.0 * np.isinf(robot.lower))
+    np.testing.assert_allclose(reader.frame("tip"), ikde.forward(robot, q)["tip"], **EXACT)
 
 
 def test_nothing_falls(qiao):

@@ -107,6 +107,13 @@ def test_units_become_metres_and_radians(tmp_path):
     assert robot.approximations["coarse"][1].radius_m == pytest.approx(0.02)
 
 
+def test_a_continuous_joint_has_a_home_and_no_limits(tmp_path):
+    turn = parse(GOOD.replace("revolute, lower: -90, upper: 90, home: 10", "continuous, home: 370"), tmp_path).joints[1]
+    assert (turn.kind, turn.lower, turn.upper) == ("continuous", -np.inf, np.inf)
+    assert turn.home == np.radians(370.0)
+    assert parse(GOOD.replace("revolute, lower: -90, upper: 90, home: 10", "continuous"), tmp_path).home[1] == 0.0
+
+
 def test_provenance_is_kept_by_entry_and_by_key(tmp_path):
     provenance = parse(GOOD, tmp_path).provenance
     assert provenance[("joints", "slide")].kind == "calibrated"
@@ -190,7 +197,12 @@ def test_frames_may_stand_in_any_order(tmp_path):
         ("to: tip,", "to: rail,", "spheres.coarse[1].to", "a joint moves these two frames"),
         ("count: 4", "count: 0", "spheres.coarse[1].count", "expected at least 1, got 0"),
         ("count: 4", "count: 2.5", "spheres.coarse[1].count", "whole number"),
-        ("kind: prismatic", "kind: sliding", "joints.slide.kind", "'revolute' or 'prismatic'"),
+        ("kind: prismatic", "kind: sliding", "joints.slide.kind", "'revolute', 'prismatic' or 'continuous'"),
+        ("lower: -90, upper: 90, ", "", "robot.yaml:7 → joints.turn.lower", "this key is missing"),
+        ("upper: 90, ", "", "robot.yaml:7 → joints.turn.upper", "this key is missing"),
+        ("upper: 90, ", "upper: null, ", "robot.yaml:7 → joints.turn.upper", "this key is missing"),
+        ("kind: revolute", "kind: continuous", "robot.yaml:7 → joints.turn.lower", "joint has no limits; one with"),
+        ("kind: revolute, lower: -90", "kind: continuous", "robot.yaml:7 → joints.turn.upper", "has no limits"),
         ("length: mm", "length: cm", "robot.yaml:2 → units.length", "'m' or 'mm'"),
         ("source: ours}\n  turn", "source: theirs}\n  turn", "joints.slide.source", "no source is called 'theirs'"),
         ("tool: tip\n", "", "robot.yaml:1 → tool", "missing"),

@@ -14,7 +14,9 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_components
 from tests.conftest import ROBOTS, random_q
+from tests.endless_robot import ENDLESS
 from tests.random_robots import make_frame, make_robot, random_robot
+from tests.robot_files import load_text
 
 COUNT = 50
 EXACT = {"rtol": 0, "atol": 1e-12}
@@ -110,3 +112,25 @@ def test_a_frame_named_like_ours_makes_room():
 def test_a_rotation_comes_back_from_its_angles(roll, pitch, yaw):
     R = rotation_from_rpy(np.array([roll, pitch, yaw]))
     np.testing.assert_allclose(rotation_from_rpy(rpy_from_rotation(R)), R, rtol=0, atol=3e-15)
+
+
+def test_a_joint_without_limits_is_continuous(rng):
+    """Pinocchio keeps such a joint as cosine and sine."""
+    robot = load_text(ENDLESS)
+    root = ET.fromstring(format_urdf(robot))
+    for joint in robot.joints:
+        element = next(found for found in root.iter("joint") if found.attrib["name"] == joint.name)
+        limits = element.find("limit").attrib
+        assert element.attrib["type"] == joint.kind
+        assert ("lower" in limits, "upper" in limits) == (joint.kind != "continuous",) * 2
+    model = pin.buildModelFromXML(format_urdf(robot))
+    assert model.nq == len(robot.joints) + 2
+    q, values = random_q(robot, rng), np.empty(model.nq)
+    for joint, value in zip(robot.joints, q, strict=True):
+        found = model.joints[model.getJointId(joint.name)]
+        turned = [np.cos(value), np.sin(value)] if joint.kind == "continuous" else [value]
+        values[found.idx_q : found.idx_q + found.nq] = turned
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, values)
+    seen = data.oMf[model.getFrameId("tip", pin.FrameType.BODY)].homogeneous
+    np.testing.assert_allclose(seen, ikde.forward(robot, q)["tip"], **EXACT)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels import least_motion
+from ikde.kernels import least_motion, turns
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.target import Targets
@@ -189,3 +189,25 @@ def test_rows_are_those_of_one_by_one(qiao, rng):
     for row, (q, target) in enumerate(zip(Q, targets, strict=True)):
         expected = reduce_motion(problem, target, q) if row in rows else q
         assert end[row].tobytes() == expected.tobytes()
+
+
+def test_no_joint_ends_where_a_full_turn_brings_it_nearer(rng):
+    """A joint that weighs little may be moved beyond half a turn: it is turned back, and the descent begins again."""
+    robot, turned = ikde.load_robot("ur5"), 0
+    for _ in range(40):
+        near, q = random_q(robot, rng), random_q(robot, rng)
+        light = dict(zip(robot.joint_names, 10.0 ** rng.uniform(-2.0, 2.0, 6), strict=True))
+        problem, target = (
+            problem_of(robot, collision="none", near=near, weights=light),
+            make_target(robot, q, "position"),
+        )
+        begin, (lower, upper, turning, centre) = q.copy(), problem.turns
+        turns.unwind.py_func(lower, upper, turning, centre, begin)
+        end = reduce_motion(problem, target, begin)
+        assert ikde.verify(robot, target, end, collision="none").accepted
+        assert motion(problem.weights, near, end) <= motion(problem.weights, near, begin)
+        again = end.copy()
+        turns.unwind.py_func(lower, upper, turning, centre, again)
+        assert again.tobytes() == end.tobytes()
+        turned += bool((np.abs(end - begin) > np.pi).any())
+    assert turned > 0

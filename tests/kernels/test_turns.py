@@ -50,6 +50,9 @@ def test_a_joint_without_limits_comes_all_the_way():
 def test_a_slide_and_what_is_no_number_stay():
     assert unwound(6.0, -10.0, 10.0, turning=0) == 6.0
     assert np.isnan(unwound(np.nan, -10.0, 10.0))
+    q = np.array([50.0, np.nan, 50.0])
+    unwind(np.full(3, -99.0), np.full(3, 99.0), np.array([0, 1, 1]), np.zeros(3), q)
+    np.testing.assert_array_equal(q, [50.0, np.nan, 50.0 - 8.0 * TURN])
 
 
 def test_rounding_costs_a_turn_at_most_never_the_range():

@@ -85,6 +85,8 @@ def test_names_are_unique():
 
 # ---- joints
 
+ENDS = {"lower": -np.inf, "upper": np.inf}  # of a joint without limits
+
 
 def test_no_joints():
     reject("expected at least one joint", "joints", joints=())
@@ -105,6 +107,25 @@ def test_limits_and_home_lie_where_joint_values_may(key, kind, unit):
     beyond = {**ends, key: np.nextafter(-1e5 if key == "lower" else 1e5, np.inf if key != "lower" else -np.inf)}
     joints = (make_joint("slide", kind="prismatic"), make_joint("turn", **{"kind": kind, **beyond}))
     reject(f"expected a finite number, at most 100000 {unit} from 0, got", "joints", "turn", key, joints=joints)
+
+
+@pytest.mark.parametrize("key", ["lower", "upper"])
+@pytest.mark.parametrize("value", [0.0, 1e6, np.nan])
+def test_a_continuous_joint_has_no_limits(key, value):
+    slide = make_joint("slide", kind="prismatic")
+    endless = make_joint("turn", kind="continuous", **ENDS, home=50.0)
+    robot = check_robot(make_draft(joints=(slide, endless), conventions={"other": {"turn": 1.0}}))
+    assert (robot.lower[1], robot.upper[1]) == (-np.inf, np.inf)
+    limited = make_joint("turn", kind="continuous", **{**ENDS, key: value})
+    reject(
+        "a continuous joint has no limits; one with limits is revolute", "joints", "turn", key, joints=(slide, limited)
+    )
+
+
+@pytest.mark.parametrize("home", [np.nan, np.inf, 1.01e5])
+def test_the_home_of_a_continuous_joint_is_finite(home):
+    joints = (make_joint("slide", kind="prismatic"), make_joint("turn", kind="continuous", **ENDS, home=home))
+    reject("expected a finite number, at most 100000 rad from 0", "joints", "turn", "home", joints=joints)
 
 
 def test_limits_upside_down():
@@ -301,7 +322,7 @@ def test_a_convention_with_an_unknown_joint():
 
 
 def test_a_slide_cannot_be_shifted():
-    message = "only a revolute joint can be shifted"
+    message = "only a joint that turns can be shifted"
     reject(message, "conventions", "other", "slide", conventions={"other": {"slide": 1.0}})
 
 

@@ -11,6 +11,8 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Provenance
 from ikde.report.numbers import Units
 from ikde.report.robot import format_robot, format_robots, robot_json, robots_json
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 
 MM_DEG = Units("mm", "deg")
 
@@ -124,3 +126,12 @@ def test_sources_are_counted(qiao):
         | {("b",): Provenance(kind="derived", text="one place")},
     )
     assert "2" in words_of(format_robot(CollisionModel.of(robot, "none"), MM_DEG), "derived")
+
+
+def test_a_joint_without_limits_shows_none():
+    robot = load_text(ENDLESS)
+    data = json.loads(json.dumps(robot_json(CollisionModel.of(robot)), allow_nan=False))["joints"]
+    assert [(joint["lower"], joint["upper"]) for joint in data if joint["kind"] == "continuous"] == [(None, None)] * 2
+    assert [joint["lower"] for joint in data][1:5] == robot.lower[1:5].tolist()
+    shown = words_of(format_robot(CollisionModel.of(robot), MM_DEG), "spin")
+    assert shown == ["spin", "continuous", "none", "90", "none", "deg"]

@@ -10,7 +10,9 @@ import pytest
 import ikde
 from ikde.report.numbers import Units, count_of
 from ikde.report.solve import BAR, Spent, format_solutions, format_solve, solutions_json, solve_json
+from tests.endless_robot import ENDLESS
 from tests.flat_settings import flat_settings
+from tests.robot_files import load_text
 
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 MM_DEG = Units("mm", "deg")
@@ -110,6 +112,15 @@ def test_a_bar_shows_where_a_joint_stands(qiao, result):
         drawn = bars(format_solve(qiao, result.with_changes(q=q), Units()))
         assert [bar.index("●") for bar in drawn] == [place] * 9
         assert {len(bar) for bar in drawn} == {BAR}
+
+
+def test_a_joint_without_limits_stands_in_no_bar():
+    robot = load_text(ENDLESS)
+    result = ikde.solve(robot, ikde.Target((-0.5, 0.0, 0.5)))
+    text = format_solve(robot, result, MM_DEG)
+    assert next(line.split()[2:] for line in text.splitlines() if " pan " in line) == ["deg", "none", "none"]
+    assert len(bars(text)) == 4
+    json.dumps(solve_json(robot, result), allow_nan=False)
 
 
 def test_text_in_another_convention_shifts_value_and_limits(qiao, result):

@@ -11,10 +11,13 @@ import ikde
 from ikde.model.bounds import find_bounds
 from ikde.solver.hints import Probe, hint_at_tolerance, meets, try_longer, try_widening
 from ikde.solver.verify import verify
+from tests.endless_robot import ENDLESS
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 from tests.random_robots import make_frame, make_robot, random_robot, with_ranges
+from tests.robot_files import load_text
 from tests.scara import make_scara
+from tests.targets import make_target
 
 OPEN = ": then the bound no longer excludes the target"
 LM = ikde.SolveSettings(method="lm", restarts=20)
@@ -292,3 +295,32 @@ def test_no_orientation_tolerance_beyond_half_a_turn_is_told(qiao):
     target, problem = near_miss(qiao, turn_rad=3.141)
     wide = replace(problem, settings=ikde.SolveSettings(orientation_tolerance_rad=1.0))
     assert hint_at_tolerance(wide, target, qiao.home, verify(qiao, target, qiao.home)) is None
+
+
+def test_a_joint_without_limits_is_freed_and_never_widened():
+    robot, settings = load_text(ENDLESS), ikde.SolveSettings(method="memetic", restarts=1)
+    q = robot.home + np.array([2.0, 0.0, 0.0, 0.5, 0.0, 0.5])
+    result = ikde.solve(robot, make_target(robot, q, "pose"), settings, freeze={"pan": 50.0})
+    assert result.hint.startswith("free pan: ")
+    q[1] = 2.2  # beyond its limit
+    hinted = try_widening(problem_of(robot, settings), Probe(make_target(robot, q, "pose"), 0, 0, 0.0))
+    assert "lift" in hinted
+    assert "pan" not in hinted
+    assert "spin" not in hinted
+
+
+def test_a_turn_is_no_reason_for_a_wider_range():
+    """The first joint may stand at -0.28 or at 6.0, which is inside; only the second is beyond its range."""
+    robot = with_ranges(make_wrist(), {"a": (0.0, 2.0 * np.pi), "b": (-0.5, 0.5)})
+    target = make_target(robot, np.array([6.0, 0.8]), "position")
+    hinted = try_widening(problem_of(robot, LM, collision="none"), Probe(target, 0, 0, 0.0))
+    assert hinted == "a wider range for b: a solution was found beyond the limits"
+
+
+def make_wrist():
+    frames = [
+        make_frame("one", "world", joint="a", axis=(0, 0, 1)),
+        make_frame("two", "one", (0.5, 0, 0), joint="b", axis=(0, 1, 0)),
+        make_frame("tool", "two", (0.5, 0, 0)),
+    ]
+    return make_robot({"a": "revolute", "b": "revolute"}, frames, lower=0.0)

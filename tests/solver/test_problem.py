@@ -11,8 +11,10 @@ from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.problem import pack_search, pack_searched
+from tests.endless_robot import ENDLESS
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
+from tests.robot_files import load_text
 
 
 def frozen_values(robot, problem):
@@ -152,3 +154,58 @@ def test_searches_keep_a_hair_more_than_the_safe_distance(qiao):
     collision = CollisionModel.of(qiao, replace(qiao.detectors["improved"], safe_distance_m=0.01))
     searched = pack_searched(collision)[1].safe_distance
     assert 0.01 < searched < 0.01 + 1e-9
+
+
+# ---- joints without limits
+
+
+@pytest.fixture(scope="module")
+def endless():
+    return load_text(ENDLESS)
+
+
+def test_a_joint_without_limits_is_searched_two_turns_about_near_else_home(endless):
+    for near, pan, spin in ((None, 0.0, 0.5 * np.pi), ({"pan": 50.0}, 50.0, 0.5 * np.pi), ({"spin": -7.0}, 0.0, -7.0)):
+        problem = problem_of(endless, near=near)
+        assert problem.lower[[0, 5]] == pytest.approx([pan - 4.0 * np.pi, spin - 4.0 * np.pi])
+        assert problem.upper[[0, 5]] == pytest.approx([pan + 4.0 * np.pi, spin + 4.0 * np.pi])
+        assert (problem.lower[1:5] == endless.lower[1:5]).all()
+        assert (problem.upper[1:5] == endless.upper[1:5]).all()
+        assert np.isfinite(pack_search(problem).ranges).all()
+
+
+def test_it_is_drawn_from_one_turn_about_home_wherever_it_searches(endless):
+    for near in (None, {"pan": 50.0}):
+        lower, upper = problem_of(endless, near=near, freeze={"spin": 100.0, "lift": 0.1}).drawn
+        assert (lower[0], upper[0]) == (-np.pi, np.pi)
+        assert (lower[5], upper[5]) == (100.0, 100.0)
+        assert (lower[1], upper[1]) == (0.1, 0.1)
+        assert (lower[3], upper[3]) == (endless.lower[3], endless.upper[3])
+
+
+def test_it_may_be_frozen_anywhere(endless):
+    assert frozen_values(endless, problem_of(endless, freeze={"pan": -9e4})) == {"pan": -9e4}
+    assert frozen_values(endless, problem_of(endless, freeze=["pan"], near={"pan": 60.0})) == {"pan": 60.0}
+    with pytest.raises(InputError, match="outside the limits"):
+        problem_of(endless, freeze={"roll": 7.0})
+
+
+def test_without_freezing_the_ranges_are_those_of_the_search(endless):
+    problem = problem_of(endless, freeze={"pan": 60.0, "lift": 0.1}, near={"spin": 5.0})
+    assert np.array_equal(problem.free_ranges, endless.finite_limits(problem.centre, 2.0))
+
+
+def test_turns_stay_inside_the_limits_where_a_probe_asks_for_more(endless):
+    problem = problem_of(endless, freeze={"bend": 0.3}, near={"roll": 1.0})
+    wide = problem.with_ranges(problem.lower - 1.0, problem.upper + 1.0)
+    lower, upper, turning, centre = wide.turns
+    assert (lower[3], upper[3]) == (endless.lower[3], endless.upper[3])
+    assert (lower[0], upper[0]) == (wide.lower[0], wide.upper[0])
+    lower, upper, turning, centre = problem.turns
+    assert (lower[4], upper[4], centre[3]) == (0.3, 0.3, 1.0)
+    assert turning.all()
+    assert (problem_of(endless).turns[3] == endless.home).all()
+
+
+def test_slides_do_not_turn(qiao):
+    assert problem_of(qiao).turns[2].tolist() == [False, False] + [True] * 7

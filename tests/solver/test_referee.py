@@ -113,3 +113,20 @@ def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(
     assert 0 < rows.reached.sum() < 30
     plain = verify_many(CollisionModel.of(robot, "none"), rows.targets, rows.q, settings)
     assert plain.accepted[rows.reached].all()
+
+
+def test_what_is_graded_is_what_is_returned_turned_back(rng, substitute):
+    robot, graded = ikde.load_robot("ur5"), []
+
+    def watch(collision, targets, Q, settings, limits):
+        graded.append(Q.copy())
+        return compute_metrics(collision, targets, Q, settings, limits)
+
+    substitute(compute_metrics, watch)
+    problem = make(robot, method="lm", restarts=1)
+    targets = make_targets(robot, random_q(robot, rng, 200), "pose")
+    found = search(problem, targets, seed=1, streams=range(200))
+    assert graded[0].tobytes() == found.q.tobytes()
+    assert (found.counts[:, REACHED] == 0).any()  # also the best of what is not reached
+    wound = np.abs(found.q - robot.home) > np.pi
+    assert not wound[:, [0, 1, 3, 4, 5]].any()  # the elbow has one turn only

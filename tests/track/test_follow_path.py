@@ -20,6 +20,8 @@ from ikde.track.settings import ContinuationSettings, OptimizedSettings, Typical
 from ikde.track.starts import draw_starts
 from ikde.track.trajectory import TrackStopReason
 from ikde.track.verify_track import verify_track
+from tests.endless_robot import ENDLESS, LIMITED
+from tests.robot_files import load_text
 from tests.track.paper_tasks import plan_of, short_task, start_of
 from tests.track.tracks import DRIVES, TASKS, follow_task, load_task, make_line, robot
 
@@ -357,3 +359,24 @@ def test_settings_belong_to_their_method(qiao):
         follow_path(qiao, short_task(1), settings=OptimizedSettings())
     with pytest.raises(InputError, match="expected one of continuation, optimized, typical"):
         follow_path(qiao, short_task(1), method="best")
+
+
+@pytest.mark.parametrize("method", ["continuation", "optimized", "typical"])
+def test_a_joint_without_limits_turns_on(method):
+    """One and a half times around, across the far side; the same arm with limits comes to its end on the way."""
+    angle = np.linspace(0.0, 3.0 * np.pi, 101)
+    circle = 0.55 * np.column_stack([np.cos(angle), np.sin(angle), np.full(101, 0.9)])
+    path = ToolPath.through(circle, dt_s=0.1, axis_world_tool=np.tile((0.0, 0.0, -1.0), (101, 1)))
+    motion = follow_path(load_text(ENDLESS), path, method=method)
+    assert motion.reached_points == 100
+    assert motion.violations.range == 0
+    if method == "typical":
+        assert np.abs(np.diff(motion.q[:, [0, 5]], axis=0)).max() <= np.pi
+        return
+    assert motion.reached
+    assert motion.certified_clearance_m > 0.005
+    assert np.ptp(motion.q[:, 0]) > 2.5 * np.pi
+    if method == "continuation":
+        stopped = follow_path(load_text(LIMITED), path, method=method)
+        assert stopped.stop.reason == TrackStopReason.JOINT_LIMIT
+        assert stopped.stop.limit == "pan"

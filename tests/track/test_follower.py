@@ -7,6 +7,8 @@ from ikde.solver.plain import compute_frames
 from ikde.track.follower import MARGIN_M, REACH_M
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 from tests.track.paper_tasks import follower_of
 from tests.track.tracks import follow_task, make_line, robot
 
@@ -64,6 +66,14 @@ def test_what_is_packed_for_the_kernels():
     assert np.abs(loose.ranges).min() > 1e4
     unchecked = follower_of(robot(), path, collision="none")
     assert (unchecked.track.reach, unchecked.size) == (-np.inf, 8)
+
+
+def test_a_joint_without_limits_has_ranges_that_can_be_reckoned_with():
+    endless, path = load_text(ENDLESS), make_line([0.5, 0, 0.5], [0.5, 0.1, 0.5], 5)
+    for ranges in (True, False):
+        track = follower_of(endless, path, drive="omnidirectional", ranges=ranges).track
+        assert np.isfinite(track.ranges).all()
+        assert (np.abs(track.ranges[:, [0, 5]]) > 1e4).all()
 
 
 def test_a_twofold_singularity_is_passed():

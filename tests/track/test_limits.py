@@ -8,6 +8,8 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.track.limits import MotionLimits
+from tests.endless_robot import ENDLESS
+from tests.robot_files import load_text
 
 
 def test_those_of_the_paper(qiao):
@@ -81,3 +83,8 @@ def test_what_is_given_is_copied_and_kept():
     speed[0] = 2.0
     assert limits.speed.tolist() == [1.0, 1.0, 1.0]
     assert not limits.speed.flags.writeable
+
+
+def test_a_joint_that_turns_without_end_has_the_speed_of_any_that_turns():
+    robot = load_text(ENDLESS)
+    np.testing.assert_allclose(MotionLimits.of(robot).speed, np.full(6, np.pi / 2))

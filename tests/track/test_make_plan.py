@@ -51,6 +51,12 @@ def test_limits_are_by_joint_and_a_joints_own_comes_first(qiao):
     assert limits.wheel_speed_rad_s == pytest.approx(2 * np.pi)
 
 
+def test_a_limit_of_revolute_joints_holds_for_all_that_turn(qiao):
+    endless = replace(qiao.joints[8], kind="continuous", lower=-np.inf, upper=np.inf)
+    robot = replace(qiao, joints=(*qiao.joints[:8], endless))
+    assert plan(robot, limits={"speed": {"revolute": 45}}).limits.speed[8] == np.pi / 4
+
+
 def test_limits_of_the_file_come_before_the_robots_own(qiao):
     own = replace(qiao, joints=(*qiao.joints[:8], replace(qiao.joints[8], max_speed=2.0, max_acceleration=5.0)))
     left_out, given = (

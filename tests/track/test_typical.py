@@ -1,5 +1,7 @@
 """`typical`: it meets the samples, goes on to the end, and violates what it ignores."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ikde.track.follow_path import follow_path
@@ -38,6 +40,13 @@ def test_the_base_stays_near_and_frozen_joints_where_they_are(qiao):
     assert len(followed.seconds) == 10
     assert np.abs(np.diff(followed.q[:, :2], axis=0)).max() <= 0.1
     assert (followed.q[:, 4] == start[4]).all()
+
+
+def test_a_joint_without_limits_turns_half_a_turn_at_most_from_where_it_is(qiao):
+    endless = replace(qiao.joints[8], kind="continuous", lower=-np.inf, upper=np.inf)
+    follower = typical(replace(qiao, joints=(*qiao.joints[:8], endless)), TypicalSettings())
+    lower, upper = bound_sample(follower, TypicalSettings(), np.full(9, 20.0))
+    assert (lower[8], upper[8]) == (20.0 - np.pi, 20.0 + np.pi)
 
 
 def test_same_seed_same_bits(qiao):

@@ -28,8 +28,10 @@ from ikde.solver.engines.pool import (
     rotation_length_m,
 )
 from ikde.solver.problem import pack_searched
+from tests.endless_robot import ENDLESS
 from tests.hostile_names import rename
 from tests.random_robots import with_ranges
+from tests.robot_files import load_text
 from tests.solver.engines.questions import make_pool
 
 
@@ -67,6 +69,14 @@ def test_frozen_joints_stay_and_the_base_then_helps_no_more(qiao):
     assert (seeds.q[:, 0] == 0.3).all()
     assert (seeds.q[:, 4] == 0.1).all()
     assert seeds.base.tolist() == [-1, -1, -1]
+
+
+def test_a_joint_without_limits_is_drawn_once_around_home():
+    robot = load_text(ENDLESS)
+    drawn = make_pool(robot).q - robot.home
+    for joint in (0, 5):
+        assert np.abs(drawn[:, joint]).max() <= np.pi
+        assert np.histogram(drawn[:, joint], bins=8, range=(-np.pi, np.pi))[0].min() > 0.08 * len(drawn)
 
 
 def test_near_needs_no_pool(qiao):
