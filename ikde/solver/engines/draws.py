@@ -101,7 +101,7 @@ def _square(v: Floats) -> Floats:
     return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
 
 
-def _sin_cos(x: Floats) -> tuple[Floats, Floats]:
+def sin_cos(x: Floats) -> tuple[Floats, Floats]:
     """`trig.sin_cos` of an array: the same bits."""
     s, c, quadrant = _text_of(fold_angle)(x)
     is_odd = (quadrant & 1) == 1
@@ -123,4 +123,4 @@ def _start_stream() -> np.uint64:
 
 _START = _start_stream()
 _bodies = _text_of(frames.compute_bodies)
-_compute_bodies = FunctionType(_bodies.__code__, {**_bodies.__globals__, "sin_cos": _sin_cos})
+_compute_bodies = FunctionType(_bodies.__code__, {**_bodies.__globals__, "sin_cos": sin_cos})
