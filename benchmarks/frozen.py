@@ -3,7 +3,7 @@
     python -m benchmarks.frozen [--count 60] [--kind pose] [--robots qiao2021,ur5,panda]
 
 Random targets that can be reached with the joint where it is. `NUMBA_DISABLE_JIT=1` gives the same attempts without
-compiling. One line a choice of joints; a pool drawn for each value is what was done before, 8,192 configurations.
+compiling. One line a choice of joints; a pool drawn for each value is of 2,048 configurations.
 """
 
 import argparse

@@ -23,7 +23,7 @@ from ikde.solver.engines.grids import find_cells, keep_few, scale_grid, sort_cel
 from ikde.solver.engines.pool_files import Kept, load_cached, load_shipped, save_cached
 from ikde.solver.problem import NEAR_FIRST_BOX, Problem, pack_searched
 
-DRAWN, DRAWN_NARROW = 2**16, 2**13  # configurations: within the joint limits, within ranges of a problem's own
+DRAWN, DRAWN_NARROW = 2**16, 2**11  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
 X, Y, Z = 3, 7, 11  # entries of the transform [3, 4], row by row
 TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # those that a base which turns cannot change, beside Z
