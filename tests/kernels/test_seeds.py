@@ -2,12 +2,14 @@
 
 from itertools import combinations
 
+import numba
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from ikde.kernels import seeds
 from ikde.kernels.rng import seed_stream
+from ikde.kernels.seeds import draw_seed
 from ikde.model.pack import pack_targets
 from ikde.model.target import Target
 from ikde.solver.plain import compute_frames
@@ -18,6 +20,7 @@ from tests.targets import target_at
 from tests.uncompiled import plain, plain_module, quietly
 
 PLAIN = plain_module(seeds)
+needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 BASE = np.array([0, 1, 2])
 KINDS = ("position", "axis", "pose")
 each_kind = pytest.mark.parametrize("kind", KINDS)
@@ -296,3 +299,23 @@ def test_frozen_joints_of_the_arm_leave_the_base_alone(qiao, pool, rng):
     free = draw_within(ranges, pool, target)
     ranges[:2, 5] = 0.25
     assert draw_within(ranges, pool, target).tobytes() == free.tobytes()
+
+
+@needs_compiler
+def test_compiled_starts_have_the_same_bits(qiao, few, rng):
+    """Those of a free base, too: one piece of machine code serves all."""
+    for kind in KINDS:
+        for held in ((), *HELD):
+            q = random_q(qiao, rng)
+            target, ranges = target_at(tool(qiao, q), kind), hold(qiao, held, q)
+            for attempt in (0, 7):
+                out_q = np.full(9, np.nan)
+                draw_compiled(few, pack_targets([target]), ranges, attempt, out_q)
+                assert out_q.tobytes() == draw_within(ranges, few, target, attempt, stream=2).tobytes()
+
+
+@numba.njit(error_model="numpy")
+def draw_compiled(pool, target, ranges, attempt, out_q):
+    state = np.empty(1, dtype=np.uint64)
+    seed_stream(5, 2, attempt, state)
+    draw_seed(pool, target, 0, ranges, state, attempt, out_q)
