@@ -265,6 +265,10 @@ def test_frozen_joints_of_a_base_stay_and_the_others_do_what_they_can(qiao, few,
         (ours,) = far_from(target, tool(qiao, start[None]), few.rotation_length)
         theirs = far_from(target, tool(qiao, Q), few.rotation_length)
         assert ours <= np.percentile(theirs, 1.0)
+        if held == (0, 1):  # all rows, all headings
+            Q = np.repeat(few.q, 40, axis=0)
+            Q[:, :3] = np.column_stack([np.tile(q[:2], (len(Q), 1)), rng.uniform(-np.pi, np.pi, len(Q))])
+            assert ours <= far_from(target, tool(qiao, Q), few.rotation_length).min() + 1e-12
         if 2 in held:  # x and y follow from the row: all of them are tried
             Q = few.q.copy()
             Q[:, 2] = q[2]
