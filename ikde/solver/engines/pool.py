@@ -103,7 +103,7 @@ def find_whole(collision: CollisionModel, kind: str) -> tuple["Pool", SeedArrays
     return pool, pack_pool(pool, kept)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=8)  # 7 MB each
 def _find_frozen(collision: CollisionModel, kind: str, joints: tuple[int, ...]) -> FrozenPools:
     """What the pools of some frozen joints share: of the largest pool, whatever the kind of target."""
     rows, seeds = find_whole(collision, "pose")[1].q, find_whole(collision, kind)[1]
