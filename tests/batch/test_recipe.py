@@ -42,3 +42,8 @@ def test_arrays_differ_by_shape_and_bits():
 
 def test_the_version_is_that_of_the_package():
     assert ikde_version() == ikde.__version__
+
+
+def test_what_kernels_are_written_for_changes_no_answer(qiao):
+    other = replace(qiao, file_ranges=((-9.0, 9.0),) * len(qiao.joints))
+    assert robot_digest(other) == robot_digest(qiao)
