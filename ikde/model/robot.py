@@ -187,7 +187,7 @@ class Robot:
         """Ranges [N] that written kernels hold for: `drawn`, and all between it and what it was by the robot's file.
 
         So a run that narrows limits needs no kernels of its own, and one that widens them has some, but for a joint
-        that could turn all around before.
+        that could turn all around before: one turn is as good as many.
         """
         lower, upper = self.drawn
         if not self.file_ranges:
