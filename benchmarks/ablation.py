@@ -234,8 +234,8 @@ def draw_evenly(count: int) -> SeedArrays:
     """As many as are kept of each cell, but from the first that are free."""
     collision = CollisionModel.of(ikde.load_robot("qiao2021"))
     whole = pool.make_whole_pool(collision, "pose")
-    numbers = draw_free(*pack_searched(collision), whole.lower, whole.upper, count)
-    return pool.sort_pool(collision.robot, draw(numbers, whole.lower, whole.upper), whole.base, whole.grid)
+    numbers = draw_free(*pack_searched(collision), *whole.drawn, count)
+    return pool.sort_pool(collision.robot, draw(numbers, *whole.drawn), whole.base, whole.grid)
 
 
 def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: Variant) -> dict[str, Callable[[], Any]]:

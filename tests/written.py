@@ -30,7 +30,7 @@ def written_kernels(monkeypatch, change=lambda module: module):
 def _forget():
     """What was made of other kernels."""
     find_quick.cache_clear()
-    pool._find_pool.cache_clear()
+    pool.find_whole.cache_clear()
 
 
 class Liar:

@@ -12,7 +12,9 @@ import numpy as np
 
 from ikde.model.robot import Robot
 
-LEAVES_ANSWERS_ALONE = ("title", "provenance", "wheels", "adjacent", "neighbours")  # all pairs are in `pair_lists`
+LEAVES_ANSWERS_ALONE = (  # all pairs are in `pair_lists`
+    *("title", "provenance", "wheels", "adjacent", "neighbours", "file_ranges"),
+)
 OF_TRACKS = ("max_speed", "max_acceleration")  # of joints: a batch solves for poses, not for motions
 
 

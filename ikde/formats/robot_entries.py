@@ -40,7 +40,8 @@ def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEnt
         kind = "revolute" if joint.kind == "continuous" else joint.kind
         return replace(joint, kind=kind, lower=lower[joint.name], upper=upper[joint.name])
 
-    return replace(robot, joints=tuple(map(narrow, robot.joints)))
+    before = robot.file_ranges or tuple(zip(*(bound.tolist() for bound in robot.drawn), strict=True))
+    return replace(robot, joints=tuple(map(narrow, robot.joints)), file_ranges=before)
 
 
 def to_si(robot: Robot, key: str, values: Mapping[str, float | None], units: UnitsEntry) -> dict[str, float]:

@@ -15,6 +15,8 @@ NO_DETECTOR = "none"
 TOOL = "tool"  # what the tool's frame is called beside its own name
 MAX_MAGNITUDE = 1e5  # m or rad, of all that a robot is made of: beyond it an angle has lost its last digits
 
+FULL_TURN_RAD = 2.0 * np.pi - 1e-12  # but for rounding
+
 JointKind = Literal["revolute", "prismatic", "continuous"]
 Spacing = Literal["touching", "even"]
 
@@ -144,6 +146,8 @@ class Robot:
     """None for a robot without a base that drives on two wheels, or whose wheel geometry is not given."""
     neighbours: tuple[LeftOutPair, ...] = ()
     """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
+    file_ranges: tuple[tuple[float, float], ...] = ()
+    """What `drawn` was by the robot's file, m or rad, where a run has put other limits in their place; else nothing."""
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -177,6 +181,20 @@ class Robot:
             lower[is_continuous] = centre[is_continuous] - 2.0 * np.pi * turns
             upper[is_continuous] = centre[is_continuous] + 2.0 * np.pi * turns
         return lower, upper
+
+    @property
+    def written_ranges(self) -> tuple[Floats, Floats]:
+        """Ranges [N] that written kernels hold for: `drawn`, and all between it and what it was by the robot's file.
+
+        So a run that narrows limits needs no kernels of its own, and one that widens them has some, but for a joint
+        that could turn all around before: one turn is as good as many.
+        """
+        lower, upper = self.drawn
+        if not self.file_ranges:
+            return lower, upper
+        first, last = np.array(self.file_ranges).T
+        is_all = ~self.is_prismatic & (last - first >= FULL_TURN_RAD)
+        return np.where(is_all, first, np.minimum(first, lower)), np.where(is_all, last, np.maximum(last, upper))
 
     @property
     def is_prismatic(self) -> NDArray[np.bool_]:

@@ -52,3 +52,8 @@ def test_what_has_no_end_is_null():
     assert as_plain(robot.joints[0])["lower"] is None
     other = (replace(robot.joints[0], home=1.0), *robot.joints[1:])
     assert robot_digest(robot) != robot_digest(replace(robot, joints=other))
+
+
+def test_what_kernels_are_written_for_changes_no_answer(qiao):
+    other = replace(qiao, file_ranges=((-9.0, 9.0),) * len(qiao.joints))
+    assert robot_digest(other) == robot_digest(qiao)

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from ikde import load_robot
 from ikde.errors import InputError
 from ikde.formats.entries import DetectorEntry, UnitsEntry
 from ikde.formats.robot_entries import read_collision, to_si, with_ranges
@@ -49,6 +51,34 @@ def test_a_continuous_joint_with_a_range_is_one_with_limits():
     assert [joint.kind for joint in ranged.joints] == ["revolute"] * 5 + ["continuous"]
     assert (ranged.joints[0].lower, ranged.joints[0].upper) == pytest.approx((-1.5707963267948966, 6.981317007977318))
     assert ranged.joints[2:] == robot.joints[2:]
+
+
+def test_the_files_own_limits_stay_known_and_kernels_are_written_for_both(qiao):
+    limits = list(zip(qiao.lower.tolist(), qiao.upper.tolist(), strict=True))
+    narrow = with_ranges(qiao, {"q1": [-1, 1]}, SI)
+    assert list(narrow.file_ranges) == limits
+    assert np.array(narrow.written_ranges).tobytes() == np.array([qiao.lower, qiao.upper]).tobytes()
+    both = with_ranges(narrow, {"d_x": [-9, 1], "q1": [-2, 2]}, SI)
+    assert both.file_ranges == narrow.file_ranges
+    lower, upper = both.written_ranges
+    assert (lower[0], upper[0]) == (-9.0, qiao.upper[0])
+    assert lower[1:].tolist() == qiao.lower[1:].tolist()
+    assert upper.tolist() == qiao.upper.tolist()
+    assert qiao.file_ranges == ()
+
+
+def test_a_joint_that_turns_all_around_needs_no_kernels_for_other_turns():
+    ur5 = load_robot("ur5")  # two turns each
+    wide = with_ranges(ur5, {"elbow_joint": [-20, 20], "wrist_1_joint": [8, 9]}, SI)
+    assert np.array(wide.written_ranges).tobytes() == np.array(ur5.written_ranges).tobytes()
+    endless = with_ranges(without_limits(ur5), {"elbow_joint": [5, 6]}, SI)
+    assert np.array(endless.written_ranges).tobytes() == np.array(without_limits(ur5).drawn).tobytes()
+
+
+def without_limits(robot):
+    """All joints continuous."""
+    joints = (replace(joint, kind="continuous", lower=-np.inf, upper=np.inf) for joint in robot.joints)
+    return replace(robot, joints=tuple(joints))
 
 
 @pytest.mark.parametrize("interval", [[-1.01e5, 0], [0, 1.01e5]])

@@ -1,11 +1,15 @@
 """Seeds: chosen by the stream alone, near the target; the base brings the tool over it and turns it to its heading."""
 
+from itertools import combinations
+
+import numba
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from ikde.kernels import seeds
 from ikde.kernels.rng import seed_stream
+from ikde.kernels.seeds import draw_seed
 from ikde.model.pack import pack_targets
 from ikde.model.target import Target
 from ikde.solver.plain import compute_frames
@@ -16,6 +20,7 @@ from tests.targets import target_at
 from tests.uncompiled import plain, plain_module, quietly
 
 PLAIN = plain_module(seeds)
+needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
 BASE = np.array([0, 1, 2])
 KINDS = ("position", "axis", "pose")
 each_kind = pytest.mark.parametrize("kind", KINDS)
@@ -176,7 +181,7 @@ def test_windows_double_and_stay_inside_the_pool(qiao, pool, rng):
         for attempt in range(seeds.LUCKY_ATTEMPTS):
             firsts = []
             for index in range(30):
-                first, count = PLAIN.draw_window(pool, targets, index, state, attempt)
+                first, count = PLAIN.draw_window(pool, targets, index, state, attempt, seeds.COMPARED)
                 assert count == seeds.COMPARED
                 assert 0 <= first <= len(pool.q) - count
                 firsts.append(first)
@@ -205,3 +210,116 @@ def test_without_a_pool_starts_are_uniform(qiao):
     assert share.min() >= 0.0
     assert share.max() <= 1.0
     np.testing.assert_allclose(share.mean(axis=0), 0.5, atol=0.08)
+
+
+# ---- a base of which joints are frozen
+
+HELD = [held for size in (1, 2, 3) for held in combinations(range(3), size)]
+each_held = pytest.mark.parametrize("held", HELD, ids=str)
+
+
+@pytest.fixture(scope="module")
+def few(qiao):
+    """So few configurations that all are compared."""
+    Q = random_q(qiao, np.random.default_rng(2), seeds.COMPARED_HELD)
+    Q[:, BASE] = 0.0
+    return pack_seeds(qiao, Q, BASE)
+
+
+def hold(robot, held, q):
+    """Ranges with joints of the base frozen where `q` has them."""
+    ranges = make_ranges(robot)
+    ranges[:2, held] = q[list(held)]
+    return ranges
+
+
+def draw_within(ranges, pool, target, attempt=0, stream=0):
+    state, out_q = np.empty(1, dtype=np.uint64), np.full(ranges.shape[1], np.nan)
+    with quietly():
+        plain(seed_stream)(5, stream, attempt, state)
+        PLAIN.draw_seed(pool, pack_targets([target]), 0, ranges, state, attempt, out_q)
+    return out_q
+
+
+def far_from(target, T, length):
+    """Squared distance and squared chord of the axes asked for [K], a radian counting as the length."""
+    distance = np.sum((T[:, :3, 3] - target.p_world_tool) ** 2, axis=1)
+    for j in {"position": [], "axis": [2], "pose": [0, 1, 2]}[target.kind]:
+        distance += length**2 * np.sum((T[:, :3, j] - target.R_world_tool[:, j]) ** 2, axis=1)
+    return distance
+
+
+@each_kind
+@each_held
+def test_frozen_joints_of_a_base_stay_and_the_others_do_what_they_can(qiao, few, kind, held, rng):
+    """No other row, and no other place of the base, comes nearer to the target."""
+    for q in random_q(qiao, rng, 6):
+        q[:2] *= 0.5
+        target, ranges = target_at(tool(qiao, q), kind), hold(qiao, held, q)
+        start = draw_within(ranges, few, target)
+        assert start[list(held)].tobytes() == q[list(held)].tobytes()
+        assert np.all((ranges[0] <= start) & (start <= ranges[1]))
+        assert (few.q[:, 3:] == start[3:]).all(axis=1).any()
+        Q = few.q[rng.integers(len(few.q), size=3000)].copy()
+        Q[:, :3] = rng.uniform(ranges[0, :3], ranges[1, :3], (3000, 3))
+        (ours,) = far_from(target, tool(qiao, start[None]), few.rotation_length)
+        theirs = far_from(target, tool(qiao, Q), few.rotation_length)
+        assert ours <= np.percentile(theirs, 1.0)
+        if held == (0, 1):  # all rows, all headings
+            Q = np.repeat(few.q, 40, axis=0)
+            Q[:, :3] = np.column_stack([np.tile(q[:2], (len(Q), 1)), rng.uniform(-np.pi, np.pi, len(Q))])
+            assert ours <= far_from(target, tool(qiao, Q), few.rotation_length).min() + 1e-12
+        if 2 in held:  # x and y follow from the row: all of them are tried
+            Q = few.q.copy()
+            Q[:, 2] = q[2]
+            gap = target.p_world_tool[:2] - tool(qiao, Q)[:, :2, 3]
+            Q[:, :2] = np.clip(gap, ranges[0, :2], ranges[1, :2])
+            assert ours <= far_from(target, tool(qiao, Q), few.rotation_length).min() + 1e-12
+
+
+@pytest.mark.parametrize("held", [(0,), (1,)], ids=str)
+def test_a_base_with_one_way_to_go_turns_the_tool_over_a_point_from_either_side(qiao, few, held, rng):
+    sides = 0
+    for q in random_q(qiao, rng, 6):
+        q[:2] *= 0.5
+        target = target_at(tool(qiao, q), "position")
+        starts = [draw_within(hold(qiao, held, q), few, target, stream=stream) for stream in range(8)]
+        away = [np.linalg.norm(tool(qiao, start)[:2, 3] - target.p_world_tool[:2]) for start in starts]
+        assert max(away) < 1e-9
+        sides += len({start[2] for start in starts}) > 1
+    assert sides > 3
+
+
+@each_held
+def test_a_frozen_base_tries_others_when_one_fails(qiao, pool, held, rng):
+    q = random_q(qiao, rng)
+    target = target_at(tool(qiao, q), "pose")
+    starts = [draw_within(hold(qiao, held, q), pool, target, attempt) for attempt in range(9)]
+    assert len({start[3:].tobytes() for start in starts}) > 4
+
+
+def test_frozen_joints_of_the_arm_leave_the_base_alone(qiao, pool, rng):
+    target, ranges = target_at(tool(qiao, random_q(qiao, rng)), "pose"), make_ranges(qiao)
+    free = draw_within(ranges, pool, target)
+    ranges[:2, 5] = 0.25
+    assert draw_within(ranges, pool, target).tobytes() == free.tobytes()
+
+
+@needs_compiler
+def test_compiled_starts_have_the_same_bits(qiao, few, rng):
+    """Those of a free base, too: one piece of machine code serves all."""
+    for kind in KINDS:
+        for held in ((), *HELD):
+            q = random_q(qiao, rng)
+            target, ranges = target_at(tool(qiao, q), kind), hold(qiao, held, q)
+            for attempt in (0, 7):
+                out_q = np.full(9, np.nan)
+                draw_compiled(few, pack_targets([target]), ranges, attempt, out_q)
+                assert out_q.tobytes() == draw_within(ranges, few, target, attempt, stream=2).tobytes()
+
+
+@numba.njit(error_model="numpy")
+def draw_compiled(pool, target, ranges, attempt, out_q):
+    state = np.empty(1, dtype=np.uint64)
+    seed_stream(5, 2, attempt, state)
+    draw_seed(pool, target, 0, ranges, state, attempt, out_q)

@@ -69,9 +69,9 @@ def _format_tests(arrays: RobotArrays, collision: CollisionModel) -> list[str]:
     """What is left out, in words; then `make_buffers` and `find_collision` as straight-line code."""
     left, margin = find_left(arrays, collision), proof_margin(collision)
     tested = f"{left.every} tests of rows and spheres, {left.implied} of them implied by others,"
-    never = f"{left.proved} proved never to fail inside the joint limits, for a safe distance up to {margin:g} m"
+    never = f"{left.proved} proved never to fail inside the joints' ranges, for a safe distance up to {margin:g} m"
     counts = f"{count_sphere_pairs(collision.arrays)} pairs of spheres; {tested}\n{never}; {len(left.tests)} left."
-    return [counts, NO_TABLES, format_find(arrays, left.tests, *collision.robot.drawn)]
+    return [counts, NO_TABLES, format_find(arrays, left.tests, *collision.robot.written_ranges)]
 
 
 def _split(source: Path) -> tuple[str, str]:

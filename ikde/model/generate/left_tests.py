@@ -32,7 +32,7 @@ class Left(NamedTuple):
 
 
 def find_left(robot: RobotArrays, collision: CollisionModel) -> Left:
-    """Tests that may fail inside the joint limits, none of which implies another: written down, or else proved."""
+    """Tests that may fail within `Robot.written_ranges`, none of which implies another: written down, or else proved."""
     known = read_written().get(digest_proofs(robot, collision))
     if known is None:
         return prove_left(robot, collision)
@@ -43,9 +43,9 @@ def find_left(robot: RobotArrays, collision: CollisionModel) -> Left:
 def prove_left(robot: RobotArrays, collision: CollisionModel) -> Left:
     """The same without looking it up."""
     every = list_tests(collision.arrays)
-    margin, limits = proof_margin(collision), collision.robot.drawn  # one turn of a joint is as good as many
+    margin, ranges = proof_margin(collision), collision.robot.written_ranges
     needed = drop_implied(every)
-    tests = drop_proved(robot, needed, margin, *limits) if np.isfinite(margin) else needed
+    tests = drop_proved(robot, needed, margin, *ranges) if np.isfinite(margin) else needed
     return Left(len(every), len(every) - len(needed), len(needed) - len(tests), tests)
 
 
@@ -63,7 +63,7 @@ def read_written() -> dict[str, list[int]]:
 def digest_proofs(robot: RobotArrays, collision: CollisionModel) -> str:
     """SHA-256, hex, of all that the proofs depend on."""
     digest = hashlib.sha256(_own_source() + repr(proof_margin(collision)).encode())
-    for array in (*robot, *collision.arrays[1:], *collision.robot.drawn):
+    for array in (*robot, *collision.arrays[1:], *collision.robot.written_ranges):
         digest.update(repr(np.shape(array)).encode() + (np.round(array, DIGITS) + 0.0).tobytes())
     return digest.hexdigest()
 

@@ -6,7 +6,6 @@ matrices: their bits would depend on the machine.
 """
 
 from types import FunctionType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +21,10 @@ CHUNK = 4096  # rows at a time: their numbers stay in the processor's cache
 
 def draw(numbers: Ints, lower: Floats, upper: Floats) -> Floats:
     """Draws [K, N] of these numbers [K], uniform within [lower, upper] [N]."""
-    joints, mix = len(lower), _text_of(rng.mix)
+    joints = len(lower)
     with np.errstate(over="ignore"):  # words of 64 bits wrap around
         words = numbers.astype(np.uint64)[:, None] * np.uint64(joints) + np.arange(1, joints + 1, dtype=np.uint64)
-        words = mix(_START + words * rng.GOLDEN)
+        words = rng.mix.py_func(_START + words * rng.GOLDEN)
     return lower + (words >> rng.SHIFT_11).astype(np.float64) * rng.UNIT * (upper - lower)
 
 
@@ -51,7 +50,7 @@ def place_bodies(robot: RobotArrays, q: Floats) -> Floats:
 
 def place_tools(robot: RobotArrays, q: Floats) -> Floats:
     """Poses [12, K] of the tool in the world at `q` [K, N]: the transform [3, 4] row by row."""
-    T_world_tool, place = np.empty((3, 4, len(q))), _text_of(frames.compute_frame)
+    T_world_tool, place = np.empty((3, 4, len(q))), frames.compute_frame.py_func
     for first in range(0, len(q), CHUNK):
         rows = slice(first, first + CHUNK)
         place(robot, len(robot.frame_body) - 1, place_bodies(robot, q[rows]), T_world_tool[:, :, rows])
@@ -101,26 +100,22 @@ def _square(v: Floats) -> Floats:
     return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
 
 
-def _sin_cos(x: Floats) -> tuple[Floats, Floats]:
+def sin_cos(x: Floats) -> tuple[Floats, Floats]:
     """`trig.sin_cos` of an array: the same bits."""
-    s, c, quadrant = _text_of(fold_angle)(x)
+    s, c, quadrant = fold_angle.py_func(x)
     is_odd = (quadrant & 1) == 1
     s, c = np.where(is_odd, c, s), np.where(is_odd, s, c)
     return s * (1 - (quadrant & 2)), c * (1 - ((quadrant + 1) & 2))
 
 
-def _text_of(kernel: Any) -> Any:
-    """A kernel's text as Python runs it: of one that calls no other kernel."""
-    return getattr(kernel, "py_func", kernel)
-
-
 def _start_stream() -> np.uint64:
-    """The state that `rng.seed_stream` gives the stream of seed `STREAM`, target 0, attempt 0."""
-    mix = _text_of(rng.mix)
+    """The state of the stream that pools are drawn from."""
+    state = np.empty(1, dtype=np.uint64)
     with np.errstate(over="ignore"):
-        return mix(mix(mix(STREAM + rng.GOLDEN) ^ rng.MIX_1) ^ rng.MIX_2)
+        rng.seed_stream.plain(STREAM, 0, 0, state)
+    return state[0]
 
 
 _START = _start_stream()
-_bodies = _text_of(frames.compute_bodies)
-_compute_bodies = FunctionType(_bodies.__code__, {**_bodies.__globals__, "sin_cos": _sin_cos})
+_bodies = frames.compute_bodies.py_func
+_compute_bodies = FunctionType(_bodies.__code__, {**_bodies.__globals__, "sin_cos": sin_cos})

@@ -21,6 +21,13 @@ def find_cells(grid: Ints, scale: Floats, values: Floats) -> Ints:
     return cells
 
 
+def sort_cells(grid: Ints, cells: Ints) -> tuple[Ints, Ints]:
+    """An order [K] of the rows by their cells, and where each cell starts in it, [cells + 1]."""
+    starts = np.zeros(np.prod(grid[:, 1]) + 1, dtype=np.int64)
+    np.cumsum(np.bincount(cells, minlength=len(starts) - 1), out=starts[1:])
+    return np.argsort(cells.astype(np.uint16), kind="stable"), starts  # of 40,000: 0.2 ms, as int64 2
+
+
 def keep_few(cells: Ints, most: int) -> Ints:
     """Indices, in order, of the first `most` of each cell."""
     order = np.argsort(cells, kind="stable")

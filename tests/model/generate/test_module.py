@@ -16,14 +16,19 @@ import pytest
 
 import ikde
 from ikde.errors import CacheWarning
+from ikde.formats.entries import UnitsEntry
+from ikde.formats.robot_entries import with_ranges
 from ikde.kernels import cache_files, cache_folder
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble, module
+from ikde.model.robot import Detector
 from ikde.model.target import KINDS
-from tests.collision_robots import find_gaps
+from ikde.solver.problem import pack_searched
+from tests.collision_robots import find_gaps, make_row
 from tests.hostile_names import payload, rename
-from tests.random_robots import random_robot
+from tests.random_robots import make_frame, make_robot, random_robot
 from tests.tiny_robot import tiny_robot
+from tests.uncompiled import run_text
 
 ROOT = Path(__file__).parents[3]
 needs_compiler = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="needs compiled kernels")
@@ -58,6 +63,71 @@ def only(folder, suffix):
 
 
 # ---- the digest of what a text depends on
+
+
+def elbow():
+    """Two links and a ball at the foot, which the second link's end meets beyond 2.6 rad: never inside the limits."""
+    rows = [make_row("foot", "foot", "foot", 0.1), make_row("end", "tool", "tool", 0.1)]
+    frames = [
+        make_frame("upper", "world", (0, 0, 0.1), joint="j0", axis=(0, 0, 1)),
+        make_frame("foot", "upper", (0, 0, 0)),
+        make_frame("lower", "upper", (0.5, 0, 0), joint="j1", axis=(0, 0, 1)),
+        make_frame("tool", "lower", (0.5, 0, 0)),
+    ]
+    detector = Detector(name="own", spheres="balls", pairs="all")
+    return make_robot(
+        {"j0": "revolute", "j1": "revolute"},
+        frames,
+        lower=-1.5,
+        upper=1.5,
+        approximations={"balls": tuple(rows)},
+        pair_lists={"all": (("foot", "end"),)},
+        detectors={"own": detector},
+        default_detector="own",
+    )
+
+
+def ranged(robot, **ranges):
+    return with_ranges(robot, ranges, UnitsEntry())
+
+
+def collides(robot, q):
+    """What the module's own check says, run as plain Python."""
+    collision = CollisionModel.of(robot)
+    written = run_text(assemble.format_module(collision, "position"))
+    pair = written.find_collision(*written.use_models(*pack_searched(collision)), np.array(q), 0)
+    assert (find_gaps(robot, collision.detector, np.array([q])) <= 0.0).any() or pair < 0
+    return pair >= 0
+
+
+def test_ranges_inside_the_files_are_no_part_of_it(qiao):
+    narrow = [ranged(qiao, q1=[-1.0, 1.0]), ranged(qiao, d_x=[0.0, 0.0], q4=[0.1, 0.2])]
+    narrow.append(ranged(ranged(qiao, q2=[-0.5, 0.5]), q2=[-0.7, 0.7]))  # inside the file's, not inside the first
+    for kind in KINDS:
+        texts = {assemble.format_module(CollisionModel.of(robot), kind) for robot in (qiao, *narrow)}
+        digests = {module.digest_inputs(CollisionModel.of(robot), kind) for robot in (qiao, *narrow)}
+        assert len(texts) == len(digests) == 1
+
+
+def test_wider_ranges_have_a_module_of_their_own():
+    robot = elbow()
+    wide = ranged(robot, j1=[-3.0, 1.0])
+    digests = [module.digest_inputs(CollisionModel.of(each), "position") for each in (robot, wide)]
+    assert digests[0] != digests[1]
+    again = ranged(wide, j1=[-1.0, 1.0])
+    assert module.digest_inputs(CollisionModel.of(again), "position") == digests[0]
+
+
+def test_what_only_collides_beyond_the_files_limits_is_found_there():
+    """Proved apart within them, and not tested there at all."""
+    robot, beyond = elbow(), [0.3, -2.8]
+    assert "1 proved never to fail" in assemble.format_module(CollisionModel.of(robot), "position")
+    assert not collides(robot, beyond)
+    for wide in (ranged(robot, j1=[-3.0, 1.5]), ranged(robot, j1=[-3.0, -2.0]), ranged(robot, j1=[-3.0, 0], j0=[0, 1])):
+        assert collides(wide, beyond)
+        assert not collides(wide, [0.3, -1.5])
+    for narrow in (ranged(robot, j1=[-1.0, 1.5]), ranged(robot, j0=[-3.0, 3.0])):
+        assert not collides(narrow, beyond)
 
 
 def variants(robot):

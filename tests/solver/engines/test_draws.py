@@ -34,7 +34,7 @@ def test_draws_are_those_of_the_stream(qiao):
 def test_sines_of_arrays_are_those_of_the_kernels(rng):
     angles = [0.0, -0.0, *(k * np.pi / 4.0 for k in range(-9, 10)), *rng.uniform(-1e5, 1e5, 200)]
     expected = np.array([plain(sin_cos)(angle) for angle in angles]).T
-    assert np.array(draws._sin_cos(np.array(angles))).tobytes() == expected.tobytes()
+    assert np.array(draws.sin_cos(np.array(angles))).tobytes() == expected.tobytes()
 
 
 @pytest.mark.parametrize("robot", [*map(ikde.load_robot, ikde.robot_names()), *map(random_robot, range(6))])

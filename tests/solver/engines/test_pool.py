@@ -16,6 +16,7 @@ from ikde.model.pack import pack_targets
 from ikde.model.target import KINDS, Targets
 from ikde.solver.engines import pool as module
 from ikde.solver.engines import pool_files
+from ikde.solver.engines.frozen import ROWS
 from ikde.solver.engines.pool import (
     DRAWN,
     PER_CELL,
@@ -23,13 +24,16 @@ from ikde.solver.engines.pool import (
     draw_kept,
     find_base,
     load_kernels,
+    make_seeds,
     make_whole_pool,
     pack_pool,
     rotation_length_m,
 )
 from ikde.solver.problem import pack_searched
+from tests.collision_robots import find_gaps
 from tests.endless_robot import ENDLESS
 from tests.hostile_names import rename
+from tests.problems import problem_of
 from tests.random_robots import with_ranges
 from tests.robot_files import load_text
 from tests.solver.engines.questions import make_pool
@@ -64,11 +68,48 @@ def test_every_configuration_lies_in_the_cell_that_it_is_sorted_into(name, kind)
         assert seeds.cell_start[cell] <= row < seeds.cell_start[cell + 1]
 
 
-def test_frozen_joints_stay_and_the_base_then_helps_no_more(qiao):
-    seeds = make_pool(qiao, freeze={"d_x": 0.3, "q2": 0.1})
-    assert (seeds.q[:, 0] == 0.3).all()
-    assert (seeds.q[:, 4] == 0.1).all()
-    assert seeds.base.tolist() == [-1, -1, -1]
+def test_a_frozen_base_has_the_pool_of_a_free_one(qiao):
+    """Its joints are set for each target: there is nothing to be drawn for another value."""
+    assert make_pool(qiao, freeze={"d_x": 0.3}) is make_pool(qiao)
+    assert make_pool(qiao, freeze={"d_x": 0.3, "d_y": -1.0, "q_z": 0.0}) is make_pool(qiao)
+
+
+def test_a_frozen_arm_has_rows_of_the_whole_pool(qiao):
+    seeds = make_pool(qiao, freeze={"d_x": 0.3, "q2": 0.1, "q4": -0.2})
+    assert (len(seeds.q), seeds.base.tolist()) == (ROWS, [0, 1, 2])
+    assert (seeds.q[:, [4, 6]] == [0.1, -0.2]).all()
+    assert (seeds.q[:, :3] == 0.0).all()
+    arms = {row.tobytes() for row in make_pool(qiao).q[:, [3, 5, 7, 8]]}
+    assert all(row.tobytes() in arms for row in seeds.q[:, [3, 5, 7, 8]])
+
+
+@pytest.mark.parametrize("name", ["qiao2021", "ur5", "panda"])
+def test_few_of_a_frozen_arms_rows_collide(name):
+    """They were free at nearly the same value."""
+    robot = ikde.load_robot(name)
+    detector = CollisionModel.of(robot).detector
+    arm = range(3, len(robot.joints)) if name == "qiao2021" else range(len(robot.joints))
+    for k in arm:
+        seeds = make_pool(robot, freeze={robot.joint_names[k]: robot.home[k] + 0.1})
+        collides = (find_gaps(robot, detector, seeds.q) <= detector.safe_distance_m).any(axis=1)
+        assert collides.mean() < 0.15
+
+
+def test_a_joint_that_never_moves_is_not_frozen(qiao):
+    robot = with_ranges(qiao, {"q2": (0.5, 0.5)})
+    assert make_pool(robot) is make_pool(robot, freeze={"q2": 0.5})
+
+
+def test_other_ranges_have_a_pool_of_their_own(qiao):
+    problem = problem_of(qiao)
+    lower, upper = problem.lower, problem.upper
+    lower[4], upper[5] = -0.5, 0.25
+    for wide in (lower, lower - [0, 0, 0, 0, 0, 0, 0, 0, 2.0]):
+        seeds = make_seeds(problem.with_ranges(wide, upper), "pose")
+        assert ((wide <= seeds.q) & (seeds.q <= upper)).all()
+        assert seeds.q[:, 4].min() < -0.4
+        assert seeds.q[:, 5].max() > 0.15
+        assert (seeds.q[:, 8].min() < qiao.lower[8]) == (wide[8] < qiao.lower[8])
 
 
 def test_a_joint_without_limits_is_drawn_once_around_home():
@@ -184,9 +225,9 @@ def test_kernels_of_tables_start_from_the_same_pool(monkeypatch):
 
 def bits_of(robot):
     """Of a pool that this process has not seen yet."""
-    module._find_pool.cache_clear()
+    module.find_whole.cache_clear()
     seeds = make_pool(robot, "position")
-    module._find_pool.cache_clear()
+    module.find_whole.cache_clear()
     return b"".join(np.asarray(field).tobytes() for field in seeds)
 
 
