@@ -137,13 +137,13 @@ def measure(pythons: dict[str, str], goal: str, spec: dict[str, Any], rounds: in
     cells = []
     for name, label in keys:
         middle = sorted(runs[name, label], key=lambda cell: cell["inside_s"])[rounds // 2]
-        middle["run"] = f"{goal}, {label}, {name}"
+        middle["run"] = f"{goal}, {label}" + (f", {name}" if len(pythons) > 1 else "")
         if name == "now":
             middle["search_us_a_row"] = 1e6 * time_bare_search(spec, THREADS[label])
-        for other, reference in (("one_thread", (name, "1 thread")), ("before", ("before", label))):
+        for key, reference in (("gains", (name, "1 thread")), ("gains_before", ("before", label))):
             if reference in runs and reference != (name, label):
-                gains = [a["inside_s"] / b["inside_s"] for a, b in zip(runs[reference], runs[name, label], strict=True)]
-                middle |= {f"times_{other}": float(np.median(gains)), f"gains_{other}": gains}
+                pairs = zip(runs[reference], runs[name, label], strict=True)
+                middle[key] = [other["inside_s"] / mine["inside_s"] for other, mine in pairs]
         cells.append(middle)
     return cells
 
@@ -154,7 +154,7 @@ def print_table(cells: list[dict[str, Any]]) -> None:
     names = ("us_a_row", "search_us_a_row", "processor_us_a_row", "wall_s", "peak_memory_mb", "folder_mb")
     table = Table("run", "targets", *heads, "x 1 thread", "x before", "reached")
     for cell in cells:
-        gains = (f"{cell[name]:.2f}" if name in cell else "" for name in ("times_one_thread", "times_before"))
+        gains = (f"{np.median(cell[name]):.2f}" if name in cell else "" for name in ("gains", "gains_before"))
         numbers = (f"{cell[name]:,.2f}" if name in cell else "" for name in names)
         table.add_row(cell["run"], f"{cell['targets']:,}", *numbers, *gains, f"{cell['reached']:,}")
     Console(width=150).print(table)
