@@ -86,6 +86,5 @@ class ReachableSource:
             judge = f"for {self.collision.name!r} " if self.collision.pairs else ""
             raise InputError(f"no configuration {judge}is free of self-collision in {MAX_DRAWS:,} draws")
         out_T = np.empty((len(q), 3, 4))
-        out_T = np.empty((len(q), 3, 4))
         place_tools(packed, q, out_T)
         return out_T
