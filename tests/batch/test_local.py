@@ -192,6 +192,10 @@ def test_a_span_has_no_hole_and_one_arm():
     for arm in "ab":
         spans.took(next(part for part in parts if part.arm == arm), 1e-9)
     assert [spans.take() for _ in range(4)] == [FIFTY[:2], FIFTY[3:5], FIFTY[23:25], FIFTY[25:27]]
+    assert (FIFTY[0].last, FIFTY[26].first) == (20, 20)
+    apart = Spans([FIFTY[0], FIFTY[26]] * 20, 1)
+    apart.took(FIFTY[0], 1e-9)
+    assert apart.take() == [FIFTY[0]]  # what goes on is another arm's
 
 
 @pytest.mark.parametrize(("chunk", "most"), [(1, SPAN_PARTS), (SPAN_SOLVES // 3, 3), (SPAN_SOLVES + 1, 1)])
