@@ -175,10 +175,10 @@ def main() -> None:
     try:
         table = write_table(asked.targets, asked.file, folder) if asked.file else None
         for goal in GOALS:
-            small = make_spec(goal, 2000, None)
-            for python in pythons.values():  # kernels are compiled and cached
-                run(python, small, goal, 1)
-            cells += measure(pythons, goal, make_spec(goal, asked.targets, table), asked.rounds)
+            spec = make_spec(goal, asked.targets, table)
+            for python in pythons.values():  # kernels are compiled and cached, those of the last few targets, too
+                run(python, spec, goal, 1)
+            cells += measure(pythons, goal, spec, asked.rounds)
     finally:
         shutil.rmtree(folder)
     print_table(cells)
