@@ -19,6 +19,7 @@ from ikde.solver.verify import MaskedBools
 
 Columns = dict[str, Any]
 WORDS = [str(reason) for reason in STOP_REASONS]
+OWN_WORDS = ("target_name", "reason", "hint")  # columns of words that other rows do not have
 
 
 def make_solutions(
@@ -43,6 +44,15 @@ def make_solutions(
     for grader in graders:
         columns |= _graded(rows, grader)
     return pa.table(columns)
+
+
+def keep_own_words(solutions: pa.Table) -> pa.Table:
+    """Solutions whose words hang on their rows alone, and stand in the order in which they come."""
+    for name in OWN_WORDS:
+        if name in solutions.column_names:
+            words = solutions[name].cast(pa.string()).combine_chunks().dictionary_encode()
+            solutions = solutions.set_column(solutions.column_names.index(name), name, words)
+    return solutions
 
 
 def make_timing(arm: str, rows: SolveResults, *, numbers: Ints, repeats: int) -> pa.Table:
@@ -126,12 +136,14 @@ def _words_and_codes(words: Sequence[str | None]) -> tuple[list[str], list[int]]
 
 def _target(rows: SolveResults) -> Columns:
     """What was asked for. Of an axis target only the quaternion's z axis counts; a position target has none."""
-    targets = rows.targets
-    quats = quat_wxyz_from_rotation(targets.R_world_tool)
+    targets, quats = rows.targets, np.zeros((len(rows), 4))
+    turned = targets.kind != POSITION
+    if turned.any():
+        quats[turned] = quat_wxyz_from_rotation(targets.R_world_tool[turned])
     return (
         {"target_kind": _coded(targets.kind, KINDS)}
         | {f"target_{axis}_m": pa.array(targets.p_world_tool[:, k]) for k, axis in enumerate("xyz")}
-        | {f"target_q{axis}": pa.array(quats[:, k], mask=targets.kind == POSITION) for k, axis in enumerate("wxyz")}
+        | {f"target_q{axis}": pa.array(quats[:, k], mask=~turned) for k, axis in enumerate("wxyz")}
     )
 
 

@@ -10,10 +10,12 @@ import numpy as np
 from ikde.batch.sources import Orientation, PointSource
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.kernels.sampling import MAX_DRAWS, sample_ball, sample_box, sample_poses
+from ikde.kernels.draws import MAX_DRAWS
+from ikde.kernels.sampling import place_tools, sample_ball, sample_box
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.target import POSE, Targets
+from ikde.solver.engines.pool import load_kernels
 
 
 def make_grid(start: Floats, to: Floats, counts: tuple[int, int, int], orientation: Orientation) -> PointSource:
@@ -74,11 +76,15 @@ class ReachableSource:
 
     def sample(self, first: int, last: int) -> Floats:
         """Poses T_world_tool [last - first, 3, 4]."""
-        out_T = np.empty((last - first, 3, 4))
-        robot, detector = pack_robot(self.collision.robot), self.collision.arrays
+        robot, q = self.collision.robot, np.empty((last - first, len(self.lower)))
+        inside = bool((self.lower >= robot.lower).all() and (self.upper <= robot.upper).all())
+        module, packed = load_kernels(self.collision, self.goal, inside=inside), pack_robot(robot)
+        models = module.use_models(packed, self.collision.arrays)
         with np.errstate(over="ignore"):
-            found = sample_poses(robot, detector, self.lower, self.upper, np.uint64(self.seed), np.int64(first), out_T)
-        if found < len(out_T):
+            found = module.draw_free(*models, self.lower, self.upper, np.uint64(self.seed), np.int64(first), q)
+        if found < len(q):
             judge = f"for {self.collision.name!r} " if self.collision.pairs else ""
             raise InputError(f"no configuration {judge}is free of self-collision in {MAX_DRAWS:,} draws")
+        out_T = np.empty((len(q), 3, 4))
+        place_tools(packed, q, out_T)
         return out_T

@@ -63,9 +63,12 @@ def seal_part(part: Part, solutions: pa.Table, timing: pa.Table, *, recipe: str)
     return SealedPart(part, answers, serialize(timing))
 
 
-def write_part(folder: Path, sealed: SealedPart) -> None:
-    """Write both files of a part; the solutions come last, so that where they are, all is there."""
-    files = {sealed.part.path(folder, TIMING): sealed.timing, sealed.part.path(folder, SOLUTIONS): sealed.solutions}
+def write_parts(folder: Path, parts: Sequence[SealedPart]) -> None:
+    """Write both files of parts, in order; the solutions come last, so that where they are, all is there."""
+    files: dict[Path, pa.Buffer] = {}
+    for sealed in parts:
+        files[sealed.part.path(folder, TIMING)] = sealed.timing
+        files[sealed.part.path(folder, SOLUTIONS)] = sealed.solutions
     try:
         write_together(files)
     except OSError as error:
@@ -85,28 +88,41 @@ def serialize(table: pa.Table) -> pa.Buffer:
         row_group_size=2**20,
         write_page_checksum=True,
         use_dictionary=words,  # type: ignore[arg-type]
+        write_statistics=False,  # a third of the time, and nobody skips a part by its digits
     )
     return sink.getvalue()
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
     """A file of a part, or those of `columns` that it has; raises `FileError` if it is damaged, or a link."""
-    source = pa.BufferReader(read_bytes(path, follow=False))
+    return _parse(path, read_bytes(path, follow=False), columns)
+
+
+def _parse(path: Path, data: bytes, columns: Sequence[str] | None) -> pa.Table:
+    source = pa.BufferReader(data)
     with errors_of(path), pq.ParquetFile(source, page_checksum_verification=True) as file:
         wanted = [name for name in file.schema_arrow.names if columns is None or name in columns]
         check_room(path, claimed_bytes(file.metadata, len(wanted)))
         return file.read(wanted)
 
 
-def is_finished(folder: Path, part: Part, recipe: str) -> bool:
-    """True if both files are there, of this recipe, undamaged, and hold the rows they should."""
+def read_finished(
+    folder: Path, part: Part, recipe: str, columns: Sequence[str] | None = None
+) -> tuple[pa.Table, pa.Table] | None:
+    """Solutions, or those of `columns` that there are, and timing of a part, read once.
+
+    None unless both files are there, of this recipe, undamaged, and hold the rows they should.
+    """
+    path = part.path(folder, SOLUTIONS)
     try:
-        answers = read_bytes(part.path(folder, SOLUTIONS), follow=False)
+        answers = read_bytes(path, follow=False)
         timing = read_table(part.path(folder, TIMING))
+        marks = {RECIPE: recipe.encode(), SEAL: _seal(answers, timing).encode()}
+        if len(timing) != part.rows or timing.schema.metadata != marks:
+            return None
+        return _parse(path, answers, columns), timing
     except FileError:
-        return False
-    marks = {RECIPE: recipe.encode(), SEAL: _seal(answers, timing).encode()}
-    return len(timing) == part.rows and timing.schema.metadata == marks
+        return None
 
 
 def _seal(answers: pa.Buffer | bytes, timing: pa.Table) -> str:

@@ -7,16 +7,18 @@ from os import PathLike
 from pathlib import Path
 
 from ikde.batch.cluster import SolveTasks, open_cluster
+from ikde.batch.finish import FinishedPart, finish_parts
 from ikde.batch.folder import claim_folder, keep_names
 from ikde.batch.local import solve_parts
 from ikde.batch.options import check_options
-from ikde.batch.parts import Part, SealedPart, is_finished, list_parts, seal_part, write_part
+from ikde.batch.parts import Part, list_parts, write_parts
 from ikde.batch.plan import Batch
-from ikde.batch.summary import RunSummary, summarise
+from ikde.batch.summary import RunSummary, RunTally
 from ikde.batch.task import make_task
 from ikde.errors import InputError
 
-Solve = Callable[[Batch, Sequence[Part]], Generator[SealedPart]]
+Solve = Callable[[Batch, Sequence[Part]], Generator[list[FinishedPart]]]
+"""Parts as they are finished, those together that are written together."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,16 +74,19 @@ def run_batch(
     folder = Path(out)
     with _open(threads, dask, workers) as solve, claim_folder(folder, batch, overwrite=overwrite):
         parts = list(list_parts([arm.name for arm in batch.arms], batch.solves, batch.chunk))
-        missing = [part for part in parts if not is_finished(folder, part, batch.hash)]
+        tally = RunTally(folder)
+        missing = [part for part in parts if not tally.find(part)]
         now, tell = _start(parts, missing), progress or (lambda now: None)
         tell(now)
         with keep_names(folder) as keep, closing(solve(batch, missing)) as answers:
-            for answer in answers:
-                write_part(folder, answer)
+            for finished in answers:
+                write_parts(folder, [one.sealed for one in finished])
                 keep()
-                now = now.after(answer.part)
-                tell(now)
-    return summarise(folder)
+                for one in finished:
+                    tally.add(one.tally)
+                    now = now.after(one.part)
+                    tell(now)
+    return tally.summary()
 
 
 def _start(parts: list[Part], missing: list[Part]) -> Progress:
@@ -100,7 +105,8 @@ def _open(threads: int | None, dask: str | None, workers: int | None) -> Iterato
             yield lambda batch, parts: _solve_remotely(solve, batch, parts)
 
 
-def _solve_remotely(solve: SolveTasks, batch: Batch, parts: Sequence[Part]) -> Generator[SealedPart]:
+def _solve_remotely(solve: SolveTasks, batch: Batch, parts: Sequence[Part]) -> Generator[list[FinishedPart]]:
+    recipe = batch.hash
     with closing(solve(make_task(batch, part) for part in parts)) as answers:
         for answer in answers:
-            yield seal_part(answer.part, answer.solutions, answer.timing, recipe=batch.hash)
+            yield finish_parts(batch, answer, [answer.part], recipe)

@@ -5,10 +5,12 @@ from os import PathLike
 from pathlib import Path
 
 from ikde.batch.arm_summary import ArmSummary, ArmTally
-from ikde.batch.check_part import verdict_columns
+from ikde.batch.check_part import check_part, verdict_columns
 from ikde.batch.manifest import Manifest, read_manifest
-from ikde.batch.parts import SOLUTIONS, TIMING
+from ikde.batch.parts import SOLUTIONS, TIMING, Part, read_finished
 from ikde.batch.read import list_finished, read_part
+from ikde.batch.tally import Counting, PartTally
+from ikde.errors import FileError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,27 +38,65 @@ class RunSummary:
         return sum(arm.reached.total - arm.reached.count for arm in self.arms)
 
 
+class RunTally:
+    """The counts of a run, so far: a part is read at most once, and one that is solved now not at all."""
+
+    def __init__(self, folder: Path) -> None:
+        """For the run in a folder; raises `FileError` for what is none."""
+        self._folder, self._manifest = folder, read_manifest(folder)
+        self._counting = Counting.of(self._manifest.graders, self._manifest.repeats, self._manifest.targets)
+        self._parts: dict[Part, PartTally] = {}
+
+    def add(self, tally: PartTally) -> None:
+        """Count one part in; they may come in any order."""
+        self._parts[tally.part] = tally
+
+    def find(self, part: Part) -> bool:
+        """Count a part in that was finished before; False if it was not, or is damaged or none of this run."""
+        found = read_finished(self._folder, part, self._manifest.hash, _columns(self._manifest))
+        if found is None:
+            return False
+        solutions, timing = found
+        try:
+            for kind, table, columns in ((SOLUTIONS, solutions, _columns(self._manifest)), (TIMING, timing, None)):
+                check_part(part.path(self._folder, kind), self._manifest, part, kind, table, columns)
+        except FileError:
+            return False
+        self.add(self._counting.count(part, solutions, timing["solve_seconds"].to_numpy()))
+        return True
+
+    def read(self) -> None:
+        """Count all parts in that are there; raises `FileError` for one that is damaged, or none of this run."""
+        for part in list_finished(self._folder, self._manifest):
+            solutions = read_part(self._folder, self._manifest, part, SOLUTIONS, _columns(self._manifest))
+            timing = read_part(self._folder, self._manifest, part, TIMING, ["solve_seconds"])
+            self.add(self._counting.count(part, solutions, timing["solve_seconds"].to_numpy()))
+
+    def summary(self) -> RunSummary:
+        """The counts as figures."""
+        manifest = self._manifest
+        tallies = {arm.name: ArmTally(arm, manifest.graders) for arm in manifest.arms}
+        for part in manifest.list_parts():
+            if part in self._parts:
+                tallies[part.arm].add(self._parts[part])
+        return RunSummary(
+            folder=self._folder,
+            name=manifest.name,
+            robot=manifest.robot,
+            seed=manifest.seed,
+            hash=manifest.hash,
+            repeats=manifest.repeats,
+            parts_done=len(self._parts),
+            parts=manifest.parts,
+            arms=tuple(tally.summary() for tally in tallies.values()),
+        )
+
+
 def summarise(folder: str | PathLike[str]) -> RunSummary:
     """Summarise a run, finished or not, a part in memory at a time; raises `FileError` for what is none, or damaged."""
-    folder = Path(folder)
-    manifest = read_manifest(folder)
-    tallies = {arm.name: ArmTally(arm, manifest) for arm in manifest.arms}
-    done = list(list_finished(folder, manifest))
-    for part in done:
-        solutions = read_part(folder, manifest, part, SOLUTIONS, _columns(manifest))
-        timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
-        tallies[part.arm].add(solutions, timing["solve_seconds"].to_numpy())
-    return RunSummary(
-        folder=folder,
-        name=manifest.name,
-        robot=manifest.robot,
-        seed=manifest.seed,
-        hash=manifest.hash,
-        repeats=manifest.repeats,
-        parts_done=len(done),
-        parts=manifest.parts,
-        arms=tuple(tally.summary() for tally in tallies.values()),
-    )
+    tally = RunTally(Path(folder))
+    tally.read()
+    return tally.summary()
 
 
 def _columns(manifest: Manifest) -> list[str]:

@@ -1,11 +1,12 @@
 """The work of one part: it holds all it needs, so that it can be sent to another process or machine."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
 
-from ikde.batch.columns import make_solutions, make_timing
+from ikde.batch.columns import keep_own_words, make_solutions, make_timing
 from ikde.batch.parts import Part
 from ikde.batch.plan import Arm, Batch
 from ikde.model.robot import Detector
@@ -78,3 +79,14 @@ def solve_task(task: Task, threads: int | None = None) -> Answer:
     )
     timing = make_timing(task.arm.name, rows, numbers=numbers, repeats=task.repeats)
     return Answer(part=task.part, solutions=solutions, timing=timing)
+
+
+def cut_answer(answer: Answer, parts: Sequence[Part]) -> list[Answer]:
+    """The answers of the parts that were solved as one: the same tables as if each had been solved by itself."""
+
+    def cut(part: Part) -> Answer:
+        first = part.first - answer.part.first
+        solutions = keep_own_words(answer.solutions.slice(first, part.rows))
+        return Answer(part=part, solutions=solutions, timing=answer.timing.slice(first, part.rows))
+
+    return [cut(part) for part in parts]

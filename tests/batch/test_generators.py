@@ -8,20 +8,22 @@ from hypothesis import strategies as st
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
+from ikde.model.generate.module import load_module
 from ikde.solver.search import search
 from tests.batch.small import target_bits
 from tests.problems import problem_of
 from tests.random_robots import random_robot
+from tests.substitutes import never
 
 few = settings(max_examples=10)
 START, TO = np.array([-1.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.5])
 
 
-def reachable(robot, goal="pose", count=30, seed=3, detector=None):
+def reachable(robot, goal="pose", count=30, seed=3, detector=None, widen=0.0):
     return ReachableSource(
         collision=CollisionModel.of(robot, detector),
-        lower=robot.lower,
-        upper=robot.upper,
+        lower=robot.lower - widen,
+        upper=robot.upper + widen,
         goal=goal,
         count=count,
         seed=seed,
@@ -80,6 +82,17 @@ def test_reachable_targets_are_reached(qiao):
 def test_any_cut_gives_the_same_targets(qiao, cut, seed):
     for source in (reachable(qiao, seed=seed), make_box(START, TO, 30, seed, {}), make_grid(START, TO, (2, 3, 5), {})):
         assert target_bits(source.read(0, cut)) + target_bits(source.read(cut, 99)) == target_bits(source.read(0, 30))
+
+
+def test_kernels_of_the_robot_draw_only_inside_its_limits(qiao, monkeypatch, substitute):
+    """They leave out pairs that never touch there."""
+    expected = target_bits(reachable(qiao, widen=0.5).read(0, 9))  # by tables
+    monkeypatch.delenv("IKDE_KERNELS")
+    substitute(load_module, never)
+    assert target_bits(reachable(qiao, widen=0.5).read(0, 9)) == expected
+    for widen in (0.0, -0.1):
+        with pytest.raises(pytest.fail.Exception):
+            reachable(qiao, widen=widen).read(0, 9)
 
 
 def test_seeds_give_different_targets(qiao):

@@ -12,14 +12,14 @@ from tests.batch.small import read_files
 
 SPEC = """
 robot: qiao2021
-targets: {box: {from: [-1, -1, 0.3], to: [1, 1, 1.2], count: 600}}
+targets: {box: {from: [-1, -1, 0.3], to: [1, 1, 1.2], count: 1200}}
 seed: 3
 chunk: 5
 explain: false
 solve: {method: de, settings: {restarts: 1, de: {population: 6, generations: 1}}}
 grade: [typical]
 """
-PARTS = 120
+PARTS = 240
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,7 @@ def kill_at(process, folder, parts, delay):
 @pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
 def test_a_killed_run_goes_on_to_the_same_bytes(spec, whole, tmp_path, kills):
     dice = random.Random(kills)
-    moments = sorted(dice.sample(range(PARTS // 2), kills))  # half a second before the end, however late we look
+    moments = sorted(dice.sample(range(PARTS // 4), kills))  # long before the end, however late we look
     for parts in moments:
         process = start(spec, tmp_path)
         kill_at(process, tmp_path, parts, dice.uniform(0.0, 0.01))

@@ -9,12 +9,12 @@ from ikde.batch.parts import (
     SOLUTIONS,
     TIMING,
     Part,
-    is_finished,
     list_parts,
+    read_finished,
     read_table,
     seal_part,
     serialize,
-    write_part,
+    write_parts,
 )
 from ikde.errors import FileError
 
@@ -39,10 +39,10 @@ def test_parts_cover_every_solve_of_every_arm_once(solves, chunk):
 
 
 def test_a_part_has_a_file_of_each_kind(folder):
-    write_part(folder, seal_part(PART, TABLE, TABLE.select(["x"]), recipe="ab"))
+    write_parts(folder, [seal_part(PART, TABLE, TABLE.select(["x"]), recipe="ab")])
     assert PART.path(folder, SOLUTIONS) == folder / "solutions" / "a-00003.parquet"
     assert PART.path(folder, TIMING).exists()
-    assert is_finished(folder, PART, "ab")
+    assert read_finished(folder, PART, "ab")
 
 
 def test_a_table_has_one_form():
@@ -52,7 +52,7 @@ def test_a_table_has_one_form():
 @pytest.mark.parametrize("kind", [SOLUTIONS, TIMING])
 @pytest.mark.parametrize("damage", ["gone", "empty", "cut", "no parquet", "too few rows"])
 def test_a_damaged_part_is_not_finished(folder, kind, damage):
-    write_part(folder, seal_part(PART, TABLE, TABLE, recipe="ab"))
+    write_parts(folder, [seal_part(PART, TABLE, TABLE, recipe="ab")])
     path = PART.path(folder, kind)
     data = path.read_bytes()
     if damage == "gone":
@@ -60,17 +60,17 @@ def test_a_damaged_part_is_not_finished(folder, kind, damage):
     else:
         short = serialize(TABLE.slice(0, 1)).to_pybytes()
         path.write_bytes({"empty": b"", "cut": data[:-9], "no parquet": b"x" * 99, "too few rows": short}[damage])
-    assert not is_finished(folder, PART, "ab")
+    assert not read_finished(folder, PART, "ab")
 
 
 @pytest.mark.parametrize("kind", [SOLUTIONS, TIMING])
 def test_no_byte_can_change_unseen(folder, kind):
-    write_part(folder, seal_part(PART, TABLE, TABLE, recipe="ab"))
+    write_parts(folder, [seal_part(PART, TABLE, TABLE, recipe="ab")])
     path = PART.path(folder, kind)
     data, table = path.read_bytes(), read_table(path)
     for place in range(len(data)):
         path.write_bytes(data[:place] + bytes([data[place] ^ 4]) + data[place + 1 :])
-        if is_finished(folder, PART, "ab"):
+        if read_finished(folder, PART, "ab"):
             assert kind == TIMING  # its statistics are nobody's answers
             assert read_table(path).equals(table)
 
@@ -79,13 +79,13 @@ def test_a_part_of_another_run_is_not_finished(folder, tmp_path_factory):
     other = tmp_path_factory.mktemp("other")
     for kind in (SOLUTIONS, TIMING):
         (other / kind).mkdir()
-    write_part(folder, seal_part(PART, TABLE, TABLE, recipe="ab"))
-    write_part(other, seal_part(PART, TABLE, TABLE, recipe="cd"))
-    assert not is_finished(other, PART, "ab")
+    write_parts(folder, [seal_part(PART, TABLE, TABLE, recipe="ab")])
+    write_parts(other, [seal_part(PART, TABLE, TABLE, recipe="cd")])
+    assert not read_finished(other, PART, "ab")
     PART.path(folder, SOLUTIONS).write_bytes(PART.path(other, SOLUTIONS).read_bytes())
-    assert not is_finished(folder, PART, "ab")
+    assert not read_finished(folder, PART, "ab")
 
 
 def test_a_part_that_cannot_be_written_says_how_to_go_on(tmp_path):
     with pytest.raises(FileError, match=r"a-00003.parquet: cannot be written: No such file.*run the same command"):
-        write_part(tmp_path, seal_part(PART, TABLE, TABLE, recipe="ab"))
+        write_parts(tmp_path, [seal_part(PART, TABLE, TABLE, recipe="ab")])

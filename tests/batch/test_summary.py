@@ -1,14 +1,19 @@
 """What came of a run, compared with the table of its answers."""
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 import ikde
+from ikde.batch.manifest import read_manifest
+from ikde.batch.parts import SOLUTIONS, TIMING, Part, read_table, seal_part, write_parts
 from ikde.batch.sources import ListSource
 from ikde.batch.statistics import Rate
-from ikde.batch.summary import summarise
+from ikde.batch.summary import RunTally, summarise
 from ikde.errors import FileError
+from ikde.formats.reading import read_bytes
 from tests.batch.small import BLINK, FAR, ROBOT, make_arm, make_batch
+from tests.substitutes import never
 
 LOOSE = {"position_tolerance_m": 0.02, "restarts": 3, "generations": 60, "population": 20}
 ARMS = (make_arm("free", detector="none", **LOOSE), make_arm("careful", method="de", **LOOSE))
@@ -101,6 +106,82 @@ def test_an_unfinished_run_is_summarised_as_far_as_it_goes(tmp_path):
     assert (summary.parts_done, summary.parts, summary.finished) == (5, 10, False)
     assert [arm.reached.total for arm in summary.arms] == [24, 0]
     assert summary.arms[1].attempts is summary.arms[1].milliseconds is None
+
+
+def interrupt(parts):
+    def tell(now):
+        if now.parts_done >= parts:
+            raise KeyboardInterrupt
+
+    return tell
+
+
+@pytest.fixture(scope="module")
+def batch():
+    source = ListSource(targets=[ikde.Target(point) for point in POINTS], names=tuple("abcd"))
+    return make_batch(arms=ARMS, source=source, repeats=8, chunk=6, graders=(ROBOT.detectors["typical"],))
+
+
+def test_what_is_solved_now_is_not_read(batch, tmp_path, substitute):
+    substitute(read_table, never)
+    summary = ikde.run_batch(batch, tmp_path)
+    assert summary.finished
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_resumed_run_reads_once_what_was_there_and_counts_all(batch, tmp_path, substitute, threads):
+    with pytest.raises(KeyboardInterrupt):
+        ikde.run_batch(batch, tmp_path, threads=threads, progress=interrupt(5))
+    there = sorted((tmp_path / "solutions").iterdir())
+    hole = there.pop(2)  # what is there need not come first
+    hole.unlink()
+    assert len(there) >= 4
+    seen, honest = [], read_bytes
+
+    def watch(path, *arguments, **options):
+        seen.append(path)
+        return honest(path, *arguments, **options)
+
+    substitute(read_bytes, watch)
+    summary = ikde.run_batch(batch, tmp_path, threads=threads)
+    assert sorted(path for path in seen if path in there) == there
+    assert summary.finished
+    assert summary == summarise(tmp_path)
+
+
+def test_parts_may_be_counted_in_any_order(run):
+    folder, summary, _ = run
+    tally = RunTally(folder)
+    parts = list(read_manifest(folder).list_parts())
+    assert all(tally.find(part) for part in reversed(parts))
+    assert tally.summary() == summary
+
+
+def test_a_part_that_holds_something_else_is_done_again(batch, tmp_path):
+    """With the right seal: whoever can write files can seal them."""
+    first = ikde.run_batch(batch, tmp_path)
+    part = Part("careful", 2, 12, 18)
+    true, timing = (read_table(part.path(tmp_path, kind)) for kind in (SOLUTIONS, TIMING))
+    for column, other in (("target", pa.array([0] * 6)), ("reached", pa.array(["yes"] * 6))):
+        forged = true.set_column(true.column_names.index(column), column, other)
+        write_parts(tmp_path, [seal_part(part, forged, timing, recipe=batch.hash)])
+        with pytest.raises(FileError, match="is no part of this run"):
+            summarise(tmp_path)
+        told = []
+        assert ikde.run_batch(batch, tmp_path, progress=told.append).arms[0] == first.arms[0]
+        assert told[0].parts_found == 11
+        assert read_table(part.path(tmp_path, SOLUTIONS)).equals(true)
+
+
+def test_timing_that_holds_something_else_is_done_again(batch, tmp_path):
+    ikde.run_batch(batch, tmp_path)
+    part = Part("free", 0, 0, 6)
+    true, timing = (read_table(part.path(tmp_path, kind)) for kind in (SOLUTIONS, TIMING))
+    forged = timing.set_column(timing.column_names.index("solve_seconds"), "solve_seconds", pa.array([1e300] * 6))
+    write_parts(tmp_path, [seal_part(part, true, forged, recipe=batch.hash)])
+    told = []
+    assert ikde.run_batch(batch, tmp_path, progress=told.append).arms[0].milliseconds.max < 1e6
+    assert told[0].parts_found == 11
 
 
 def test_a_folder_that_is_no_run_is_refused(tmp_path):

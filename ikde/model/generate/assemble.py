@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from ikde.kernels import analytic, lm
+from ikde.kernels import analytic, draws, lm
 from ikde.kernels.arrays import RobotArrays
 from ikde.kernels.tables import LANES
 from ikde.model.closed_form import find_ur_arm
@@ -56,7 +56,7 @@ def format_module(collision: CollisionModel, kind: str) -> str:
         if in_tables
         else _format_tests(arrays, collision)
     )
-    sources = [lm, analytic] if kind == "pose" and find_ur_arm(robot) else [lm]
+    sources = [lm, draws, *([analytic] if kind == "pose" and find_ur_arm(robot) else [])]
     imports, engines = zip(*(_split(Path(str(source.__file__))) for source in sources), strict=True)
     functions = [*checks[:1], format_step(arrays, kind), format_steps(arrays, kind), *checks[1:]]
     lines = {line for block in imports for line in block.splitlines() if line.startswith("from ikde")}

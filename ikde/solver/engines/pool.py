@@ -49,9 +49,12 @@ MIN_LENGTH_M = 1e-3
 DIGITS = 12  # decimals of a robot's numbers that a pool depends on: products of matrices differ from machine to machine
 
 
-def load_kernels(collision: CollisionModel, kind: str) -> Any:
-    """The module of kernels written for a robot, or with `$IKDE_KERNELS` set to `tables` the data-driven ones."""
-    return _load_tables() if runs_on_tables() else load_module(collision, kind)
+def load_kernels(collision: CollisionModel, kind: str, *, inside: bool = True) -> Any:
+    """The module of kernels written for a robot: what it proves holds inside the joint limits.
+
+    Beyond them, or with `$IKDE_KERNELS` set to `tables`, the data-driven ones.
+    """
+    return load_module(collision, kind) if inside and not runs_on_tables() else _load_tables()
 
 
 def runs_on_tables() -> bool:
@@ -62,9 +65,9 @@ def runs_on_tables() -> bool:
 @lru_cache
 def _load_tables() -> SimpleNamespace:
     """The data-driven instance of both engines."""
-    from ikde.kernels import analytic, lm, tables
+    from ikde.kernels import analytic, draws, lm, tables
 
-    return SimpleNamespace(**{**vars(tables), **vars(lm), **vars(analytic)})
+    return SimpleNamespace(**{**vars(tables), **vars(lm), **vars(draws), **vars(analytic)})
 
 
 def make_seeds(problem: Problem, kind: str) -> SeedArrays:

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import ikde
-from ikde.kernels import analytic, lm
+from ikde.kernels import analytic, draws, lm
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble, module
@@ -121,7 +121,7 @@ def test_no_name_is_in_tables():
 
 def test_the_engine_is_in_it_as_it_stands():
     text = text_of("qiao2021", "pose")
-    for source in (lm, analytic):
+    for source in (lm, draws, analytic):
         body = (
             Path(source.__file__)
             .read_text(encoding="utf-8")
