@@ -32,7 +32,7 @@ class Left(NamedTuple):
 
 
 def find_left(robot: RobotArrays, collision: CollisionModel) -> Left:
-    """Tests that may fail within `Robot.written_ranges`, none of which implies another: written down, or else proved."""
+    """Tests that may fail within `Robot.written_ranges`, none implying another: written down, or else proved."""
     known = read_written().get(digest_proofs(robot, collision))
     if known is None:
         return prove_left(robot, collision)
