@@ -8,8 +8,9 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +33,15 @@ def compile_answer(question: dict[str, Any]) -> None:
     from ikde.model.collision_model import CollisionModel
     from ikde.model.plain_data import decode
     from ikde.model.robot import NO_DETECTOR, Detector, Robot
-    from ikde.solver.warmup import list_stages, warm_up
+    from ikde.solver.warmup import Stage, list_stages, warm_up
 
     detector = decode(Detector | None, question["detector"])
     collision = CollisionModel.of(decode(Robot, question["robot"]), detector or NO_DETECTOR)
-    wanted = f"lm, one {question['kind']}"
-    warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == wanted])
+    kind, is_near = question["what"]
+    (stage,) = (stage for stage in list_stages(collision.robot, collision) if stage.name == f"lm, one {kind}")
+    run: Callable[..., object] = stage.run
+    run = partial(run, near=collision.robot.home) if is_near else run
+    warm_up([Stage(name=stage.name, run=run)])
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from ikde.kernels.jit import compile_clock
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.solver.background import answers_plainly
+from ikde.solver.background import Question, answers_plainly
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.lm import pack_answer
 from ikde.solver.engines.pool import load_kernels, runs_on_tables
@@ -71,15 +71,18 @@ class Quick:
 
     def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str, *, is_last: bool = False) -> None:
         problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-        answer = partial(load_kernels(collision, kind).answer_target.compiled, *pack_answer(problem, kind))
-        stages, maker = Stages(collision, settings, is_last=is_last), ResultMaker(problem, ENGINE)
-        self._ask, self._is_ready = partial(stages.ask, answer, maker), False
+        self._answer = load_kernels(collision, kind).answer_target.bind(*pack_answer(problem, kind))
+        self._stages, self._maker = Stages(collision, settings, is_last=is_last), ResultMaker(problem, ENGINE)
+        self._question = Question(collision, kind)
+        self._ask: Callable[..., SolveResult | None] | None = None  # by machine code
 
     def solve(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
-        """As `Stages.ask`; the first one compiles."""
-        if self._is_ready:
+        """As `Stages.ask`; the first one compiles, or the first ones are answered in plain Python."""
+        if self._ask is not None:
             return self._ask(target, seed, stream, started)
-        self._is_ready = True
+        if answers_plainly(self._answer, self._question):
+            return self._stages.ask(self._answer.plain, self._maker, target, seed, stream, started)
+        self._ask = partial(self._stages.ask, self._answer.compiled, self._maker)
         return compile_first(self._ask, target, seed, stream)
 
 

@@ -8,13 +8,15 @@ from functools import lru_cache, partial
 
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.flat_arguments import set_ranges
+from ikde.kernels.jit import Bound
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
+from ikde.solver.background import Question, answers_plainly
 from ikde.solver.engines.engine import make_ranges
 from ikde.solver.engines.lm import pack_answer
 from ikde.solver.engines.pool import load_kernels, make_seeds, runs_on_tables
 from ikde.solver.problem import Problem
-from ikde.solver.quick import ENGINE, Answer, Stages, compile_first
+from ikde.solver.quick import ENGINE, Stages, compile_first
 from ikde.solver.result import ResultMaker, SolveResult
 from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings
@@ -32,14 +34,17 @@ class QuickNear:
         self._ready: set[bool] = set()
 
     def solve(self, problem: Problem, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
-        """As `Stages.ask`, or None where another engine is the first to try; the first one compiles."""
+        """As `Stages.ask`, or None where another engine is the first to try; the first ones as those of `Quick`."""
         is_near, stages = problem.near is not None, self._stages(problem.frozen)
         if stages is None:
             return None
-        ask = partial(stages.ask, self._prepare(problem), ResultMaker(problem, ENGINE))
+        answer, maker = self._prepare(problem), ResultMaker(problem, ENGINE)
         if is_near in self._ready:
-            return ask(target, seed, stream, started)
+            return stages.ask(answer.compiled, maker, target, seed, stream, started)
+        if answers_plainly(answer, Question(self._collision, self._kind, is_near)):
+            return stages.ask(answer.plain, maker, target, seed, stream, started)
         self._ready.add(is_near)
+        ask = partial(stages.ask, answer.compiled, maker)
         return compile_first(ask, target, seed, stream)
 
     def _make_stages(self, frozen: tuple[str, ...]) -> Stages | None:
@@ -51,14 +56,14 @@ class QuickNear:
         engines = choose_engines(robot, self._settings, {self._kind}, free=free)
         return Stages(self._collision, self._settings, is_last=len(engines) == 1) if engines[0] == ENGINE else None
 
-    def _prepare(self, problem: Problem) -> Answer:
-        """The compiled call, ready for a target."""
+    def _prepare(self, problem: Problem) -> Bound:
+        """The call, ready for a target."""
         kernels, is_near = load_kernels(self._collision, self._kind), problem.near is not None
         numbers, *others = self._lay_out(problem, is_near)
         numbers = set_ranges(numbers, make_ranges(problem), problem.turns)
         if is_near:
-            return partial(kernels.answer_near.compiled, numbers, *others, problem.weights)
-        return partial(kernels.answer_target.compiled, numbers, *others)
+            return kernels.answer_near.bind(numbers, *others, problem.weights)
+        return kernels.answer_target.bind(numbers, *others)
 
     def _lay_out(self, problem: Problem, is_near: bool) -> Block:
         """What the last call of this kind was laid out to, if its seeds are these."""

@@ -7,7 +7,6 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.flat_arguments import flatten_answer, flatten_search
-from ikde.kernels.jit import Bound
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges
