@@ -7,7 +7,6 @@ from typing import Any
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.formats.units import ANGLES_RAD, LENGTHS_M
-from ikde.io.yaml_file import read_yaml
 from ikde.model.robot import Robot
 
 MINUS_SIGNS = str.maketrans("−–—‐‑", "-----")  # a row pasted from a paper carries a typographer's minus
@@ -77,6 +76,8 @@ def _read(text: str, key: str) -> list[float] | dict[str, float]:
 
 
 def _read_file(path: Path) -> list[float] | dict[str, float]:
+    from ikde.io.yaml_file import read_yaml
+
     document = read_yaml(path)
     data: Any = document.data
     items = enumerate(data) if isinstance(data, list) else data.items() if isinstance(data, dict) else None

@@ -69,15 +69,19 @@ class Bound:
     def __init__(self, kernel: Kernel, arguments: tuple[Any, ...]) -> None:
         self._kernel, self._arguments = kernel, arguments
 
-    @cached_property
+    @property
     def compiled(self) -> Callable[..., Any]:
         """Machine code; what it waits for, it waits for in its first call."""
         return partial(self._kernel.compiled, *self._arguments)
 
     def plain(self, *arguments: Any) -> Any:
-        """The same in plain Python, without numpy's warnings of words that wrap around and of infinite numbers."""
+        """The same in plain Python, without numpy's warnings of words that wrap around and of infinite numbers.
+
+        Whole numbers are words of 64 bits, as machine code takes them.
+        """
+        words = (np.int64(value) if type(value) is int else value for value in arguments)
         with np.errstate(all="ignore"):
-            return self._kernel.plain(*self._arguments, *arguments)
+            return self._kernel.plain(*self._arguments, *words)
 
     @property
     def is_kept(self) -> bool:

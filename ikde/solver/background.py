@@ -14,7 +14,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from typing import Any
+from typing import Any, NamedTuple
 
 from ikde.errors import InputError, quoted
 from ikde.kernels import cache_folder
@@ -49,17 +49,28 @@ def choose_way() -> str:
     return given or UNLESS_TOLD.get()
 
 
-def answers_plainly(answer: Bound, collision: CollisionModel, stage: str) -> bool:
-    """True while a question is to be answered in plain Python; the child is started if there is something to do.
+class Question(NamedTuple):
+    """What machine code answers: targets of a kind, with `near` or without, by an engine."""
 
-    `stage`: what is to be compiled, a name of `warmup.list_stages`.
-    """
+    collision: CollisionModel
+    kind: str
+    is_near: bool = False
+    engine: str = "lm"
+
+    def encode(self) -> dict[str, Any]:
+        """Plain data for the child."""
+        collision, *others = self
+        return {"robot": encode(collision.robot), "detector": encode(collision.detector), "what": others}
+
+
+def answers_plainly(answer: Bound, question: Question) -> bool:
+    """True while a question is to be answered in plain Python; the child is started if there is something to do."""
     way = choose_way()
     if way in (NEVER, LATER):
         return True
     if way == WAIT or not _can_start() or (not CHILD.is_at_work and answer.is_kept):
         return False
-    return CHILD.compile(collision, stage)
+    return CHILD.compile(question)
 
 
 def _can_start() -> bool:
@@ -73,24 +84,23 @@ class Child:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._asked: set[tuple[CollisionModel, str]] = set()
+        self._asked: set[Question] = set()
 
     @property
     def is_at_work(self) -> bool:
         """True while it runs."""
         return self._process is not None and self._process.poll() is None
 
-    def compile(self, collision: CollisionModel, stage: str) -> bool:
+    def compile(self, question: Question) -> bool:
         """True if it is at work, or has been started for this; False if it has ended without: it is not tried again."""
         with self._lock:
             if self.is_at_work:
                 return True
-            if (collision, stage) in self._asked:
+            if question in self._asked:
                 return False
-            self._asked.add((collision, stage))
-            question = {"robot": encode(collision.robot), "detector": encode(collision.detector), "stage": stage}
+            self._asked.add(question)
             with suppress(OSError):
-                self._process = start(question)
+                self._process = start(question.encode())
             return self.is_at_work
 
     def stop(self) -> None:

@@ -36,7 +36,9 @@ def compile_answer(question: dict[str, Any]) -> None:
 
     detector = decode(Detector | None, question["detector"])
     collision = CollisionModel.of(decode(Robot, question["robot"]), detector or NO_DETECTOR)
-    warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == question["stage"]])
+    kind, is_near, engine = question["what"]
+    wanted = f"{engine}, {'near' if is_near else 'one'} {kind}"
+    warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == wanted])
 
 
 @contextmanager

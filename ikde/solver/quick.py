@@ -17,7 +17,7 @@ from ikde.model.closed_form import find_still_arm
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.solver.background import answers_plainly
+from ikde.solver.background import Question, answers_plainly
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.pool import load_kernels, runs_on_tables
@@ -40,8 +40,8 @@ Answer = Callable[..., bool]
 class Way:
     """A kernel that answers one target: in plain Python, until there is machine code."""
 
-    def __init__(self, kernel: Kernel, collision: CollisionModel, stage: str) -> None:
-        self._kernel, self._collision, self._stage = kernel, collision, stage
+    def __init__(self, kernel: Kernel, question: Question) -> None:
+        self._kernel, self._question = kernel, question
         self.machine: Answer | None = None
         self.waited_s, self.compile_s = 0.0, 0.0
 
@@ -49,7 +49,7 @@ class Way:
         """A call while machine code is not there, or the one that waits for it."""
         *block, T_world_tool, seed, stream, first, last, row = arguments
         bound = self._kernel.bind(*block)
-        if first > 0 or answers_plainly(bound, self._collision, self._stage):
+        if first > 0 or answers_plainly(bound, self._question):
             return bound.plain(T_world_tool, np.int64(seed), stream, first, last, row)
         started = time.perf_counter()
         with compile_clock() as clock:
@@ -64,13 +64,13 @@ class Ways:
 
     def __init__(self, collision: CollisionModel, kind: str) -> None:
         kernels = load_kernels(collision, kind)
+        calls = {(LM, False): "answer_target", (LM, True): "answer_near"}
+        calls |= {(CLOSED, False): "answer_pose", (CLOSED, True): "answer_pose_near"}
         self._ways = {
-            (LM, False): Way(kernels.answer_target, collision, f"lm, one {kind}"),
-            (LM, True): Way(kernels.answer_near, collision, f"lm, near {kind}"),
+            (engine, is_near): Way(getattr(kernels, call), Question(collision, kind, is_near, engine))
+            for (engine, is_near), call in calls.items()
+            if hasattr(kernels, call)
         }
-        if hasattr(kernels, "answer_pose"):
-            self._ways[CLOSED, False] = Way(kernels.answer_pose, collision, f"analytic, one {kind}")
-            self._ways[CLOSED, True] = Way(kernels.answer_pose_near, collision, f"analytic, near {kind}")
 
     def find(self, engine: str, is_near: bool) -> Way:
         """The way of an engine."""

@@ -16,8 +16,9 @@ from ikde.kernels.jit import COMPILE
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver import background
-from ikde.solver.background import LATER, WAIT, Child, answers_plainly, choose_way, compile_way
+from ikde.solver.background import LATER, WAIT, Child, Question, answers_plainly, choose_way, compile_way
 from ikde.solver.quick import find_quick
+from ikde.solver.quick_near import find_quick_near
 from tests.targets import free_q, make_target
 
 ROOT = Path(__file__).parents[2]
@@ -31,18 +32,22 @@ def written(monkeypatch):
     """As users run it: by kernels written for a robot."""
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
     find_quick.cache_clear()
+    find_quick_near.cache_clear()
     yield monkeypatch
     find_quick.cache_clear()
+    find_quick_near.cache_clear()
 
 
 def answer(robot, kind, way, written):
     """Bits of some answers."""
     written.setenv(COMPILE, way)
     find_quick.cache_clear()
+    find_quick_near.cache_clear()
     rng, lines = np.random.default_rng(7), []
     for stream in range(25):
         target = make_target(robot, free_q(robot, rng), kind)
-        result = ikde.solve(robot, target, seed=2**64 - 1, stream=stream, method="lm")
+        near = robot.home if stream % 5 == 0 else None  # by another kernel
+        result = ikde.solve(robot, target, seed=2**64 - 1, stream=stream, method="lm", near=near)
         lines.append([np.asarray(getattr(result, word)).tobytes().hex() for word in WORDS])
     return lines
 
@@ -86,43 +91,43 @@ class Sleeper:
 
 
 def test_what_was_compiled_before_is_not_answered_in_plain_python(qiao, child):
-    assert not answers_plainly(Answer(is_kept=True), CollisionModel.of(qiao), "pose")
+    assert not answers_plainly(Answer(is_kept=True), Question(CollisionModel.of(qiao), "pose"))
     assert not child.is_at_work
 
 
 def test_one_child_at_a_time_and_one_trial_a_question(qiao, child):
     collision, lost = CollisionModel.of(qiao), Answer(is_kept=False)
-    assert answers_plainly(lost, collision, "pose")
+    assert answers_plainly(lost, Question(collision, "pose"))
     first = child._process
-    assert answers_plainly(lost, collision, "axis")
+    assert answers_plainly(lost, Question(collision, "axis"))
     assert child._process is first
     first.code = -9  # somebody killed it: the first question compiles for itself, the second gets a child of its own
-    assert not answers_plainly(lost, collision, "pose")
-    assert answers_plainly(lost, collision, "axis")
+    assert not answers_plainly(lost, Question(collision, "pose"))
+    assert answers_plainly(lost, Question(collision, "axis"))
     assert child._process is not first
 
 
 def test_a_child_that_has_done_its_work_is_made_use_of(qiao, child):
     collision, made = CollisionModel.of(qiao), Answer(is_kept=False)
-    assert answers_plainly(made, collision, "pose")
+    assert answers_plainly(made, Question(collision, "pose"))
     made.is_kept = True
-    assert answers_plainly(made, collision, "pose")  # it may be writing still
+    assert answers_plainly(made, Question(collision, "pose"))  # it may be writing still
     child._process.code = 0
-    assert not answers_plainly(made, collision, "pose")
+    assert not answers_plainly(made, Question(collision, "pose"))
 
 
 @pytest.mark.parametrize(("way", "plain"), [("never", True), ("wait", False)])
 def test_the_environment_decides(qiao, child, monkeypatch, way, plain):
     monkeypatch.setenv(COMPILE, way)
     with compile_way(LATER if way == "wait" else WAIT):
-        assert answers_plainly(Answer(is_kept=False), CollisionModel.of(qiao), "pose") is plain
+        assert answers_plainly(Answer(is_kept=False), Question(CollisionModel.of(qiao), "pose")) is plain
     assert not child.is_at_work
 
 
 def test_a_process_of_one_answer_starts_no_child(qiao, child, monkeypatch):
     monkeypatch.delenv(COMPILE)
     with compile_way(LATER):
-        assert answers_plainly(Answer(is_kept=True), CollisionModel.of(qiao), "pose")
+        assert answers_plainly(Answer(is_kept=True), Question(CollisionModel.of(qiao), "pose"))
     assert not child.is_at_work
 
 
@@ -140,7 +145,7 @@ def test_where_no_child_can_be_had_the_first_call_compiles(qiao, child, monkeypa
         monkeypatch.setattr(background.cache_folder, "CACHE_IS_WRITABLE", False)
     else:
         monkeypatch.setattr(sys, "executable", "")
-    assert not answers_plainly(Answer(is_kept=False), CollisionModel.of(qiao), "pose")
+    assert not answers_plainly(Answer(is_kept=False), Question(CollisionModel.of(qiao), "pose"))
 
 
 FIRST = """

@@ -22,7 +22,7 @@ def test_it_compiles_one_kind_of_target_for_the_robot_that_it_is_told(substitute
     robot, done = ikde.load_robot("ur5"), []
     substitute(warmup.warm_up, done.extend)
     detector = robot.detectors[robot.default_detector]
-    compile_answer({"robot": encode(robot), "detector": encode(detector), "kind": kind})
+    compile_answer({"robot": encode(robot), "detector": encode(detector), "what": [kind, False]})
     (stage,) = done
     assert stage.name == f"lm, one {kind}"
     asked, target, *_ = stage.run.args
@@ -30,11 +30,13 @@ def test_it_compiles_one_kind_of_target_for_the_robot_that_it_is_told(substitute
     assert stage.run.keywords["collision"].detector == detector
 
 
-def test_without_a_detector_it_compiles_without_one(substitute):
+def test_with_near_and_without_a_detector_it_compiles_for_that(substitute):
     robot, done = ikde.load_robot("ur5"), []
     substitute(warmup.warm_up, done.extend)
-    compile_answer({"robot": encode(robot), "detector": None, "kind": "axis"})
-    assert done[0].run.keywords["collision"].detector is None
+    compile_answer({"robot": encode(robot), "detector": None, "what": ["axis", True]})
+    asked = done[0].run.keywords
+    assert asked["collision"].detector is None
+    assert asked["near"].tolist() == robot.home.tolist()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs locks of files")
