@@ -6,8 +6,9 @@ import pytest
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
 from ikde.model.collision_model import CollisionModel
-from ikde.model.target import KINDS
+from ikde.model.target import KINDS, Targets
 from ikde.solver import referee as module
+from ikde.solver.engines.search_state import make_search_state
 from ikde.solver.metrics import compute_metrics
 from ikde.solver.search import REFUSALS, search
 from ikde.solver.settings import BulkOptions
@@ -113,3 +114,24 @@ def test_an_answer_at_the_limit_of_rounding_is_reached_or_not_but_never_wrongly(
     assert 0 < rows.reached.sum() < 30
     plain = verify_many(CollisionModel.of(robot, "none"), rows.targets, rows.q, settings)
     assert plain.accepted[rows.reached].all()
+
+
+def test_rows_with_new_attempts_are_graded_once_and_no_others(qiao, substitute):
+    problem, graded = problem_of(qiao), []
+
+    def watched(collision, targets, Q, settings, limits):
+        graded.append([round(10.0 * target.p_world_tool[1]) for target in targets])
+        return compute_metrics(collision, targets, Q, settings, limits)
+
+    substitute(compute_metrics, watched)
+    found = make_search_state(problem, 5)
+    referee = module.Referee(problem, Targets.of(TARGETS), found)
+    found.counts[[3, 4], ATTEMPTS] = 1
+    referee.grade(slice(2, 5))
+    referee.grade(slice(2, 5))
+    assert graded == [[2, 3, 4]]  # also a row without any: it has metrics, too
+    assert np.isfinite(found.metrics.position_error_m).tolist() == [False, False, True, True, True]
+    found.counts[3, ATTEMPTS] = 2
+    referee.grade(slice(2, 5))
+    referee.refuse()
+    assert graded[-2:] == [[3], [0, 1]]

@@ -15,6 +15,7 @@ class Analytic:
     """Poses only; an arm on a base that cannot move is done with one attempt: it has no other branches."""
 
     name = "analytic"
+    is_ready = False
     rows_per_call = 1024
     attempts_per_call = 256
 
