@@ -87,4 +87,4 @@ class DampedLeastSquares:
                 for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
                     outputs = tuple(array[row] for array in asked.outputs)
                     lane = row, asked.seed, int(asked.streams[row]), begin, end
-                    kernels.solve_target(*block, *asked.targets, *lane, *outputs)
+                    kernels.solve_target.compiled(*block, *asked.targets, *lane, *outputs)
