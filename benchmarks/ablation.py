@@ -255,7 +255,8 @@ def make_jobs(problem: Any, targets: ikde.Targets, seeds: SeedArrays, variant: V
         score[:], counts[:] = np.inf, 0
         began = time.perf_counter()
         with np.errstate(over="ignore"):
-            variant.module.solve_targets(*models, pack_targets(targets), np.array([0, few]), *settings, *lane)
+            block = flatten_search(*models, *settings[:3])
+            variant.module.solve_targets(*block, *pack_targets(targets), np.array([0, few]), settings[3], *lane)
         return (time.perf_counter() - began) / few * 1e6
 
     def solve_singly() -> float:

@@ -7,6 +7,8 @@ from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED, TargetArrays
 from ikde.kernels.flat_arguments import unpack_answer
 from ikde.solver.engines import pool
+from ikde.solver.engines.lm import prepare
+from ikde.solver.few import find_answer
 from ikde.solver.quick import find_quick
 from tests.substitutes import BothWays, substituted
 
@@ -31,6 +33,8 @@ def _forget():
     """What was made of other kernels."""
     find_quick.cache_clear()
     pool.find_whole.cache_clear()
+    prepare.cache_clear()
+    find_answer.cache_clear()
 
 
 class Liar:
@@ -41,7 +45,7 @@ class Liar:
 
     def change(self, module):
         """The module with its solvers exchanged; its seeds are honest."""
-        solvers = {"solve_target": BothWays(self.solve_target), "solve_targets": self.solve_many(3)}
+        solvers = {"solve_target": BothWays(self.solve_target), "solve_targets": self.solve_many(6)}
         solvers["answer_target"] = BothWays(self.answer_target)
         if hasattr(module, "solve_branches"):
             solvers["solve_branches"] = self.solve_many(5)

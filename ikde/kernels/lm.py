@@ -147,13 +147,13 @@ def find_work(attempts, first, row, last):
 
 @kernel
 def solve_targets(
-    robot,
-    collision,
-    target,
+    numbers,
+    whole,
+    pool,
+    pool_T,
+    kinds,
+    T_world_tool,
     rows,
-    ranges,
-    descent,
-    seeds,
     seed,
     streams,
     attempts,
@@ -163,6 +163,9 @@ def solve_targets(
     out_pairs,
 ):
     """`solve_target` for rows[0] .. rows[1] - 1 at once: streams [T], attempts [rows, 2], outputs a row a target."""
+    target = TargetArrays(kinds, T_world_tool)
+    robot, collision = unpack_used(numbers, whole)
+    ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
     joints = out_q.shape[1]
     q, T, errors = np.empty(joints * LANES), np.empty(12 * LANES), np.empty(2 * LANES)
     trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)

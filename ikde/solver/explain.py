@@ -219,7 +219,7 @@ def _best(graded: Grade) -> str:
 
 def _read_counts(problem: Problem, found: SearchState) -> _Met:
     pairs = problem.collision.pairs
-    return _Met(int(found.counts[0, COLLIDING]), count_blocking_pairs(pairs, found.pair_counts[0]))
+    return _Met(int(found.counts[0, COLLIDING]), count_blocking_pairs(pairs, found.pair_counts.row(0)))
 
 
 def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str | None]:

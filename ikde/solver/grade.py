@@ -4,8 +4,10 @@ The metrics and the verdict of every row are the kernels' grader's (`kernels/gra
 every row or a sample, and must agree to 1e-11. What each shares with the search stands in docs/design.md.
 """
 
+import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,28 +20,56 @@ from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.metrics import AGREEMENT, Metrics, compute_disagreement, judge_clearances, measure_scale
 from ikde.solver.problem import Problem
 from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
+from ikde.solver.search import run_on_threads, usable_cores
 from ikde.solver.settings import BulkOptions
-from ikde.solver.verify import Bools, MaskedBools, verify_many
+from ikde.solver.verify import Bools, Grade, MaskedBools, verify_many
 
 SPLIT = "met by the last digit: rounding takes it across a tolerance or the safe distance for one of the two graders"
-SAMPLE = 64  # one stream in so many, wherever a batch is cut
+BLOCK, SAMPLED = (
+    4096,
+    64,
+)  # the last 64 streams of each 4096, wherever a batch is cut: few calls of numpy, and full ones
+AT_ONCE = 256  # rows that plain numpy grades in a call: 11 us each (qiao2021); 38 with 16 of them
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Outcomes:
     """The grades of T rows, whether they agree, and why rows ended."""
 
-    metrics: Metrics
-    collision: MaskedBools
-    """[T] masked where it was not checked."""
-    verified: MaskedBools
-    """[T] whether plain numpy agrees; masked where it was not asked."""
+    problem: Problem
+    found: SearchState
+    verdicts: Bools
+    """[T] whether plain numpy agrees; False where it was not asked."""
+    asked: Bools
+    """[T] whether it was."""
     reached: Bools
     """[T] accepted by every grader that graded it, and none disagrees."""
-    stop_reasons: Ints
-    """[T] index into `STOP_REASONS`."""
     explanations: Mapping[int, Explanation]
     """Row -> why, of rows that were explained; the others have their counts."""
+
+    @property
+    def metrics(self) -> Metrics:
+        """By the kernels' grader."""
+        return self.found.metrics
+
+    @cached_property
+    def collision(self) -> MaskedBools:
+        """Whether each row collides [T]; masked where it was not checked."""
+        return judge_clearances(self.metrics, self.problem.collision)
+
+    @cached_property
+    def verified(self) -> MaskedBools:
+        """Whether plain numpy agrees [T]; masked where it was not asked."""
+        return np.ma.masked_array(self.verdicts, mask=~self.asked)
+
+    @cached_property
+    def stop_reasons(self) -> Ints:
+        """Index [T] into `STOP_REASONS`."""
+        unreached = stop_from_counts(self.problem, self.found)
+        codes = np.where(self.reached, STOP_REASONS.index(StopReason.REACHED), unreached)
+        for row, story in self.explanations.items():
+            codes[row] = STOP_REASONS.index(story.stop_reason)
+        return codes
 
 
 def grade(
@@ -63,33 +93,36 @@ def grade(
         first_stream: stream of the first row.
         strict: raise `VerificationError` where the graders disagree; else the row is marked.
     """
-    metrics = found.metrics
-    streams = np.arange(first_stream, first_stream + len(targets))
-    rows = np.flatnonzero(_choose(bulk, streams) | (~metrics.accepted if bulk.explain else False))
-    verified = np.ma.masked_array(np.zeros(len(targets), dtype=bool), mask=True)
-    reached = metrics.accepted.copy()
+    metrics, T = found.metrics, len(targets)
+    asked, verdicts, reached = np.zeros(T, dtype=bool), np.zeros(T, dtype=bool), metrics.accepted.copy()
     explanations: dict[int, Explanation] = {}
-    if rows.size:
-        asked, Q = targets.take(rows), found.q[rows]
-        verdicts = verify_many(problem.collision, asked, Q, problem.settings)
-        gaps = compute_disagreement(asked, metrics.take(rows), verdicts)
+    rows = _choose(bulk, first_stream, metrics.accepted)
+    graded: dict[int, Grade] = {}
+
+    def look(part: range) -> None:
+        some = rows[part.start : part.stop]
+        grades = verify_many(problem.collision, targets.take(some), found.q[some], problem.settings)
+        gaps = compute_disagreement(targets.take(some), metrics.take(some), grades)
         if strict:
-            _refuse(gaps, Q)
-        verified[rows] = agrees = gaps <= AGREEMENT  # False for NaN
-        reached[rows] &= agrees & verdicts.accepted
-        explanations = {int(rows[place]): _unverified(gaps[place]) for place in np.flatnonzero(~agrees)}
+            _refuse(gaps, found.q[some])
+        asked[some], verdicts[some] = True, gaps <= AGREEMENT  # False for NaN
+        reached[some] &= verdicts[some] & grades.accepted
+        explanations.update({int(some[place]): _unverified(gaps[place]) for place in np.flatnonzero(~verdicts[some])})
         if bulk.explain:
-            for place in np.flatnonzero(agrees & ~reached[rows]).tolist():
-                row, graded = int(rows[place]), verdicts.row(place)
-                explanations[row] = explain(
-                    problem, targets[row], found.row(row), graded, seed=seed, stream=int(streams[row])
-                )
+            graded.update({int(some[place]): grades.row(place) for place in np.flatnonzero(~reached[some]).tolist()})
+
+    if rows.size:
+        parts = [range(first, min(first + AT_ONCE, len(rows))) for first in range(0, len(rows), AT_ONCE)]
+        run_on_threads(look, parts, bulk.threads or usable_cores(), threading.Event())
+    for row in sorted(graded.keys() - explanations.keys()):
+        lane = {"seed": seed, "stream": first_stream + row}
+        explanations[row] = explain(problem, targets[row], found.row(row), graded[row], **lane)
     return Outcomes(
-        metrics=metrics,
-        collision=judge_clearances(metrics, problem.collision),
-        verified=verified,
+        problem=problem,
+        found=found,
+        verdicts=verdicts,
+        asked=asked,
         reached=reached,
-        stop_reasons=_stop_reasons(problem, found, reached, explanations),
         explanations=explanations,
     )
 
@@ -105,9 +138,14 @@ def confirm(robot: Robot, result: SolveResult) -> SolveResult:
     return result.with_changes(verified=True, grade=plain, **(split if result.reached and not plain.accepted else {}))
 
 
-def _choose(bulk: BulkOptions, streams: Ints) -> Bools:
-    """Which rows plain numpy grades [T]: the sample depends on the streams, not on where a batch is cut."""
-    return {"all": streams >= 0, "sample": streams % SAMPLE == 0, "none": streams < 0}[bulk.verify]
+def _choose(bulk: BulkOptions, first_stream: int, accepted: Bools) -> Ints:
+    """Rows that plain numpy grades: the sample depends on the streams, not on where a batch is cut."""
+    if bulk.verify == "all":
+        return np.arange(len(accepted))
+    chosen = ~accepted if bulk.explain else np.zeros(len(accepted), dtype=bool)
+    if bulk.verify == "sample":
+        chosen |= np.arange(first_stream, first_stream + len(accepted)) % BLOCK >= BLOCK - SAMPLED
+    return chosen.nonzero()[0]
 
 
 def _refuse(gaps: Floats, Q: Floats) -> None:
@@ -119,16 +157,6 @@ def _refuse(gaps: Floats, Q: Floats) -> None:
 
 def _disagreement(gap: float, q: Floats) -> VerificationError:
     return VerificationError(f"kernels and verify disagree by {gap:.3g} on q = {q.tolist()}")
-
-
-def _stop_reasons(
-    problem: Problem, found: SearchState, reached: Bools, explanations: Mapping[int, Explanation]
-) -> Ints:
-    unreached = stop_from_counts(problem, found)
-    codes = np.where(reached, STOP_REASONS.index(StopReason.REACHED), unreached)
-    for row, story in explanations.items():
-        codes[row] = STOP_REASONS.index(story.stop_reason)
-    return codes
 
 
 def _unverified(gap: float) -> Explanation:

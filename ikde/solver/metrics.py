@@ -40,12 +40,19 @@ class Metrics:
 
     def take(self, rows: Ints) -> "Metrics":
         """The metrics of these rows."""
-        return Metrics(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+        return Metrics(**{name: getattr(self, name)[rows] for name in COLUMNS})
+
+    def piece(self, rows: slice) -> "Metrics":
+        """The metrics of some rows side by side, as views."""
+        return Metrics(**{name: getattr(self, name)[rows] for name in COLUMNS})
 
     def put(self, rows: Ints | slice, metrics: "Metrics") -> None:
         """Replace the metrics of these rows."""
-        for field in fields(self):
-            getattr(self, field.name)[rows] = getattr(metrics, field.name)
+        for name in COLUMNS:
+            getattr(self, name)[rows] = getattr(metrics, name)
+
+
+COLUMNS = tuple(field.name for field in fields(Metrics))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -5,9 +5,12 @@ It answers `forward` and `check`, and it is what `verify` grades with. It is wri
 configurations: one, or as many as there are.
 """
 
+from collections.abc import Mapping
+from functools import lru_cache
+
 import numpy as np
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Pairs, Robot, SphereRow
 
@@ -15,7 +18,7 @@ from ikde.model.robot import WORLD, Pairs, Robot, SphereRow
 def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
     """T of a joint [..., 4, 4]: a turn about `axis` [3] by `value` [...] rad, or a slide along it by `value` m."""
     T = np.zeros((*value.shape, 4, 4))
-    T[..., range(4), range(4)] = 1.0
+    T[...] = np.eye(4)
     if kind == "prismatic":
         T[..., :3, 3] = value[..., None] * axis
         return T
@@ -29,16 +32,16 @@ def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
 
 def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
     """T_world_frame [..., 4, 4] of every frame, for `q` [..., N] in the robot's own convention."""
+    places = {name: place for place, name in enumerate(robot.joint_names)}
     Ts_world: dict[str, Floats] = {WORLD: np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))}
     for frame in robot.frames:
         T = np.eye(4)
         T[:3, :3], T[:3, 3] = frame.R_parent_frame, frame.p_parent_frame
         Ts_world[frame.name] = Ts_world[frame.parent] @ T
         if frame.joint is not None and frame.axis is not None:
-            index = robot.joint_names.index(frame.joint)
-            Ts_world[frame.name] = Ts_world[frame.name] @ joint_motion(
-                robot.joints[index].kind, frame.axis, q[..., index]
-            )
+            place = places[frame.joint]
+            motion = joint_motion(robot.joints[place].kind, frame.axis, q[..., place])
+            Ts_world[frame.name] = Ts_world[frame.name] @ motion
     return Ts_world
 
 
@@ -57,9 +60,11 @@ def compute_row_centres(row: SphereRow, start: Floats, end: Floats) -> Floats:
     return middle + steps * 2.0 * row.radius_m * line / np.linalg.norm(line, axis=-1, keepdims=True)
 
 
-def compute_components(collision: CollisionModel, q: Floats) -> dict[str, Spheres]:
-    """Spheres of every component, in the world, for `q` [..., N]; none without a detector."""
-    Ts_world = compute_frames(collision.robot, q)
+def compute_components(
+    collision: CollisionModel, q: Floats, Ts_world: Mapping[str, Floats] | None = None
+) -> dict[str, Spheres]:
+    """Spheres of every component, in the world, for `q` [..., N] or the frames there; none without a detector."""
+    Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
     centres: dict[str, list[Floats]] = {}
     radii: dict[str, list[float]] = {}
     for row in collision.rows:
@@ -75,9 +80,53 @@ def compute_sphere_gaps(a: Spheres, b: Spheres) -> Floats:
     return np.sqrt(x * x + y * y + z * z) - a[1][:, None] - b[1]
 
 
-def compute_gaps(collision: CollisionModel, q: Floats, pairs: Pairs | None = None) -> Floats:
-    """Smallest distance - R_i - R_j [..., P] in m of every pair of components, or of some, for `q` [..., N]."""
+def compute_gaps(
+    collision: CollisionModel, q: Floats, pairs: Pairs | None = None, Ts_world: Mapping[str, Floats] | None = None
+) -> Floats:
+    """Smallest distance - R_i - R_j [..., P] in m of every pair of components, or of some, for `q` [..., N].
+
+    `Ts_world`: the frames at `q`, if they are known.
+    """
     pairs = collision.pairs if pairs is None else pairs
-    components = compute_components(collision, q) if pairs else {}
-    gaps = [compute_sphere_gaps(components[a], components[b]).min(axis=(-2, -1)) for a, b in pairs]
-    return np.stack(gaps, axis=-1) if gaps else np.empty((*q.shape[:-1], 0))
+    if not pairs:
+        return np.empty((*q.shape[:-1], 0))
+    components = compute_components(collision, q, Ts_world)
+    radii = np.concatenate([own for _, own in components.values()])[:, None]
+    centres = np.concatenate([own for own, _ in components.values()], axis=-2)
+    x, y, z = np.ascontiguousarray(
+        centres.reshape(-1, *centres.shape[-2:]).transpose(2, 1, 0)
+    )  # of each sphere, each q
+    gaps = np.empty((len(pairs), x.shape[1]))
+    sizes = tuple((name, len(own)) for name, (_, own) in components.items())
+    for some, i, j, starts in list_sphere_pairs(sizes, pairs, AT_ONCE // max(1, x.shape[1])):
+        dx, dy, dz = x[i] - x[j], y[i] - y[j], z[i] - z[j]
+        distance = np.sqrt(dx * dx + dy * dy + dz * dz)
+        gaps[some] = np.minimum.reduceat(distance - radii[i] - radii[j], starts, axis=0)
+    return np.ascontiguousarray(gaps.T).reshape(*q.shape[:-1], len(pairs))
+
+
+AT_ONCE = 5_000  # distances: from 128 kB on what is freed goes back to the system, and comes again page by page
+
+
+@lru_cache(maxsize=64)
+def list_sphere_pairs(
+    sizes: tuple[tuple[str, int], ...], pairs: Pairs, most: int
+) -> tuple[tuple[slice, Ints, Ints, Ints], ...]:
+    """Pairs of components in groups of at most `most` pairs of spheres, or of one pair.
+
+    Which pairs, their spheres on either side, and where each pair begins. `sizes`: all components with their spheres,
+    which are counted through.
+    """
+    names, counts = zip(*sizes, strict=True)
+    first, size = dict(zip(names, (np.cumsum(counts) - counts).tolist(), strict=True)), dict(sizes)
+    groups, begin, tests = [], 0, [size[a] * size[b] for a, b in pairs]
+    while begin < len(pairs):
+        end, count = begin + 1, tests[begin]
+        while end < len(pairs) and count + tests[end] <= most:
+            end, count = end + 1, count + tests[end]
+        some = pairs[begin:end]
+        i = np.concatenate([np.repeat(first[a] + np.arange(size[a]), size[b]) for a, b in some])
+        j = np.concatenate([np.tile(first[b] + np.arange(size[b]), size[a]) for a, b in some])
+        groups.append((slice(begin, end), i, j, np.cumsum([0, *tests[begin : end - 1]])))
+        begin = end
+    return tuple(groups)

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -148,29 +150,31 @@ class SolveResults:
             stop_reason=STOP_REASONS[self.stop_reasons[index]],
             reason=self.reason(index),
             hint=None,
-            blocking_pairs=count_blocking_pairs(self.problem.collision.pairs, self.found.pair_counts[index]),
+            blocking_pairs=count_blocking_pairs(self.problem.collision.pairs, self.found.pair_counts.row(index)),
         )
 
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
-        story, metrics, found = self.explanation(index), self.outcomes.metrics, self.found
+        outcomes, metrics, found = self.outcomes, self.outcomes.metrics, self.found
         measured = [getattr(metrics, name)[index] for name in MEASURED]
-        row = pack_row(
-            found.q[index], measured, metrics.closest_pair[index], found.counts[index], found.pair_counts[index]
-        )
-        result = ResultMaker(self.problem, NAMES[self.engines[index]]).make(
-            row, self.targets[index], self.seed, self.first_stream + index, float(found.seconds[index])
-        )
-        return result.with_changes(
-            reached=story.stop_reason is StopReason.REACHED,
-            stop_reason=story.stop_reason,
-            reason=story.reason,
-            hint=story.hint,
-            blocking_pairs=story.blocking_pairs,
-            collision=_verdict(self.collision, index),
-            verified=_verdict(self.verified, index),
-            compile_seconds=self.compile_seconds,
-        )
+        blocked = found.pair_counts.row(index)
+        row = pack_row(found.q[index], measured, metrics.closest_pair[index], found.counts[index], blocked)
+        lane = self.targets[index], self.seed, self.first_stream + index, float(found.seconds[index])
+        result = _find_maker(self.problem, NAMES[found.engine[index]]).make(row, *lane)
+        own: dict[str, Any] = {"compile_seconds": self.compile_seconds}
+        if outcomes.asked[index]:
+            own["verified"] = bool(outcomes.verdicts[index])
+        if not outcomes.reached[index]:
+            story = self.explanation(index)
+            own |= {name: getattr(story, name) for name in ("stop_reason", "reason", "hint", "blocking_pairs")}
+            own |= {"reached": False}
+        return result.with_changes(**own)
+
+
+@lru_cache(maxsize=64)
+def _find_maker(problem: Problem, method: str) -> ResultMaker:
+    """What all rows of a problem share is made once."""
+    return ResultMaker(problem, method)
 
 
 def _verdict(column: MaskedBools, index: int) -> bool | None:

@@ -3,13 +3,14 @@
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from importlib import import_module
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
 from ikde.model.closed_form import find_still_arm, find_ur_arm
 from ikde.model.robot import Robot
 from ikde.model.target import KINDS, Target, Targets
@@ -18,13 +19,20 @@ from ikde.solver.cancellation import get_cancel_check
 from ikde.solver.engine_table import AUTO, ENGINES, NAMES
 from ikde.solver.engines.engine import Engine, SearchInputs
 from ikde.solver.engines.search_state import SearchState, make_search_state
+from ikde.solver.few import answer_few
 from ikde.solver.fixed import look
 from ikde.solver.problem import Problem
 from ikde.solver.proof import prove_many
 from ikde.solver.referee import Referee
 from ikde.solver.settings import SolveSettings
 
+Plan = tuple[tuple[str, int], ...]
+"""Engines in their order, each with its attempts."""
+
 REFUSALS = 16  # of one row by the grader, before the next engine takes over
+PIECE = 2**17  # targets: so many are finished before the next are begun, which bounds what is not kept
+PARTS = 16  # of a piece on each thread: their ends, where lanes run empty, cost little, and no thread waits long
+FEWEST = 512  # targets of a part that are worth a thread
 
 
 def search(
@@ -49,30 +57,64 @@ def search(
     how the attempts are cut into calls; with a timeout also on the clock.
     """
     targets = Targets.of(targets)
-    found = make_search_state(problem, len(targets))
+    found = make_search_state(problem, len(targets), None if problem.is_fixed else PIECE)
     if problem.is_fixed:
         look(problem, targets, found)
         return found
+    plan = _plan(problem, _kinds(targets), attempts)
+    (name, budget), *_ = plan
+    is_plain = name == "lm" and attempts is None and first_attempt == 0
+    if is_plain and answer_few(problem, targets, found, budget, seed=seed, streams=streams):
+        return found
+    found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
+    whole = len(targets) <= PIECE
+    for first in range(0, max(len(targets), 1), PIECE):
+        rows = slice(first, first + PIECE)
+        some, part = (targets, found) if whole else (targets[rows], found.piece(rows))
+        inputs = SearchInputs(problem, some, part, seed=seed, streams=streams[rows])
+        _search_piece(inputs, some, plan, first_attempt, attempts, threads or usable_cores(), spent_s)
+        found.pair_counts.keep(first, part.counts[:, COLLIDING].nonzero()[0])
+    found.pair_counts.drop_filled()
+    return found
+
+
+def _search_piece(
+    inputs: SearchInputs,
+    targets: Targets,
+    plan: Plan,
+    first_attempt: int,
+    attempts: int | None,
+    threads: int,
+    spent_s: float,
+) -> None:
+    """Search some targets, engine after engine."""
+    problem, found = inputs.problem, inputs.found
     referee = Referee(problem, targets, found)
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
-    inputs = SearchInputs(problem, targets, found, seed=seed, streams=streams)
-    plan = _plan(problem, inputs, attempts)
-    found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
-    for name, budget in plan:
-        rows = np.flatnonzero((found.counts[:, REACHED] == 0) & ~found.is_excluded() & (found.seconds < left_s))
+    for place, (name, budget) in enumerate(plan):
+        rows = ((found.counts[:, REACHED] == 0) & ~found.is_excluded() & (found.seconds < left_s)).nonzero()[0]
         if not len(rows):
             break
-        before, spent = found.score[rows].copy(), found.counts[:, ATTEMPTS] - first_attempt
-        lanes = _Lanes(make_engine(name, inputs), found, threads or usable_cores(), left_s)
+        before, spent = found.score[rows] if place else None, found.counts[:, ATTEMPTS] - first_attempt
+        lanes = _Lanes(make_engine(name, inputs), referee, threads, left_s)
         few = min(ENGINES[name].attempts_before_proof, budget)
         lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
-        if attempts is None and not (ENGINES[name].is_closed_form and name != plan[-1][0]):
-            _exclude(problem, targets, found)
-        lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
-        _go_on(lanes, referee, found, spent, first_attempt + budget)
-        found.engine[rows[(found.score[rows] != before).any(axis=1)]] = NAMES.index(name)
+        is_done = bool(found.metrics.accepted.all() and found.counts[:, REACHED].all())  # mostly
+        if not is_done:
+            if attempts is None and not (ENGINES[name].is_closed_form and name != plan[-1][0]):
+                _exclude(problem, targets, found)
+            lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
+            _go_on(lanes, referee, found, spent, first_attempt + budget)
+        if before is not None:
+            found.engine[rows[(found.score[rows] != before).any(axis=1)]] = NAMES.index(name)
+        if is_done:
+            return
     referee.refuse()  # also what no engine had time for has metrics
-    return found
+
+
+def _kinds(targets: Targets) -> tuple[str, ...]:
+    """The kinds of target there are."""
+    return tuple(KINDS[kind] for kind, count in enumerate(np.bincount(targets.kind).tolist()) if count)
 
 
 def make_engine(name: str, inputs: SearchInputs) -> Engine:
@@ -104,13 +146,13 @@ def find_free(lower: Floats, upper: Floats) -> set[int]:
     return set(np.flatnonzero(upper > lower).tolist())
 
 
-def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[tuple[str, int]]:
+@lru_cache(maxsize=64)
+def _plan(problem: Problem, kinds: tuple[str, ...], attempts: int | None) -> Plan:
     """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""
     robot, settings = problem.robot, problem.settings
     inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
-    kinds = {KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
     free = find_free(problem.lower, problem.upper)
-    names = choose_engines(robot, settings, kinds, inside=inside, free=free)
+    names = choose_engines(robot, settings, {*kinds}, inside=inside, free=free)
     stands_still = find_still_arm(robot, problem.lower, problem.upper) is not None
 
     def budget(name: str) -> int:
@@ -119,7 +161,7 @@ def _plan(problem: Problem, inputs: SearchInputs, attempts: int | None) -> list[
         before_next = ENGINES[name].attempts_before_next if name != names[-1] else None
         return attempts or before_next or settings.budget(name)
 
-    return [(name, budget(name)) for name in names]
+    return tuple((name, budget(name)) for name in names)
 
 
 def _exclude(problem: Problem, targets: Targets, found: SearchState) -> None:
@@ -132,22 +174,23 @@ def _exclude(problem: Problem, targets: Targets, found: SearchState) -> None:
 
 
 class _Lanes:
-    """One engine on all rows, piece by piece, each until its time `left_s` is up; it may go on where it stopped."""
+    """One engine on all rows, part by part, each until its time `left_s` is up; it may go on where it stopped."""
 
-    def __init__(self, engine: Engine, found: SearchState, threads: int, left_s: float) -> None:
-        self._engine, self._found, self._threads, self._left_s = engine, found, threads, left_s
-        count = len(found.q)
+    def __init__(self, engine: Engine, referee: Referee, threads: int, left_s: float) -> None:
+        self._engine, self._referee, self._threads, self._left_s = engine, referee, threads, left_s
+        self._found, count = referee.found, len(referee.found.q)
         if left_s < np.inf:
             _hurry(engine, count)
-        # No attempts at all: what `run` needs is compiled or loaded, and no clock counts it.
-        engine.call(range(min(count, 1)), 0, np.zeros(count, dtype=np.int64))
+        if not engine.is_ready:  # no attempts at all: what `run` needs is compiled or loaded, and no clock counts it
+            engine.call(range(min(count, 1)), 0, np.zeros(count, dtype=np.int64))
 
     def run(self, first: int, last: Ints) -> None:
-        """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet."""
+        """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet; grade what they lead to."""
         stop, check_cancelled, reached = threading.Event(), get_cancel_check(), self._found.counts[:, REACHED]
         open_rows = (reached == 0) & ~self._found.is_excluded() & (last > first)
+        if not open_rows.any():
+            return
         last = np.where(open_rows, last, first)
-        pieces = _cut(open_rows, self._engine.rows_per_call)
 
         def run(rows: range) -> None:
             inside = slice(rows.start, rows.stop)
@@ -161,8 +204,10 @@ class _Lanes:
                 started = time.perf_counter()
                 self._engine.call(rows, begin, last)
                 seconds[searched] += (time.perf_counter() - started) / np.count_nonzero(searched)
+            self._referee.grade(inside)
 
-        _on_threads(run, pieces, self._threads, stop)
+        parts = _cut(open_rows.nonzero()[0], self._engine.rows_per_call, self._threads)
+        run_on_threads(run, parts, self._threads, stop)
 
 
 def _go_on(lanes: _Lanes, referee: Referee, found: SearchState, spent: Ints, last_attempt: int) -> None:
@@ -186,10 +231,11 @@ def _hurry(engine: Engine, count: int) -> None:
     engine.attempts_per_call = min(engine.attempts_per_call, max(1, attempts // min(size, count)))
 
 
-def _cut(open_rows: NDArray[np.bool_], size: int) -> list[range]:
-    """All rows in pieces of `size`, without pieces that hold no open row."""
-    firsts = np.unique(np.flatnonzero(open_rows) // size) * size
-    return [range(first, min(first + size, len(open_rows))) for first in firsts.tolist()]
+def _cut(rows: Ints, most: int, threads: int) -> list[range]:
+    """Open rows in parts of at most `most`, each a range that may hold others."""
+    size = min(most, max(FEWEST, len(rows) // (PARTS * threads)))
+    parts = (rows[first : first + size] for first in range(0, len(rows), size))
+    return [range(int(part[0]), int(part[-1]) + 1) for part in parts]
 
 
 def usable_cores() -> int:
@@ -197,19 +243,43 @@ def usable_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _on_threads(run: Callable[[range], None], pieces: Sequence[range], threads: int, stop: threading.Event) -> None:
-    """Call `run` for every piece; the kernels let go of Python's lock, so plain threads use all cores."""
-    if len(pieces) <= 1 or threads == 1:
-        for piece in pieces:
-            run(piece)
-        return
-    from concurrent.futures import ThreadPoolExecutor  # 0.01 s, which one target need not pay
+def _wait(threads: Sequence[threading.Thread], stop: threading.Event) -> None:
+    """Until all have ended: what interrupts this, Ctrl-C above all, makes them end soon."""
+    try:
+        for thread in threads:
+            thread.join()
+    except BaseException:
+        stop.set()
+        for thread in threads:
+            thread.join()
+        raise
 
-    with ThreadPoolExecutor(threads) as pool:
+
+def run_on_threads(run: Callable[[range], None], parts: Sequence[range], threads: int, stop: threading.Event) -> None:
+    """Call `run` for every part, on this thread and others; the kernels let go of Python's lock, so all cores work.
+
+    Whatever is raised sets `stop` and is raised here, when no thread works any more.
+    """
+    waiting, raised = deque(parts), []
+
+    def work() -> None:
         try:
-            for _ in pool.map(run, pieces):
-                pass
-        except BaseException:
+            while not stop.is_set():
+                try:
+                    part = waiting.popleft()
+                except IndexError:  # none is left
+                    return
+                run(part)
+        except BaseException as error:
+            raised.append(error)
             stop.set()
-            pool.shutdown(cancel_futures=True)
-            raise
+
+    others = [threading.Thread(target=work) for _ in range(min(threads, len(parts)) - 1)]
+    try:
+        for thread in others:
+            thread.start()
+        work()
+    finally:
+        _wait(others, stop)
+    if raised:
+        raise raised[0]

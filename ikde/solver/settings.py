@@ -151,8 +151,8 @@ class BulkOptions:
     explain: bool = True
     """Whether short searches find out why a target was not reached; else its counts alone tell, at no cost."""
     verify: Verify = "sample"
-    """Which answers plain numpy grades as well: `all`, `sample` (one stream in 64), or `none`; beyond those, every
-    unreached one that is explained."""
+    """Which answers plain numpy grades as well: `all`, `sample` (the last 64 of each 4,096 streams), or `none`; beyond
+    those, every unreached one that is explained."""
 
     def __post_init__(self) -> None:
         check_rules(self, BULK_RULES, ("bulk",))

@@ -1,15 +1,16 @@
 """`solve` and `solve_many`: search, grade, explain."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from time import perf_counter
 
 from ikde.errors import InputError
-from ikde.model.collision_model import CollisionChoice
+from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
-from ikde.solver.problem import Freeze, make_problem
+from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.quick import find_quick
 from ikde.solver.quick_near import find_quick_near
 from ikde.solver.result import SolveResult
@@ -101,5 +102,17 @@ def solve_many(
     if not isinstance(bulk, BulkOptions | None):
         raise InputError(f"expected BulkOptions, got {bulk!r}", ("bulk",))
     chosen = choose_settings(settings, method)
-    problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
+    if near is None and freeze is None and weights is None:
+        problem = _find_problem(CollisionModel.of(robot, collision), chosen)
+    else:
+        problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
     return solve_rows(problem, targets, bulk or BulkOptions(), seed=check_seed(seed))
+
+
+@lru_cache(maxsize=16)
+def _find_problem(collision: CollisionModel, settings: SolveSettings) -> Problem:
+    """The whole robot's question: what is prepared for it (`search`, `engines.lm`) is prepared once."""
+    problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
+    for array in (problem.lower, problem.upper):
+        array.setflags(write=False)
+    return problem

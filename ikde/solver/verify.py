@@ -117,11 +117,11 @@ def verify_many(
 ) -> Grades:
     """Grade configurations `Q` [T, N] in the robot's own convention, a target each; as `verify`, in bulk."""
     robot = collision.robot
-    T_world_tool = compute_frames(robot, Q)[robot.tool]
-    targets = Targets.of(targets)
+    Ts_world, targets = compute_frames(robot, Q), Targets.of(targets)
+    T_world_tool = Ts_world[robot.tool]
     position = np.linalg.norm(T_world_tool[:, :3, 3] - targets.p_world_tool, axis=1)
     orientation = compute_orientation_errors(targets, T_world_tool[:, :3, :3])
-    gaps = compute_gaps(collision, Q)
+    gaps = compute_gaps(collision, Q, Ts_world=Ts_world)
     free = ~np.any(gaps <= collision.limit_m, axis=1)
     outside = ~((robot.lower <= Q) & (robot.upper >= Q))
     within = (position <= settings.position_tolerance_m) & (orientation <= settings.orientation_tolerance_rad)

@@ -118,8 +118,9 @@ def solve_together(module, asked, cuts=(), *, first=0, budgets=None, outputs=Non
         for start, stop in pairwise(ends):
             attempts = np.column_stack([np.full(stop - start, first), budgets[start:stop]])
             attempts[outputs[2][start:stop, REACHED] == 1, 1] = first
-            where = (asked.packed, np.array([start, stop]), asked.ranges, asked.descent, asked.seeds, np.uint64(9))
-            module.solve_targets(*models, *where, asked.streams, attempts, *outputs)
+            block = flatten_search(*models, asked.ranges, asked.descent, asked.seeds)
+            lanes = (np.array([start, stop]), np.uint64(9), asked.streams, attempts)
+            module.solve_targets(*block, *asked.packed, *lanes, *outputs)
     return outputs
 
 

@@ -12,7 +12,7 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, REACHED
 from ikde.model.bounds import find_bounds
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.search_state import make_search_state
+from ikde.solver.engines.search_state import keep_pairs, make_search_state
 from ikde.solver.explain import PROVED
 from ikde.solver.metrics import compute_metrics
 from ikde.solver.search import SearchState, search
@@ -264,7 +264,7 @@ def test_a_free_solution_that_a_probe_finds_is_not_called_a_collision(qiao, subs
             "ruled_out": np.full(1, -1),
             "metrics": compute_metrics(CollisionModel.of(qiao), targets, qiao.home[None]),
         }
-        return SearchState(q=solution.q[None], counts=counts, pair_counts=pair_counts, **some)
+        return SearchState(q=solution.q[None], counts=counts, pair_counts=keep_pairs(pair_counts), **some)
 
     substitute(search, after_the_first(search, probe))
     result = ikde.solve(qiao, TARGET, QUICK.with_changes(restarts=1, de={"generations": 3}))

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector, SphereRow
+from ikde.solver import plain
 from ikde.solver.plain import (
     compute_components,
     compute_frames,
@@ -130,3 +131,29 @@ def test_many_configurations_are_one_after_the_other(any_robot, rng):
         collision = CollisionModel(robot=any_robot, detector=detector)
         one_by_one = [compute_gaps(collision, q) for q in Q]
         assert compute_gaps(collision, Q) == pytest.approx(np.array(one_by_one), abs=1e-14)
+
+
+@pytest.mark.parametrize("at_once", [1, 60, 500, 10**6])
+def test_pairs_measured_in_groups_are_those_of_component_by_component(qiao, rng, monkeypatch, at_once):
+    collision, Q = CollisionModel.of(qiao), random_q(qiao, rng, 3)
+    components = compute_components(collision, Q)
+    expected = [compute_sphere_gaps(components[a], components[b]).min(axis=(-2, -1)) for a, b in collision.pairs]
+    monkeypatch.setattr(plain, "AT_ONCE", at_once)
+    assert compute_gaps(collision, Q).tobytes() == np.stack(expected, axis=-1).tobytes()
+    frames = compute_frames(qiao, Q)
+    assert compute_gaps(collision, Q, Ts_world=frames).tobytes() == np.stack(expected, axis=-1).tobytes()
+
+
+@pytest.mark.parametrize("most", [1, 20, 100, 10**6])
+def test_a_group_holds_no_more_pairs_of_spheres_than_asked_or_one_pair(qiao, most):
+    collision = CollisionModel.of(qiao)
+    sizes = tuple((name, len(radii)) for name, (_, radii) in compute_components(collision, qiao.home).items())
+    groups, size = plain.list_sphere_pairs(sizes, collision.pairs, most), dict(sizes)
+    pairs = [pair for some, *_ in groups for pair in collision.pairs[some]]
+    assert pairs == list(collision.pairs)
+    for some, i, j, starts in groups:
+        tests = [size[a] * size[b] for a, b in collision.pairs[some]]
+        assert len(i) == len(j) == sum(tests)
+        assert starts.tolist() == (np.cumsum(tests) - tests).tolist()
+        assert sum(tests) <= most or len(tests) == 1
+    assert (len(groups) == 1) == (most == 10**6)

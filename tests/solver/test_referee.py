@@ -6,8 +6,9 @@ import pytest
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, REACHED
 from ikde.model.collision_model import CollisionModel
-from ikde.model.target import KINDS
+from ikde.model.target import KINDS, Targets
 from ikde.solver import referee as module
+from ikde.solver.engines.search_state import make_search_state
 from ikde.solver.metrics import compute_metrics
 from ikde.solver.search import REFUSALS, search
 from ikde.solver.settings import BulkOptions
@@ -130,3 +131,24 @@ def test_what_is_graded_is_what_is_returned_turned_back(rng, substitute):
     assert (found.counts[:, REACHED] == 0).any()  # also the best of what is not reached
     wound = np.abs(found.q - robot.home) > np.pi
     assert not wound[:, [0, 1, 3, 4, 5]].any()  # the elbow has one turn only
+
+
+def test_rows_with_new_attempts_are_graded_once_and_no_others(qiao, substitute):
+    problem, graded = problem_of(qiao), []
+
+    def watched(collision, targets, Q, settings, limits):
+        graded.append([round(10.0 * target.p_world_tool[1]) for target in targets])
+        return compute_metrics(collision, targets, Q, settings, limits)
+
+    substitute(compute_metrics, watched)
+    found = make_search_state(problem, 5)
+    referee = module.Referee(problem, Targets.of(TARGETS), found)
+    found.counts[[3, 4], ATTEMPTS] = 1
+    referee.grade(slice(2, 5))
+    referee.grade(slice(2, 5))
+    assert graded == [[2, 3, 4]]  # also a row without any: it has metrics, too
+    assert np.isfinite(found.metrics.position_error_m).tolist() == [False, False, True, True, True]
+    found.counts[3, ATTEMPTS] = 2
+    referee.grade(slice(2, 5))
+    referee.refuse()
+    assert graded[-2:] == [[3], [0, 1]]

@@ -83,7 +83,15 @@ def watch_plain_numpy(substitute):
 
 @pytest.mark.parametrize(
     ("verify", "first_stream", "graded"),
-    [("all", 0, 130), ("none", 0, 0), ("sample", 0, 3), ("sample", 1, 2), ("sample", 64, 3)],
+    [
+        ("all", 0, 130),
+        ("none", 0, 0),
+        ("sample", 0, 0),
+        ("sample", 4000, 64),
+        ("sample", 4096, 0),
+        ("sample", 3 * 4096 - 70, 64),
+        ("sample", 8191, 1),
+    ],
 )
 def test_plain_numpy_grades_what_is_asked(qiao, substitute, verify, first_stream, graded):
     problem = problem_of(qiao, SWIFT)

@@ -15,7 +15,8 @@ from ikde.solver.engine_table import ENGINES, NAMES
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.proof import prove_many
-from ikde.solver.search import choose_engines, make_engine, search, usable_cores
+from ikde.solver.search import choose_engines, make_engine, run_on_threads, search, usable_cores
+from tests.conftest import random_q
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 from tests.scara import make_scara
@@ -31,7 +32,8 @@ def problem(qiao):
 
 
 def bits(found):
-    return found.q.tobytes(), found.counts.tobytes(), found.pair_counts.tobytes()
+    pairs = [found.pair_counts.row(row).tolist() for row in range(len(found.q))]
+    return found.q.tobytes(), found.counts.tobytes(), pairs
 
 
 def run(problem, targets=TARGETS, streams=range(5), **options):
@@ -288,3 +290,48 @@ def test_a_timeout_that_is_not_reached_changes_no_bits(qiao, rng, method, target
         return search(problem, asked, seed=1, streams=range(targets))
 
     assert bits(run(None)) == bits(run(1e6))
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize(("piece", "fewest"), [(1, 1), (7, 2), (13, 512), (26, 4)])
+def test_pieces_and_their_parts_do_not_change_the_bits(qiao, rng, monkeypatch, piece, fewest, threads):
+    kinds = ("pose", "position", "axis")
+    targets = [make_target(qiao, q, kinds[k % 3]) for k, q in enumerate(random_q(qiao, rng, 24))]  # some collide
+    targets[5:5] = [ikde.Target((50.0, 0.0, 1.0)), ikde.Target((0.0, 0.0, 0.2))]
+    problem = problem_of(qiao, flat_settings(ikde.SolveSettings(method="lm"), restarts=70))
+    whole = search(problem, targets, seed=3, streams=range(9, 35), threads=1)
+    assert whole.counts[:, COLLIDING].any()
+    monkeypatch.setattr(module, "PIECE", piece)
+    monkeypatch.setattr(module, "FEWEST", fewest)
+    found = search(problem, targets, seed=3, streams=range(9, 35), threads=threads)
+    assert bits(found) == bits(whole)
+    assert found.metrics.clearance_m.tobytes() == whole.metrics.clearance_m.tobytes()
+    assert (
+        found.metrics.accepted.tolist() == whole.metrics.accepted.tolist() == (whole.counts[:, REACHED] == 1).tolist()
+    )
+    assert found.excess_m.tolist() == whole.excess_m.tolist()
+    assert found.pair_counts.filled.size == 0  # what only kernels need is not kept
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_every_part_is_run_once(threads):
+    run = []
+    run_on_threads(run.append, [range(k, k + 1) for k in range(40)], threads, threading.Event())
+    assert sorted(part.start for part in run) == list(range(40))
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_an_error_ends_all_threads_and_is_raised(threads):
+    stop, begun = threading.Event(), []
+
+    def run(part):
+        begun.append(part.start)
+        if part.start == 3:
+            raise IndexError("of its own")
+        stop.wait(0.02)
+
+    with pytest.raises(IndexError, match="of its own"):
+        run_on_threads(run, [range(k, k + 1) for k in range(40)], threads, stop)
+    assert stop.is_set()
+    assert len(begun) < 20
+    assert not [thread for thread in threading.enumerate() if "(work)" in thread.name]

@@ -39,6 +39,7 @@ class Analytic:
     """Poses only; of an arm that alone may move one attempt shows all branches."""
 
     name = "analytic"
+    is_ready = False
     rows_per_call = 1024
     attempts_per_call = 256
 

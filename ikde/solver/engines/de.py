@@ -15,6 +15,7 @@ class DifferentialEvolution:
     """A lane a target: population after population."""
 
     name = "de"
+    is_ready = False
     attempts_per_call = 16
 
     def __init__(self, inputs: SearchInputs) -> None:

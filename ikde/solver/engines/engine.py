@@ -25,6 +25,8 @@ class Engine(Protocol):
     """Rows that share a call of the kernel."""
     attempts_per_call: int
     """Python hears Ctrl-C between calls."""
+    is_ready: bool
+    """Its kernels have run in this process: a call compiles and loads nothing."""
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last[row] - 1, at most `attempts_per_call`, on every row that is open."""
@@ -40,7 +42,8 @@ class SearchInputs:
         self.problem, self.found = problem, found
         self.targets: TargetArrays = pack_targets(targets)
         self.seed: np.uint64 = np.uint64(seed)
-        self.streams: Ints = np.array(streams, dtype=np.int64)
+        ends = (streams.start, streams.stop, streams.step) if isinstance(streams, range) else None
+        self.streams: Ints = np.arange(*ends) if ends else np.array(streams, dtype=np.int64)  # 60 ns a number otherwise
 
     def attempts(self, rows: range, first: int, last: Ints, kind: int | None = None) -> Ints:
         """Attempts [rows, 2] to make: first .. last - 1 where a row is open and its target of this kind, else none."""
@@ -48,14 +51,14 @@ class SearchInputs:
         wanted = (self.found.counts[inside, REACHED] == 0) & ~self.found.is_excluded(inside)
         if kind is not None:
             wanted &= self.targets.kind[inside] == kind
-        attempts = np.full((len(rows), 2), first)
-        attempts[:, 1] = np.where(wanted, last[inside], first)
+        attempts = np.empty((len(rows), 2), dtype=np.int64)
+        attempts[:, 0], attempts[:, 1] = first, np.where(wanted, last[inside], first)
         return attempts
 
     @property
     def outputs(self) -> Outputs:
         """What the kernels fill."""
-        return self.found.q, self.found.score, self.found.counts, self.found.pair_counts
+        return self.found.q, self.found.score, self.found.counts, self.found.pair_counts.filled
 
 
 def make_ranges(problem: Problem) -> Floats:

@@ -1,7 +1,8 @@
 """`lm`: damped least squares from collision-free seeds, by kernels written for the robot."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,10 +15,28 @@ from ikde.solver.engines.pool import load_kernels, make_seeds
 from ikde.solver.metrics import pack_grader
 from ikde.solver.problem import Problem, pack_searched
 
+Block = tuple[Floats, Ints, Floats, Floats]
+"""What `flatten_search` gives."""
+
 ONE_BY_ONE = ENGINES["lm"].one_by_one
 
 
-def pack_block(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> tuple[Floats, Ints, Floats, Floats]:
+class Prepared(NamedTuple):
+    """Kernels of one kind of target, and what they are handed that stays from target to target."""
+
+    kernels: Any
+    block: Block
+    ready: set[bool]
+    """Which have run: those of one by one (True), of many (False)."""
+
+
+@lru_cache(maxsize=16)
+def prepare(problem: Problem, kind: str) -> Prepared:
+    """What a problem needs for one kind of target."""
+    return Prepared(load_kernels(problem.collision, kind), pack_block(problem, kind), set())
+
+
+def pack_block(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> Block:
     """All that stays from target to target, as `solve_target` takes it."""
     settings = make_ranges(problem), make_descent(problem, kind), seeds or make_seeds(problem, kind)
     return flatten_search(*pack_searched(problem.collision), *settings)
@@ -39,38 +58,33 @@ class DampedLeastSquares:
     """Solves the rows of each kind of target with that kind's kernels."""
 
     name = "lm"
-    rows_per_call = 1024
+    rows_per_call = 4096
     attempts_per_call = 256
 
     def __init__(self, inputs: SearchInputs) -> None:
         self._inputs, problem = inputs, inputs.problem
-        names = {kind: KINDS[kind] for kind in np.unique(inputs.targets.kind).tolist()}
+        counts = np.bincount(inputs.targets.kind).tolist()
+        self._prepared = {kind: prepare(problem, KINDS[kind]) for kind, count in enumerate(counts) if count}
         self._one_by_one = len(inputs.streams) <= ONE_BY_ONE
-        prepare = prepare_search if self._one_by_one else self._prepare_many
-        self._searches = {kind: prepare(problem, name) for kind, name in names.items()}
+
+    @property
+    def is_ready(self) -> bool:
+        """Its kernels have run."""
+        return all(self._one_by_one in prepared.ready for prepared in self._prepared.values())
 
     def call(self, rows: range, first: int, last: Ints) -> None:
         """Make attempts first .. last - 1 on the rows that are not reached yet."""
         asked = self._inputs
-        stop = np.minimum(last, first + self.attempts_per_call)
-        for kind, search in self._searches.items():
-            attempts = asked.attempts(rows, first, stop, kind)
+        for kind, (kernels, block, ready) in self._prepared.items():
+            ready.add(self._one_by_one)
+            attempts = asked.attempts(rows, first, last, kind)
+            np.minimum(attempts, first + self.attempts_per_call, out=attempts)
             with np.errstate(over="ignore"):  # the random stream wraps around; without the JIT numpy would warn
                 if not self._one_by_one:
-                    search(rows, attempts)
+                    where = np.array([rows.start, rows.stop]), asked.seed, asked.streams, attempts
+                    kernels.solve_targets(*block, *asked.targets, *where, *asked.outputs)
                     continue
                 for row, (begin, end) in zip(rows, attempts.tolist(), strict=True):
                     outputs = tuple(array[row] for array in asked.outputs)
-                    search(*asked.targets, row, asked.seed, int(asked.streams[row]), begin, end, *outputs)
-
-    def _prepare_many(self, problem: Problem, kind: str) -> Callable[..., None]:
-        """The same on many targets, side by side: `search(rows, attempts)`."""
-        asked, module = self._inputs, load_kernels(problem.collision, kind)
-        models = module.use_models(*pack_searched(problem.collision))
-        settings = (make_ranges(problem), make_descent(problem, kind), make_seeds(problem, kind))
-
-        def search(rows: range, attempts: Ints) -> None:
-            where = (asked.targets, np.array([rows.start, rows.stop]))
-            module.solve_targets(*models, *where, *settings, asked.seed, asked.streams, attempts, *asked.outputs)
-
-        return search
+                    lane = row, asked.seed, int(asked.streams[row]), begin, end
+                    kernels.solve_target.compiled(*block, *asked.targets, *lane, *outputs)

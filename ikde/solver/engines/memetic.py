@@ -12,6 +12,7 @@ class Memetic:
     """A lane a target, each attempt a population of its own."""
 
     name = "memetic"
+    is_ready = False
     rows_per_call = 1
     attempts_per_call = 1
 

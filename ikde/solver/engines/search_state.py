@@ -10,6 +10,38 @@ from ikde.solver.problem import Problem
 from ikde.solver.verify import Bools
 
 
+class PairCounts:
+    """How often each of P pairs blocked each row: few rows have any, so kernels fill a piece of all at a time."""
+
+    def __init__(self, filled: Ints) -> None:
+        self.filled = filled  # [rows of a piece, P] what kernels add to
+        self._entries = np.empty((0, 3), dtype=np.int64)  # row, pair, how often; sorted by row
+
+    def keep(self, first: int, some: Ints) -> None:
+        """Take over what stands in rows `some` of `filled`, zero elsewhere, as that of rows `first` + `some`; clear it.
+
+        Rows come in order.
+        """
+        places, pairs = np.nonzero(self.filled[some])
+        if not len(places):
+            return
+        rows = some[places]
+        new = np.column_stack([first + rows, pairs, self.filled[rows, pairs]])
+        self._entries = np.concatenate([self._entries, new])
+        self.filled[rows, pairs] = 0
+
+    def drop_filled(self) -> None:
+        """Nothing will be added: a hundred thousand rows of qiao2021 are 28 MB, what is kept of them 0.4."""
+        self.filled = self.filled[:0].copy()
+
+    def row(self, index: int) -> Ints:
+        """Counts [P] of one row, of those that were kept."""
+        counts = np.zeros(self.filled.shape[1], dtype=np.int64)
+        first, last = np.searchsorted(self._entries[:, 0], (index, index + 1))
+        counts[self._entries[first:last, 1]] = self._entries[first:last, 2]
+        return counts
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SearchState:
     """What the kernels found, a row a target."""
@@ -17,7 +49,7 @@ class SearchState:
     q: Floats  # [T, N]
     score: Floats  # [T, 2] how good `q` is: 0 if the pose is met, else 1; then depth or cost in m
     counts: Ints  # [T, COUNTS]
-    pair_counts: Ints  # [T, P]
+    pair_counts: PairCounts  # [T, P]
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
     excess_rad: Floats  # [T] by how much its orientation is, likewise
     ruled_out: Ints  # [T] why branches prove that it has no solution: index into `result.STOP_REASONS`; -1: not proved
@@ -29,22 +61,37 @@ class SearchState:
         """Which of these targets are proved to have no solution [T]."""
         return (self.excess_m[rows] > 0.0) | (self.excess_rad[rows] > 0.0) | (self.ruled_out[rows] >= 0)
 
+    def piece(self, rows: slice) -> "SearchState":
+        """Some rows side by side, as views; their pairs are those that are filled now."""
+        return self._take(rows, self.pair_counts, self.metrics.piece(rows))
+
     def row(self, index: int) -> "SearchState":
         """One target's share."""
         rows = np.array([index])
-        columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        metrics = columns.pop("metrics").take(rows)
-        return SearchState(metrics=metrics, **{name: column[rows] for name, column in columns.items()})
+        pairs = keep_pairs(self.pair_counts.row(index)[None])
+        return self._take(rows, pairs, self.metrics.take(rows))
+
+    def _take(self, rows: Ints | slice, pair_counts: PairCounts, metrics: Metrics) -> "SearchState":
+        names = [field.name for field in fields(self) if field.name not in ("pair_counts", "metrics")]
+        columns = {name: getattr(self, name)[rows] for name in names}
+        return SearchState(pair_counts=pair_counts, metrics=metrics, **columns)
 
 
-def make_search_state(problem: Problem, count: int) -> SearchState:
-    """Buffers for so many targets, of which nothing is found yet."""
-    pairs = len(problem.collision.pairs)
+def keep_pairs(counts: Ints) -> PairCounts:
+    """What is kept of counts [T, P]."""
+    kept = PairCounts(counts.copy())
+    kept.keep(0, np.arange(len(counts)))
+    return kept
+
+
+def make_search_state(problem: Problem, count: int, piece: int | None = None) -> SearchState:
+    """Buffers for so many targets, of which nothing is found yet; pairs are counted for `piece` of them at a time."""
+    pairs, filled = len(problem.collision.pairs), count if piece is None else min(piece, count)
     return SearchState(
         q=np.zeros((count, len(problem.robot.joints))),
         score=np.full((count, 2), np.inf),
         counts=np.zeros((count, COUNTS), dtype=np.int64),
-        pair_counts=np.zeros((count, pairs), dtype=np.int64),
+        pair_counts=PairCounts(np.zeros((filled, pairs), dtype=np.int64)),
         excess_m=np.zeros(count),
         excess_rad=np.zeros(count),
         ruled_out=np.full(count, -1),
