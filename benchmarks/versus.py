@@ -100,13 +100,12 @@ def compare(sides: dict[str, Side], rounds: int, only: str) -> dict[str, dict[st
 
 
 def show(figures: dict[str, dict[str, Any]]) -> None:
-    """A line a case."""
-    width = max(len(name) for name in figures)
-    print(f"{'us a call: median / p95 / p99 / max':{width}}   before   |   after   |   ratio: min, median, max")
+    """A Markdown table, a line a case."""
+    print("| µs a call, median / p95 / p99 / max | before | after | ratio: least, median, largest |\n|---|---|---|---|")
     for name, row in figures.items():
-        sides = [" / ".join(f"{value:.5g}" for value in row.get(label, [])) or "-" for label in ("before", "after")]
-        ratio = " ".join(f"{value:.3f}" for value in row.get("ratio", [])) or "-"
-        print(f"{name:{width}}   {' | '.join(sides)} | {ratio}")
+        sides = [" / ".join(f"{value:.4g}" for value in row.get(label, [])) or "-" for label in ("before", "after")]
+        ratio = ", ".join(f"{value:.2f}" for value in row.get("ratio", [])) or "-"
+        print(f"| {name} | {' | '.join(sides)} | {ratio} |")
 
 
 def main() -> None:

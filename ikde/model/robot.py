@@ -197,6 +197,11 @@ class Robot:
         return np.where(is_all, first, np.minimum(first, lower)), np.where(is_all, last, np.maximum(last, upper))
 
     @property
+    def has_continuous(self) -> bool:
+        """Whether a joint has no limits."""
+        return _find_columns(self).is_continuous is not None
+
+    @property
     def is_prismatic(self) -> NDArray[np.bool_]:
         """Which joints are prismatic [N]."""
         return _find_columns(self).is_prismatic.copy()

@@ -53,6 +53,8 @@ class Problem:
     @property
     def drawn(self) -> tuple[Floats, Floats]:
         """Ranges [N] that seeds are drawn from: of a continuous joint one turn about home, wherever it may search."""
+        if not self.robot.has_continuous:
+            return self.lower, self.upper
         turns_freely = np.isinf(self.robot.lower) & (self.lower < self.upper)
         lower, upper = self.robot.drawn
         return np.where(turns_freely, lower, self.lower), np.where(turns_freely, upper, self.upper)

@@ -13,7 +13,7 @@ import numpy as np
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE, size_of
 from ikde.kernels.arrays import REACHED, Floats
 from ikde.kernels.jit import Kernel, compile_clock
-from ikde.model.closed_form import find_still_arm
+from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
@@ -25,7 +25,7 @@ from ikde.solver.explain import explain_reach
 from ikde.solver.problem import Problem, make_problem
 from ikde.solver.proof import prove
 from ikde.solver.result import ResultMaker, SolveResult, StopReason
-from ikde.solver.search import choose_engines
+from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings, choose_settings
 
 LM, CLOSED = "lm", "analytic"
@@ -97,9 +97,15 @@ class Plan(NamedTuple):
     all: int
 
 
-def make_plan(collision: CollisionModel, settings: SolveSettings, engines: Sequence[str]) -> Plan | None:
-    """None if another engine comes first, or without written kernels: then engine and grader would share their code."""
-    if runs_on_tables() or engines[0] not in (LM, CLOSED):
+def make_plan(collision: CollisionModel, settings: SolveSettings, kind: str, free: set[int]) -> Plan | None:
+    """The plan where the joints `free` may move; None if another engine comes first.
+
+    The closed form must be that of an arm that alone may move.
+    """
+    engines, arm = choose_engines(collision.robot, settings, {kind}, free=free), find_ur_arm(collision.robot)
+    if not free or engines[0] not in (LM, CLOSED) or kind not in ENGINES[engines[0]].target_kinds:
+        return None
+    if engines[0] == CLOSED and (arm is None or not free <= set(arm.coordinates)):
         return None
     joints, row, budget = len(collision.robot.joints), ENGINES[LM], settings.budget(LM)
     few = min(row.attempts_before_proof, budget)
@@ -194,17 +200,10 @@ def lay_out(problem: Problem, kind: str, engine: str) -> Sequence[Any]:
 def find_quick(
     robot: Robot, settings: SolveSettings | None, method: str, choice: CollisionChoice, kind: str
 ) -> Quick | None:
-    """The quick way of a question, or None: `make_plan`, or a robot that cannot move."""
+    """The quick way of a question, or None: without a plan, or on tables, where engine and grader would share code."""
     chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
-    problem = make_problem(robot, chosen, collision=collision, near=None, freeze=None)
-    engines = choose_engines(robot, chosen, {kind})
-    plan = None if problem.is_fixed else make_plan(collision, chosen, engines)
-    if plan is None or not fits(problem, plan, kind):
+    plan = make_plan(collision, chosen, kind, find_free(robot.lower, robot.upper))
+    if plan is None or runs_on_tables():
         return None
+    problem = make_problem(robot, chosen, collision=collision, near=None, freeze=None)
     return Quick(problem, plan, Ways(collision, kind), partial(lay_out, problem, kind))
-
-
-def fits(problem: Problem, plan: Plan, kind: str) -> bool:
-    """Whether the closed form, if it comes first, is that of an arm that alone may move, and asked for a pose."""
-    still = find_still_arm(problem.robot, problem.lower, problem.upper) is not None
-    return not plan.is_closed or (still and kind in ENGINES[CLOSED].target_kinds)

@@ -15,11 +15,11 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.engine import make_descent, make_ranges
-from ikde.solver.engines.pool import make_seeds
+from ikde.solver.engines.pool import make_seeds, runs_on_tables
 from ikde.solver.problem import Problem
-from ikde.solver.quick import CLOSED, LM, Plan, Quick, Ways, fits, make_plan
+from ikde.solver.quick import CLOSED, LM, Plan, Quick, Ways, make_plan
 from ikde.solver.result import SolveResult
-from ikde.solver.search import choose_engines, find_free
+from ikde.solver.search import find_free
 from ikde.solver.settings import SolveSettings
 
 
@@ -34,15 +34,14 @@ class QuickNear:
     def solve(self, problem: Problem, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
         """As `Quick.solve`."""
         plan = self._plans(problem.frozen)
-        if plan is None or not fits(problem, plan, self._kind):
+        if plan is None or runs_on_tables():
             return None
         return Quick(problem, plan, self._ways, partial(self._lay_out, problem)).solve(target, seed, stream, started)
 
     def _make_plan(self, frozen: tuple[str, ...]) -> Plan | None:
         robot = self._collision.robot
         free = {k for k in find_free(robot.lower, robot.upper) if robot.joint_names[k] not in frozen}
-        engines = choose_engines(robot, self._settings, {self._kind}, free=free)
-        return make_plan(self._collision, self._settings, engines) if free else None
+        return make_plan(self._collision, self._settings, self._kind, free)
 
     def _lay_out(self, problem: Problem, engine: str) -> Sequence[Any]:
         """The call of an engine as it was laid out for the one before, with the ranges of this one."""

@@ -4,6 +4,7 @@ import os
 import pickle
 import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,23 +15,28 @@ from ikde.kernels.arrays import ATTEMPTS, COLLIDING
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.lm import prepare_answer
 from ikde.solver.grade import confirm
-from ikde.solver.quick import Quick, QuickPose, find_quick
+from ikde.solver.quick import Quick, Ways, find_quick, lay_out, make_plan
 from ikde.solver.result import FIELDS
 from ikde.solver.results import solve_rows
-from ikde.solver.search import choose_engines
+from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings
 from tests.conftest import random_q
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
-AUTO = SolveSettings.for_method("auto")
+AUTO, LM = SolveSettings.for_method("auto"), SolveSettings.for_method("lm")
+
+
+def make_quick(robot, kind, settings=AUTO, detector=None):
+    """The quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
+    collision, problem = CollisionModel.of(robot, detector), problem_of(robot, settings, collision=detector)
+    plan = make_plan(collision, settings, kind, find_free(robot.lower, robot.upper))
+    return Quick(problem, plan, Ways(collision, kind), partial(lay_out, problem, kind))
 
 
 def solve_quick(robot, target, seed, stream, detector=None):
-    """By the quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
-    return Quick(CollisionModel.of(robot, detector), AUTO, target.kind).solve(target, seed, stream, 0.0)
+    return make_quick(robot, target.kind, detector=detector).solve(target, seed, stream, 0.0)
 
 
 def solve_long(robot, target, settings, seed, stream):
@@ -62,7 +68,7 @@ def test_a_quick_result_is_verified_once_plain_numpy_has_confirmed_it_and_not_be
 
 
 def test_each_distinct_solution_is_verified_however_the_first_was_found(qiao, substitute):
-    substitute(find_quick, lambda robot, settings, *_: Quick(CollisionModel.of(robot), settings, "position"))
+    substitute(find_quick, lambda robot, settings, *_: make_quick(robot, "position", settings))
     target, settings = ikde.Target((0.8, 0.5, 1.0)), SolveSettings(restarts=9)
     assert ikde.solve(qiao, target, settings).verified is None
     for count in (1, 2):
@@ -90,20 +96,21 @@ def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
         result.reached = False
 
 
-def test_what_the_grader_does_not_accept_goes_the_long_way(qiao, substitute):
-    substitute(prepare_answer, refuse)
-    assert solve_quick(qiao, ikde.Target((0.8, 0.5, 1.0)), 0, 0) is None
+def test_what_the_grader_does_not_accept_goes_the_long_way(qiao):
+    quick, target = make_quick(qiao, "position"), ikde.Target((0.8, 0.5, 1.0))
+    assert quick.solve(target, 0, 0, 0.0) is not None
+    quick._answer = refuse(quick._answer)
+    assert quick.solve(target, 0, 0, 0.0) is None
 
 
-def refuse(problem, kind):
-    """The call, with a grader that accepts nothing."""
-    answer = prepare_answer(problem, kind)
+def refuse(answer):
+    """A call whose grader accepts nothing."""
     return lambda *question: answer(*question) and False
 
 
 def test_what_is_not_reached_and_may_be_in_reach_goes_the_long_way(rng):
     panda, wanted = ikde.load_robot("panda"), 0
-    once = Quick(CollisionModel.of(panda), AUTO.with_changes(method="lm", restarts=1), "pose", is_last=True)
+    once = make_quick(panda, "pose", AUTO.with_changes(method="lm", restarts=1))
     for stream in range(60):
         target = make_target(panda, free_q(panda, rng), "pose")
         wanted += once.solve(target, 4, stream, 0.0) is None
@@ -162,7 +169,7 @@ def test_written_kernels_and_their_pool_serve_the_next_process_with_the_same_bit
     assert second[0] == "[0.0, 0.0] 0.0 True"
     assert first[1] == second[1]
     assert second[1].endswith("True")
-    assert len(list(tmp_path.rglob("*.npz"))) == 1
+    assert len(list(tmp_path.rglob("*.pool"))) == 0
 
 
 UR5 = ikde.load_robot("ur5")
@@ -177,7 +184,7 @@ def test_a_fixed_arm_is_answered_by_its_closed_form():
 
 def test_the_closed_form_answers_quickly_what_it_answers_the_long_way(rng):
     """Poses of any configuration, free or not: reached, out of reach, or left to the long way."""
-    quick, told = QuickPose(CollisionModel.of(UR5), AUTO), set()
+    quick, told = make_quick(UR5, "pose"), set()
     targets = [make_target(UR5, random_q(UR5, rng), "pose") for _ in range(60)]
     targets += [ikde.Target(p, R_world_tool=np.eye(3)) for p in rng.uniform(-1.0, 1.0, (20, 3))]
     for stream, target in enumerate(targets):
@@ -196,10 +203,10 @@ def test_the_closed_form_answers_quickly_what_it_answers_the_long_way(rng):
 
 def test_where_no_branch_is_free_lm_goes_on_with_what_was_counted(rng, monkeypatch):
     """A pose whose closed form is made to find nothing: `lm` finds a solution, and the counts are those of both."""
-    quick = QuickPose(CollisionModel.of(UR5), AUTO)
+    quick = make_quick(UR5, "pose")
     quick.solve(make_target(UR5, UR5.home, "pose"), 4, 0, 0.0)
     target = make_target(UR5, free_q(UR5, rng), "pose")
-    alone = Quick(CollisionModel.of(UR5), AUTO, "pose").solve(target, 4, 0, 0.0)
+    alone = make_quick(UR5, "pose", LM).solve(target, 4, 0, 0.0)
 
     def fail(T, seed, stream, first, last, out):
         whole = out[len(UR5.joints) + METRICS :].view(np.int64)
@@ -213,29 +220,29 @@ def test_where_no_branch_is_free_lm_goes_on_with_what_was_counted(rng, monkeypat
     assert (result.attempts, result.rejected) == (alone.attempts + 1, alone.rejected + 2)
     pair = CollisionModel.of(UR5).pairs[0]
     assert result.blocking_pairs[pair] == alone.blocking_pairs.get(pair, 0) + 2
-    monkeypatch.setattr(quick, "_has_next", False)
+    quick = make_quick(UR5, "pose", SolveSettings.for_method("analytic"))
+    quick.solve(target, 4, 0, 0.0)
+    monkeypatch.setattr(quick, "_answer", fail)
     assert quick.solve(target, 4, 0, 0.0) is None
 
 
 def test_the_quick_way_for_poses_is_that_of_arms_that_alone_may_move(monkeypatch):
     monkeypatch.delenv("IKDE_KERNELS")
-    qiao, find = ikde.load_robot("qiao2021"), find_quick.__wrapped__
-    assert isinstance(find(UR5, None, "auto", None, "pose"), QuickPose)
-    assert isinstance(find(UR5, None, "analytic", None, "pose"), QuickPose)
-    assert isinstance(find(UR5, None, "lm", None, "pose"), Quick)
-    assert isinstance(find(UR5, None, "auto", None, "axis"), Quick)
-    assert isinstance(find(qiao, None, "auto", None, "pose"), Quick)
-    for robot, kind in ((qiao, "pose"), (UR5, "axis")):
-        assert find(robot, None, "analytic", None, kind) is None
+    qiao = ikde.load_robot("qiao2021")
+
+    def is_closed(robot, method, kind):
+        found = find_quick.__wrapped__(robot, None, method, None, kind)
+        return found and found._plan.is_closed
+
+    assert is_closed(UR5, "auto", "pose") is is_closed(UR5, "analytic", "pose") is True
+    assert is_closed(UR5, "lm", "pose") is is_closed(UR5, "auto", "axis") is is_closed(qiao, "auto", "pose") is False
+    assert is_closed(qiao, "analytic", "pose") is is_closed(UR5, "analytic", "axis") is None
 
 
 def test_no_more_attempts_are_made_than_the_settings_allow(rng):
     panda = ikde.load_robot("panda")
     once, harder = AUTO.with_changes(method="lm", restarts=1), 0
-    quick, way = (
-        Quick(CollisionModel.of(panda), once, "pose", is_last=True),
-        Quick(CollisionModel.of(panda), AUTO, "pose"),
-    )
+    quick, way = make_quick(panda, "pose", once), make_quick(panda, "pose")
     for stream in range(40):
         target = make_target(panda, free_q(panda, rng), "pose")
         usual = way.solve(target, 4, stream, 0.0)
@@ -249,7 +256,7 @@ def test_no_more_attempts_are_made_than_the_settings_allow(rng):
 def test_a_search_that_is_begun_goes_on_where_it_stopped(rng):
     """Attempts 0 to 15, a bound, and then the others: together those of one search."""
     panda, on = ikde.load_robot("panda"), 0
-    way = Quick(CollisionModel.of(panda), AUTO, "pose")
+    way = make_quick(panda, "pose")
     for stream in range(300):
         corner = np.where(rng.random(7) < 0.5, panda.lower, panda.upper) + rng.uniform(-0.02, 0.02, 7)
         target = make_target(panda, corner.clip(panda.lower, panda.upper), "pose")
