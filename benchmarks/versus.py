@@ -29,7 +29,7 @@ class Side:
     """One checkout: a process that runs rounds when it is asked to."""
 
     def __init__(self, script: Path, checkout: Path) -> None:
-        environment = {**os.environ, "PYTHONPATH": str(checkout), "PYTHONWARNINGS": "ignore"}
+        environment = {**os.environ, "PYTHONPATH": str(checkout), "PYTHONWARNINGS": "ignore", "IKDE_COMPILE": "wait"}
         command = [sys.executable, str(Path(__file__).resolve()), str(script.resolve()), "--serve"]
         self._process = subprocess.Popen(
             command, env=environment, cwd=checkout, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
