@@ -60,6 +60,8 @@ CORRECTIONS = 2  # of one step that goes into a contact
 DONE = 1e-6  # square of the last step, as a share of |y|^2: a next one would be as its square
 DONE_SLIDING = 1e-8  # where each step is a share of the last one
 SHORTER, SHORTEST = 0.2, 0.05  # steps after a walk that got lost; m or rad
+LITTLE = 1e-5  # of its square: a step that wins less along contacts is the last
+TAKEN, LAST, LOST, CORRECTED = range(4)  # what comes of a step; one that goes into a contact is chosen anew
 ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
 
 
@@ -113,15 +115,25 @@ def yield_to_contacts(collision, share, work, count, contacts):
             work.tables.numbers[SLACK, i] += gap - margin - max(expected, 0.0)
 
 
-@inline_kernel
-def prepare_step(kind, length, weight, rank, count, carrying, tables):
-    """Set the free point of a step by the split in `tables`; returns whether the target bends the wrong way."""
+@leaf_kernel
+def prepare_step(robot, kind, ranges, length, weight, is_first, size, tables):
+    """Set the free point of a step from `HERE`; returns rank and rows of the target, and if it bends the wrong way.
+
+    `is_first`: there are no multipliers yet; `size`: how many joints move, and how many of them carry the tool.
+    """
+    count, carrying = size
+    used = fill_rows(robot, kind, length, weight, count, tables)
+    rank = split(tables, used, count)
+    set_motion(weight, ranges[2], tables.vectors[HERE], count, tables)
+    split_motion(tables, rank, count)
+    if is_first:
+        set_multipliers(tables, rank, used, tables.vectors[SPLIT])
     fill_bend(kind, length, weight, carrying, tables)
     fill_null(tables, rank, count)
     fill_hessian(tables, rank, count, carrying)
     is_bent = factor_hessian(tables, count - rank)
     set_free_point(tables, rank, count, carrying)
-    return is_bent
+    return rank, used, is_bent
 
 
 @leaf_kernel
@@ -145,98 +157,50 @@ def choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, 
 
 
 @leaf_kernel
-def take_motion_step(robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work):
-    """One step of the descent from `HERE`, whose poses and error are in `work`.
+def try_step(robot, collision, target, index, ranges, descent, weight, largest, rank, used, count, way, work):
+    """Go as much of the step as is better, and free if there are contacts; `way`: slides, contacts, enough.
 
-    `largest` of any joint, m or rad; `is_first`: there are no multipliers yet; `size`: how many joints move, and how
-    many of them carry the tool. Returns whether it was taken, whether it was the last that is worth while, and whether
-    the tool meets its target behind it.
+    `largest` of any joint, m or rad. Returns what came of it and whether the tool meets its target there.
     """
-    kind, length, (count, carrying) = target.kind[index], descent.rotation_length, size
-    contacts = list_contacts(robot, collision, weight, work, count) if slides else 0
-    used = fill_rows(robot, kind, length, weight, count, work.tables)
-    rank = split(work.tables, used, count)
-    if rank == count:
-        return False, True, False
-    set_motion(weight, ranges[2], work.tables.vectors[HERE], count, work.tables)
-    split_motion(work.tables, rank, count)
-    if is_first:
-        set_multipliers(work.tables, rank, used, work.tables.vectors[SPLIT])
-    is_bent = prepare_step(kind, length, weight, rank, count, carrying, work.tables)
-    is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
-    square = square_motion(weight, ranges[2], work.tables.vectors[HERE], count, work.tables)
-    doubt = choose_doubt(work.tables, used, count)
-    before, error = judge_place(work.tables, rank, used, square, doubt)
-    share, corrections = cap_step(weight, largest, count, work.tables), CORRECTIONS if contacts > 0 else 0
-    enough = (DONE_SLIDING if contacts > 0 or is_bent else DONE) * square
+    tables, length, (slides, contacts, enough) = work.tables, descent.rotation_length, way
+    square = square_motion(weight, ranges[2], tables.vectors[HERE], count, tables)
+    doubt = choose_doubt(tables, used, count)
+    before, error = judge_place(tables, rank, used, square, doubt)
+    share = cap_step(weight, largest, count, tables)
     for _ in range(TRIALS):
-        moved = set_trial(ranges, weight, share, count, work.tables)
-        if not is_possible or moved == 0.0:
+        moved = set_trial(ranges, weight, share, count, tables)
+        if moved == 0.0:
             break
-        position, orientation = place_tool(robot, target, index, length, work.tables.vectors[TRIAL], work.tables)
-        square_there = square_motion(weight, ranges[2], work.tables.vectors[TRIAL], count, work.tables)
-        after, behind = judge_place(work.tables, rank, used, square_there, doubt)
-        is_better = behind <= max(ALMOST * ALMOST * moved, error) and after < before
-        clear = not slides or is_free(collision, work)
-        if is_better and clear:
-            copy(work.tables.vectors[TRIAL], work.tables.vectors[HERE])
-            return True, moved <= enough, meets(descent, position, orientation)
-        if is_better and corrections > 0:
-            corrections -= 1
-            yield_to_contacts(collision, share, work, count, contacts)
-            is_possible = choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work)
-            share = cap_step(weight, largest, count, work.tables)
-        else:
-            share *= 0.5
-    return False, True, False
+        position, orientation = place_tool(robot, target, index, length, tables.vectors[TRIAL], tables)
+        square_there = square_motion(weight, ranges[2], tables.vectors[TRIAL], count, tables)
+        after, behind = judge_place(tables, rank, used, square_there, doubt)
+        if behind <= max(ALMOST * ALMOST * moved, error) and after < before:
+            if not slides or is_free(collision, work):
+                copy(tables.vectors[TRIAL], tables.vectors[HERE])
+                return (LAST if moved <= enough * square else TAKEN), meets(descent, position, orientation)
+            if contacts > 0:
+                yield_to_contacts(collision, share, work, count, contacts)
+                return CORRECTED, False
+        share *= 0.5
+    return LOST, False
 
 
 @leaf_kernel
-def stand(robot, collision, target, index, descent, slides, q, work):
-    """Go back to `q` [N]: its poses and error, and the places of its spheres."""
-    copy(q, work.tables.vectors[HERE])
-    place_tool(robot, target, index, descent.rotation_length, q, work.tables)
+def stand(robot, collision, target, index, descent, slides, work):
+    """Go back to `BEST`: its poses and error, and the places of its spheres."""
+    copy(work.tables.vectors[BEST], work.tables.vectors[HERE])
+    place_tool(robot, target, index, descent.rotation_length, work.tables.vectors[HERE], work.tables)
     if slides:
         is_free(collision, work)
 
 
 @leaf_kernel
-def walk(robot, collision, target, index, ranges, descent, weight, slides, q, work):
-    """Steps from `q` [N] on, free of collision if it slides; the last that meets the target is left in `BEST`.
-
-    It is no worse than those before it: what they win beside it they win within the tolerances. A walk that gets lost
-    begins again there, with shorter steps. Returns if any place is better than `q`.
-    """
-    size, largest = list_moving(robot, ranges, work.tables.whole[MOVING]), descent.largest_step
-    began, is_better = square_motion(weight, ranges[2], q, size[0], work.tables), False
-    is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
-    copy(q, work.tables.vectors[BEST])
-    stand(robot, collision, target, index, descent, slides, q, work)
-    for _ in range(MAX_STEPS):
-        taken, is_last, meets_there = take_motion_step(
-            robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work
-        )
-        if not taken:
-            if is_met or largest < SHORTEST:
-                break
-            is_first, is_met, largest = True, True, SHORTER * largest
-            stand(robot, collision, target, index, descent, slides, work.tables.vectors[BEST], work)
-            continue
-        is_first, is_met = False, meets_there
-        if is_met and square_motion(weight, ranges[2], work.tables.vectors[HERE], size[0], work.tables) < began:
-            is_better = True
-            copy(work.tables.vectors[HERE], work.tables.vectors[BEST])
-        if is_last and is_met:
-            break
-    return is_better
-
-
-@leaf_kernel
-def is_answer(robot, collision, target, index, ranges, descent, q, work):
-    """Whether `q` [N] meets the target, inside the joint ranges and free of collision."""
-    if not is_inside(ranges, q):
+def is_answer(robot, collision, target, index, ranges, descent, work):
+    """Whether `BEST` meets the target, inside the joint ranges and free of collision."""
+    if not is_inside(ranges, work.tables.vectors[BEST]):
         return False
-    position, orientation = place_tool(robot, target, index, descent.rotation_length, q, work.tables)
+    best, length = work.tables.vectors[BEST], descent.rotation_length
+    position, orientation = place_tool(robot, target, index, length, best, work.tables)
     return meets(descent, position, orientation) and is_free(collision, work)
 
 
@@ -254,26 +218,73 @@ def turn_back(robot, ranges, q):
 
 
 @leaf_kernel
-def descend_once(robot, collision, target, index, ranges, descent, weight, q, work):
-    """One walk that may slide along what is in the way, if one that does not ends in a collision."""
-    for slides in range(2):
-        if not walk(robot, collision, target, index, ranges, descent, weight, slides == 1, q, work):
-            return
-        if slides == 1 or is_answer(robot, collision, target, index, ranges, descent, work.tables.vectors[BEST], work):
-            copy(work.tables.vectors[BEST], q)
-            return
+def step_on(robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work):
+    """One step of the descent from `HERE`, whose poses and error are in `work`: what came of it, and if it meets."""
+    contacts = list_contacts(robot, collision, weight, work, size[0]) if slides else 0
+    rank, used, is_bent = prepare_step(
+        robot, target.kind[index], ranges, descent.rotation_length, weight, is_first, size, work.tables
+    )
+    enough = DONE_SLIDING if contacts > 0 or is_bent else DONE
+    outcome, is_met = CORRECTED, False
+    for correction in range(CORRECTIONS + 1):
+        if outcome != CORRECTED or rank == size[0]:
+            break
+        if not choose_step(ranges, weight, largest, rank, used, size[0], size[1], contacts, work):
+            break
+        way = slides, contacts if correction < CORRECTIONS else 0, enough
+        outcome, is_met = try_step(
+            robot, collision, target, index, ranges, descent, weight, largest, rank, used, size[0], way, work
+        )
+    return (LOST if outcome == CORRECTED else outcome), is_met
 
 
 @leaf_kernel
-def descend_to_near(robot, collision, target, index, ranges, descent, weight, q, work):
-    """`reduce_motion` with the buffers given: again from where a joint has moved so far that a full turn is nearer."""
-    if is_answer(robot, collision, target, index, ranges, descent, ranges[2], work):
+def reduce_row(robot, collision, target, index, ranges, descent, weight, size, q, work):
+    """`reduce_motion` with the buffers given; `size` as `list_moving` gives it.
+
+    A walk leaves in `BEST` the last place that meets the target: it is no worse than those before it, since what they
+    win beside it they win within the tolerances. A walk that gets lost begins again there, with shorter steps. From
+    where a joint has moved so far that a full turn is nearer, it is walked again.
+    """
+    copy(ranges[2], work.tables.vectors[BEST])
+    turns, slides = (MOST_TURNS if is_answer(robot, collision, target, index, ranges, descent, work) else 0), size[0] < 0
+    if turns > 0:
         copy(ranges[2], q)
-        return
-    for _ in range(MOST_TURNS):
-        descend_once(robot, collision, target, index, ranges, descent, weight, q, work)
+    while turns < MOST_TURNS:
+        began, is_better = square_motion(weight, ranges[2], q, size[0], work.tables), False
+        largest, steps, reached = descent.largest_step, 0, began
+        is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
+        copy(q, work.tables.vectors[BEST])
+        while steps < MAX_STEPS:
+            if is_first or steps == 0:
+                stand(robot, collision, target, index, descent, slides, work)
+            outcome, meets_there = step_on(
+                robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work
+            )
+            steps += 1
+            if outcome == LOST:
+                if is_met or largest < SHORTEST:
+                    break
+                is_first, is_met, largest = True, True, SHORTER * largest
+                continue
+            is_first, is_met = False, meets_there
+            square = square_motion(weight, ranges[2], work.tables.vectors[HERE], size[0], work.tables)
+            if is_met and square < began:
+                is_better = True
+                copy(work.tables.vectors[HERE], work.tables.vectors[BEST])
+                if slides and reached - square < LITTLE * square:
+                    break
+                reached = square
+            if outcome == LAST and is_met:
+                break
+        if is_better and not slides and not is_answer(robot, collision, target, index, ranges, descent, work):
+            slides = True
+            continue
+        if is_better:
+            copy(work.tables.vectors[BEST], q)
+        turns, slides = turns + 1, False
         if not turn_back(robot, ranges, q):
-            return
+            break
 
 
 @kernel
@@ -295,12 +306,14 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
         q: [N] within tolerance, in the ranges and free.
     """
     work = make_motion_work(robot, collision, q.size)
-    descend_to_near(robot, collision, target, index, ranges, descent, weight, q, work)
+    size = list_moving(robot, ranges, work.tables.whole[MOVING])
+    reduce_row(robot, collision, target, index, ranges, descent, weight, size, q, work)
 
 
 @kernel
 def reduce_motions(robot, collision, target, rows, ranges, descent, weight, q):
     """`reduce_motion` of some rows [K] of `q` [T, N], a target each: the same bits."""
     work = make_motion_work(robot, collision, q.shape[1])
+    size = list_moving(robot, ranges, work.tables.whole[MOVING])
     for row in rows:
-        descend_to_near(robot, collision, target, row, ranges, descent, weight, q[row], work)
+        reduce_row(robot, collision, target, row, ranges, descent, weight, size, q[row], work)
