@@ -135,7 +135,7 @@ def find_nearest_point(spaces, count, y):
 
     It moves by the sum of the active normals times their multipliers; behind them stands -1 in `active`.
     """
-    used = 0
+    used = np.int64(0)  # a literal would be compiled into functions of its own
     for _ in range(MAX_ROUNDS):
         worst = find_most_violated(spaces, count, y)
         if worst < 0:

@@ -116,12 +116,14 @@ def yield_to_contacts(collision, share, work, count, contacts):
 
 
 @leaf_kernel
-def prepare_step(robot, kind, ranges, length, weight, is_first, size, tables):
-    """Set the free point of a step from `HERE`; returns rank and rows of the target, and if it bends the wrong way.
+def prepare_step(robot, collision, kind, ranges, length, weight, is_first, slides, size, work):
+    """Set the free point of a step from `HERE`, whose poses and error are in `work`.
 
     `is_first`: there are no multipliers yet; `size`: how many joints move, and how many of them carry the tool.
+    Returns rank and rows of the target, how many contacts are near, and which share of |y|^2 is too little to go on.
     """
-    count, carrying = size
+    tables, (count, carrying) = work.tables, size
+    contacts = list_contacts(robot, collision, weight, work, count) if slides else 0
     used = fill_rows(robot, kind, length, weight, count, tables)
     rank = split(tables, used, count)
     set_motion(weight, ranges[2], tables.vectors[HERE], count, tables)
@@ -133,13 +135,13 @@ def prepare_step(robot, kind, ranges, length, weight, is_first, size, tables):
     fill_hessian(tables, rank, count, carrying)
     is_bent = factor_hessian(tables, count - rank)
     set_free_point(tables, rank, count, carrying)
-    return rank, used, is_bent
+    return rank, used, contacts, DONE_SLIDING if contacts > 0 or is_bent else DONE
 
 
 @leaf_kernel
-def choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, work):
+def choose_step(ranges, weight, largest, rank, used, size, contacts, work):
     """The step to the least motion within joint ranges and contacts, and its multipliers; False if there is none."""
-    is_possible = contacts == 0
+    is_possible, (count, carrying) = contacts == 0, size
     copy(work.tables.vectors[FREE_POINT], work.tables.vectors[POINT])
     set_step(work.tables, rank, count)
     is_bound = contacts > 0 or not stays_inside(ranges, weight, work.tables, count)
@@ -157,12 +159,13 @@ def choose_step(ranges, weight, largest, rank, used, count, carrying, contacts, 
 
 
 @leaf_kernel
-def try_step(robot, collision, target, index, ranges, descent, weight, largest, rank, used, count, way, work):
-    """Go as much of the step as is better, and free if there are contacts; `way`: slides, contacts, enough.
+def try_step(robot, collision, target, index, ranges, descent, weight, largest, way, work):
+    """Go as much of the step as is better, and free if there are contacts; `way`: rank, used, count, slides,
+    contacts, enough.
 
     `largest` of any joint, m or rad. Returns what came of it and whether the tool meets its target there.
     """
-    tables, length, (slides, contacts, enough) = work.tables, descent.rotation_length, way
+    tables, length, (rank, used, count, slides, contacts, enough) = work.tables, descent.rotation_length, way
     square = square_motion(weight, ranges[2], tables.vectors[HERE], count, tables)
     doubt = choose_doubt(tables, used, count)
     before, error = judge_place(tables, rank, used, square, doubt)
@@ -217,83 +220,13 @@ def turn_back(robot, ranges, q):
     return is_changed
 
 
-@leaf_kernel
-def step_on(robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work):
-    """One step of the descent from `HERE`, whose poses and error are in `work`: what came of it, and if it meets."""
-    contacts = list_contacts(robot, collision, weight, work, size[0]) if slides else 0
-    rank, used, is_bent = prepare_step(
-        robot, target.kind[index], ranges, descent.rotation_length, weight, is_first, size, work.tables
-    )
-    enough = DONE_SLIDING if contacts > 0 or is_bent else DONE
-    outcome, is_met = CORRECTED, False
-    for correction in range(CORRECTIONS + 1):
-        if outcome != CORRECTED or rank == size[0]:
-            break
-        if not choose_step(ranges, weight, largest, rank, used, size[0], size[1], contacts, work):
-            break
-        way = slides, contacts if correction < CORRECTIONS else 0, enough
-        outcome, is_met = try_step(
-            robot, collision, target, index, ranges, descent, weight, largest, rank, used, size[0], way, work
-        )
-    return (LOST if outcome == CORRECTED else outcome), is_met
-
-
-@leaf_kernel
-def reduce_row(robot, collision, target, index, ranges, descent, weight, size, q, work):
-    """`reduce_motion` with the buffers given; `size` as `list_moving` gives it.
-
-    A walk leaves in `BEST` the last place that meets the target: it is no worse than those before it, since what they
-    win beside it they win within the tolerances. A walk that gets lost begins again there, with shorter steps. From
-    where a joint has moved so far that a full turn is nearer, it is walked again.
-    """
-    copy(ranges[2], work.tables.vectors[BEST])
-    turns, slides = (MOST_TURNS if is_answer(robot, collision, target, index, ranges, descent, work) else 0), size[0] < 0
-    if turns > 0:
-        copy(ranges[2], q)
-    while turns < MOST_TURNS:
-        began, is_better = square_motion(weight, ranges[2], q, size[0], work.tables), False
-        largest, steps, reached = descent.largest_step, 0, began
-        is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
-        copy(q, work.tables.vectors[BEST])
-        while steps < MAX_STEPS:
-            if is_first or steps == 0:
-                stand(robot, collision, target, index, descent, slides, work)
-            outcome, meets_there = step_on(
-                robot, collision, target, index, ranges, descent, weight, largest, is_first, size, slides, work
-            )
-            steps += 1
-            if outcome == LOST:
-                if is_met or largest < SHORTEST:
-                    break
-                is_first, is_met, largest = True, True, SHORTER * largest
-                continue
-            is_first, is_met = False, meets_there
-            square = square_motion(weight, ranges[2], work.tables.vectors[HERE], size[0], work.tables)
-            if is_met and square < began:
-                is_better = True
-                copy(work.tables.vectors[HERE], work.tables.vectors[BEST])
-                if slides and reached - square < LITTLE * square:
-                    break
-                reached = square
-            if outcome == LAST and is_met:
-                break
-        if is_better and not slides and not is_answer(robot, collision, target, index, ranges, descent, work):
-            slides = True
-            continue
-        if is_better:
-            copy(work.tables.vectors[BEST], q)
-        turns, slides = turns + 1, False
-        if not turn_back(robot, ranges, q):
-            break
-
-
 @kernel
 def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
     """Move `q` [N], which meets target `index`, to a local minimum of the motion from `near`, in place.
 
     The motion is sqrt(sum (w_j (q_j - near_j))^2); the target stays met, the joint ranges kept, and nothing collides.
     It never grows: where nothing better is found `q` stays, to the bit. If `near` itself is an answer, `q` becomes
-    that, to the bit.
+    that, to the bit. All loops are in this one function: each further level took 4 s to compile.
 
     Args:
         robot: `RobotArrays`.
@@ -305,15 +238,58 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
         weight: [N] above 0, per m or per rad.
         q: [N] within tolerance, in the ranges and free.
     """
-    work = make_motion_work(robot, collision, q.size)
-    size = list_moving(robot, ranges, work.tables.whole[MOVING])
-    reduce_row(robot, collision, target, index, ranges, descent, weight, size, q, work)
+    work, kind, length = make_motion_work(robot, collision, q.size), target.kind[index], descent.rotation_length
+    here, best, size = work.tables.vectors[HERE], work.tables.vectors[BEST], list_moving(robot, ranges, work.tables)
+    copy(ranges[2], best)
+    if is_answer(robot, collision, target, index, ranges, descent, work):
+        copy(best, q)
+        return
+    walks, slides = MOST_TURNS, size[0] < 0
+    while walks > 0:
+        largest, began, is_better = (
+            descent.largest_step,
+            square_motion(weight, ranges[2], q, size[0], work.tables),
+            False,
+        )
+        is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
+        began = square = square_motion(weight, ranges[2], q, size[0], work.tables)
+        copy(q, best)
+        for _ in range(MAX_STEPS if is_first else 0):
+            if is_first:
+                stand(robot, collision, target, index, descent, slides, work)
+            rank, used, contacts, enough = prepare_step(
+                robot, collision, kind, ranges, length, weight, is_first, slides, size, work
+            )
+            outcome, meets_there, corrections = CORRECTED if rank < size[0] else LOST, False, CORRECTIONS
+            while outcome == CORRECTED and choose_step(ranges, weight, largest, rank, used, size, contacts, work):
+                way = rank, used, size[0], slides, contacts if corrections > 0 else 0, enough
+                outcome, meets_there = try_step(
+                    robot, collision, target, index, ranges, descent, weight, largest, way, work
+                )
+                corrections -= 1
+            if outcome >= LOST:
+                if is_met or largest < SHORTEST:
+                    break
+                is_first, is_met, largest = True, True, SHORTER * largest
+                continue
+            before, square = square, square_motion(weight, ranges[2], here, size[0], work.tables)
+            is_first, is_met = False, meets_there
+            if is_met and square < began:
+                is_better = True
+                copy(here, best)
+            if is_met and (outcome == LAST or (slides and 0.0 <= before - square < LITTLE * square)):
+                break
+        slides = is_better and not slides and not is_answer(robot, collision, target, index, ranges, descent, work)
+        if not slides:
+            walks -= 1
+            if is_better:
+                copy(best, q)
+            if not turn_back(robot, ranges, q):
+                return
 
 
 @kernel
 def reduce_motions(robot, collision, target, rows, ranges, descent, weight, q):
     """`reduce_motion` of some rows [K] of `q` [T, N], a target each: the same bits."""
-    work = make_motion_work(robot, collision, q.shape[1])
-    size = list_moving(robot, ranges, work.tables.whole[MOVING])
     for row in rows:
-        reduce_row(robot, collision, target, row, ranges, descent, weight, size, q[row], work)
+        reduce_motion(robot, collision, target, row, ranges, descent, weight, q[row])

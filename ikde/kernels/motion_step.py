@@ -8,6 +8,8 @@ the point L^T u, the least within joint ranges and contacts is the nearest point
 
 import math
 
+import numpy as np
+
 from ikde.kernels.clearance import find_colliding_pair
 from ikde.kernels.contacts import fill_gradient, find_contacts
 from ikde.kernels.dual_active_set import find_nearest_point
@@ -240,7 +242,7 @@ def add_half_space(work, size, offset, owner, at):
 @inline_kernel
 def fill_half_spaces(ranges, weight, largest, work, rank, count, contacts):
     """Contacts, and the ends of joint ranges nearer than `largest` (m or rad), as half spaces; returns how many."""
-    size, at = count - rank, 0
+    size, at = count - rank, np.int64(0)  # a literal would be compiled into functions of its own
     for k in range(count):
         joint = work.tables.whole[MOVING, k]
         for side in range(2):

@@ -29,14 +29,14 @@ SOFTEST = 1e-10  # share of the square of the largest row: what a row this weak 
 
 
 @inline_kernel
-def list_moving(robot, ranges, out_moving):
+def list_moving(robot, ranges, tables):
     """The joints that have room to move; returns how many, and how many of them carry the tool."""
     count, carrying = 0, 0
     for carries in (1, 0):
         for body in range(1, robot.bodies.shape[0]):
             joint = robot.bodies[body, COORDINATE]
             if robot.bodies[body, MOVES_TOOL] == carries and ranges[1, joint] > ranges[0, joint]:
-                out_moving[count] = joint
+                tables.whole[MOVING, count] = joint
                 count += 1
         if carries == 1:
             carrying = count

@@ -22,7 +22,7 @@ def split_at(robot, target, q, weight):
     """Tables, weighed Jacobian over the joints that move, rank, rows and counts at `q`."""
     arrays, packed = pack_robot(robot), pack_targets([target])
     tables = rooms.make_motion_work(arrays, CollisionModel.of(robot, "none").arrays, len(q)).tables
-    count, carrying = kernels.list_moving(arrays, np.array([robot.lower, robot.upper]), tables.whole[0])
+    count, carrying = kernels.list_moving(arrays, np.array([robot.lower, robot.upper]), tables)
     kernels.place_tool(arrays, packed, 0, LENGTH, q, tables)
     used = kernels.fill_rows(arrays, packed.kind[0], LENGTH, weight, count, tables)
     first = motion_work.ROWS
