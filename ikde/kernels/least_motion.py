@@ -30,6 +30,8 @@ from ikde.kernels.motion_step import (
 from ikde.kernels.motion_work import (
     ALONG,
     BEST,
+    ERROR,
+    ERROR_HERE,
     FREE_POINT,
     HERE,
     MOVING,
@@ -167,6 +169,7 @@ def try_step(robot, collision, target, index, ranges, descent, weight, largest, 
     """
     tables, length, (rank, used, count, slides, contacts, enough) = work.tables, descent.rotation_length, way
     square = square_motion(weight, ranges[2], tables.vectors[HERE], count, tables)
+    copy(tables.numbers[ERROR, :6], tables.numbers[ERROR_HERE, :6])
     doubt = choose_doubt(tables, used, count)
     before, error = judge_place(tables, rank, used, square, doubt)
     share = cap_step(weight, largest, count, tables)
@@ -183,6 +186,7 @@ def try_step(robot, collision, target, index, ranges, descent, weight, largest, 
                 return (LAST if moved <= enough * square else TAKEN), meets(descent, position, orientation)
             if contacts > 0:
                 yield_to_contacts(collision, share, work, count, contacts)
+                copy(tables.numbers[ERROR_HERE, :6], tables.numbers[ERROR, :6])
                 return CORRECTED, False
         share *= 0.5
     return LOST, False

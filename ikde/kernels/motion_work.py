@@ -25,7 +25,8 @@ FREE_POINT, POINT, PRODUCT, ROW = range(8, 12)
 JACOBIAN, ROWS, TURNED, SLOPE = 12, 18, 24, 27
 
 NULL, BEND, HESSIAN = range(3)  # of `matrices`: motions that leave the tool, a row each; reduced, then its factor
-ERROR, MULTIPLIER, DIAGONAL, SCALE, SLACK = range(5)  # rows of `numbers`: of the target's rows, of L, of gaps in m
+# rows of `numbers`: of the target's rows, of L, of gaps in m, the tool's error where the step begins
+ERROR, MULTIPLIER, DIAGONAL, SCALE, SLACK, ERROR_HERE = range(6)
 MOVING, ORDER, PAIR = range(3)  # rows of `whole`: joints, parents first; the target's row of each row; pairs of gaps
 
 
@@ -34,7 +35,7 @@ class MotionTables(NamedTuple):
 
     vectors: Floats  # [SLOPE + MAX_CONTACTS, N]
     matrices: Floats  # [3, N, N]
-    numbers: Floats  # [5, MAX_CONTACTS]
+    numbers: Floats  # [6, MAX_CONTACTS]
     whole: Ints  # [3, N or MAX_CONTACTS]
     T_world_body: Floats  # [B, 3, 4]
     T_world_tool: Floats  # [3, 4]
@@ -56,7 +57,7 @@ def make_motion_work(robot, collision, joints):
     tables = MotionTables(
         np.empty((SLOPE + MAX_CONTACTS, joints)),
         np.empty((3, joints, joints)),
-        np.empty((5, MAX_CONTACTS)),
+        np.empty((6, MAX_CONTACTS)),
         np.empty((3, max(joints, MAX_CONTACTS)), dtype=np.int64),
         np.empty((robot.bodies.shape[0], 3, 4)),
         np.empty((3, 4)),
