@@ -56,13 +56,14 @@ from ikde.kernels.tool_tangent import (
 from ikde.kernels.turns import unwind
 
 MAX_STEPS = 40
+MAX_SLIDES = 32  # 24 lose 2 of 18 long walks
+RETURNING = 4  # last steps, which do nothing but bring the tool back to its target
 MOST_TURNS = 4  # walks, each from where a full turn brings a joint nearer
 TRIALS = 10  # of one step: halved, or turned away from a contact
 CORRECTIONS = 2  # of one step that goes into a contact
 DONE = 1e-6  # square of the last step, as a share of |y|^2: a next one would be as its square
 DONE_SLIDING = 1e-8  # where each step is a share of the last one
 SHORTER, SHORTEST = 0.2, 0.05  # steps after a walk that got lost; m or rad
-LITTLE = 1e-5  # of its square: a step that wins less along contacts is the last
 TAKEN, LAST, LOST, CORRECTED = range(4)  # what comes of a step; one that goes into a contact is chosen anew
 ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
 
@@ -72,6 +73,13 @@ def copy(source, target):
     """Copy [N]."""
     for k in range(source.size):
         target[k] = source[k]
+
+
+@inline_kernel
+def clear(target):
+    """Zeros into `target` [N]."""
+    for k in range(target.size):
+        target[k] = 0.0
 
 
 @inline_kernel
@@ -256,14 +264,17 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
             False,
         )
         is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
-        began = square = square_motion(weight, ranges[2], q, size[0], work.tables)
+        began = square_motion(weight, ranges[2], q, size[0], work.tables)
         copy(q, best)
-        for _ in range(MAX_STEPS if is_first else 0):
+        steps = (MAX_SLIDES if slides else MAX_STEPS) if is_first else 0
+        for step in range(steps):
             if is_first:
                 stand(robot, collision, target, index, descent, slides, work)
             rank, used, contacts, enough = prepare_step(
                 robot, collision, kind, ranges, length, weight, is_first, slides, size, work
             )
+            if not is_met and step >= steps - RETURNING:
+                clear(work.tables.vectors[FREE_POINT])
             outcome, meets_there, corrections = CORRECTED if rank < size[0] else LOST, False, CORRECTIONS
             while outcome == CORRECTED and choose_step(ranges, weight, largest, rank, used, size, contacts, work):
                 way = rank, used, size[0], slides, contacts if corrections > 0 else 0, enough
@@ -276,12 +287,12 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
                     break
                 is_first, is_met, largest = True, True, SHORTER * largest
                 continue
-            before, square = square, square_motion(weight, ranges[2], here, size[0], work.tables)
+            square = square_motion(weight, ranges[2], here, size[0], work.tables)
             is_first, is_met = False, meets_there
             if is_met and square < began:
                 is_better = True
                 copy(here, best)
-            if is_met and (outcome == LAST or (slides and 0.0 <= before - square < LITTLE * square)):
+            if is_met and outcome == LAST:
                 break
         slides = is_better and not slides and not is_answer(robot, collision, target, index, ranges, descent, work)
         if not slides:

@@ -18,7 +18,9 @@ def test_each_name_has_its_rows(qiao):
     tables = work.tables
     assert sorted(rows) == list(range(len(tables.vectors)))
     assert len(tables.matrices) == len({names.NULL, names.BEND, names.HESSIAN})
-    assert len(tables.numbers) == len({names.ERROR, names.MULTIPLIER, names.DIAGONAL, names.SCALE, names.SLACK, names.ERROR_HERE})
+    assert len(tables.numbers) == len(
+        {names.ERROR, names.MULTIPLIER, names.DIAGONAL, names.SCALE, names.SLACK, names.ERROR_HERE}
+    )
     assert len(tables.whole) == len({names.MOVING, names.ORDER, names.PAIR})
     assert len(tables.length) == len(tables.owner) == len(work.spaces.normals) == 2 * 9 + names.MAX_CONTACTS
     assert min(tables.numbers.shape[1], tables.whole.shape[1], len(work.contacts.gap)) >= names.MAX_CONTACTS
