@@ -126,10 +126,10 @@ def yield_to_contacts(collision, share, work, count, contacts):
 
 
 @leaf_kernel
-def prepare_step(robot, collision, kind, ranges, length, weight, is_first, slides, size, work):
+def prepare_step(robot, collision, kind, ranges, length, weight, is_first, slides, returns, size, work):
     """Set the free point of a step from `HERE`, whose poses and error are in `work`.
 
-    `is_first`: there are no multipliers yet; `size`: how many joints move, and how many of them carry the tool.
+    `is_first`: there are no multipliers yet; `returns`: it only brings the tool back; `size`: how many joints move, and how many of them carry the tool.
     Returns rank and rows of the target, how many contacts are near, and which share of |y|^2 is too little to go on.
     """
     tables, (count, carrying) = work.tables, size
@@ -145,6 +145,8 @@ def prepare_step(robot, collision, kind, ranges, length, weight, is_first, slide
     fill_hessian(tables, rank, count, carrying)
     is_bent = factor_hessian(tables, count - rank)
     set_free_point(tables, rank, count, carrying)
+    if returns:
+        clear(tables.vectors[FREE_POINT])
     return rank, used, contacts, DONE_SLIDING if contacts > 0 or is_bent else DONE
 
 
@@ -258,11 +260,7 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
         return
     walks, slides = MOST_TURNS, size[0] < 0
     while walks > 0:
-        largest, began, is_better = (
-            descent.largest_step,
-            square_motion(weight, ranges[2], q, size[0], work.tables),
-            False,
-        )
+        largest, is_better = descent.largest_step, False
         is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own
         began = square_motion(weight, ranges[2], q, size[0], work.tables)
         copy(q, best)
@@ -270,11 +268,10 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
         for step in range(steps):
             if is_first:
                 stand(robot, collision, target, index, descent, slides, work)
+            returns = not is_met and step >= steps - RETURNING
             rank, used, contacts, enough = prepare_step(
-                robot, collision, kind, ranges, length, weight, is_first, slides, size, work
+                robot, collision, kind, ranges, length, weight, is_first, slides, returns, size, work
             )
-            if not is_met and step >= steps - RETURNING:
-                clear(work.tables.vectors[FREE_POINT])
             outcome, meets_there, corrections = CORRECTED if rank < size[0] else LOST, False, CORRECTIONS
             while outcome == CORRECTED and choose_step(ranges, weight, largest, rank, used, size, contacts, work):
                 way = rank, used, size[0], slides, contacts if corrections > 0 else 0, enough
