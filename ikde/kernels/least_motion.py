@@ -129,7 +129,8 @@ def yield_to_contacts(collision, share, work, count, contacts):
 def prepare_step(robot, collision, kind, ranges, length, weight, is_first, slides, returns, size, work):
     """Set the free point of a step from `HERE`, whose poses and error are in `work`.
 
-    `is_first`: there are no multipliers yet; `returns`: it only brings the tool back; `size`: how many joints move, and how many of them carry the tool.
+    `is_first`: there are no multipliers yet; `returns`: it only brings the tool back; `size`: how many
+    joints move, and how many of them carry the tool.
     Returns rank and rows of the target, how many contacts are near, and which share of |y|^2 is too little to go on.
     """
     tables, (count, carrying) = work.tables, size

@@ -164,6 +164,18 @@ def test_a_second_descent_finds_nothing_more(qiao, kind, rng):
     assert first * (1.0 - 1e-4) <= second <= first
 
 
+def test_a_walk_that_is_cut_short_returns_to_its_target(qiao, rng, monkeypatch):
+    steps = {"MAX_STEPS": 5, "RETURNING": 3}
+    for name, count in steps.items():
+        monkeypatch.setitem(kernels.reduce_motion.__globals__, name, count)
+    shares = []
+    for _ in range(8):
+        problem, target, q = make_case(qiao, "pose", rng, angle_rad=1.0)
+        end = reduce_motion(problem, target, q)
+        shares.append(motion(problem.weights, problem.near, end) / motion(problem.weights, problem.near, q))
+    assert np.count_nonzero(np.array(shares) < 0.99) >= 6
+
+
 def test_heavy_joints_stand_and_light_ones_move(qiao, rng):
     near = free_q(qiao, rng)
     q = beside(qiao, near, rng, 0.3)
