@@ -60,6 +60,27 @@ ROSTER = (
         packages=("EAIK",),
     ),
     Entry(
+        name="EAIK",
+        adapter="eaik_:Fixed",
+        use="HPRobot(H, P).IK for an arm on a fixed base; the first branch that is exact, inside and free (numba)",
+        packages=("EAIK",),
+    ),
+    Entry(
+        name="RoboPlan SimpleIk",
+        adapter="roboplan_:Simple",
+        use="SimpleIk.solveIk(goal, home, solution) with its defaults (step 0.25, 100 iterations, 2 restarts, 5 ms) and "
+        "our tolerances; asked again from a collision-free start while it fails",
+        packages=("roboplan", "pin", "coal"),
+    ),
+    Entry(
+        name="RoboPlan SimpleIk, one call",
+        adapter="roboplan_:Simple",
+        use="the same with restarts and time without end, step_size=1, max_iters=40: the best mean of four steps, "
+        "three dampings and two limits here",
+        packages=("roboplan", "pin", "coal"),
+        options={"step_size": 1.0, "max_iters": 40, "max_restarts": 1_000_000, "max_time": 5.0},
+    ),
+    Entry(
         name="Pinocchio, LM loop in C++",
         adapter="pinocchio:InCpp",
         use="the same loop, seeds and sphere check compiled with g++ -O3 -march=native against the wheel's headers",

@@ -3,8 +3,9 @@
     python benchmarks/peers/run.py                                  # all cases, all peers: about ten minutes
     python benchmarks/peers/run.py --only ikde rtb --cases pose --targets 20 --out try.json
 
-In each round every peer works on its next targets for at most a slice of time, in a new order; then comes the next
-round, so that a swing of the machine's clock hits all alike. All peers get the same targets from the first on; a peer
+In each turn every peer works on its next targets for at most a slice of time, in a new order; then comes the next
+turn, so that a swing of the machine's clock hits all alike. With `--rounds` all targets are asked over and over, and
+each figure is its median over the rounds. All peers get the same targets from the first on; a peer
 that has used up its share of time for a case stops there, so slow ones answer fewer (the counts are on record). An
 answer after the time limit does not count; a peer that gives none in more than twice that is stopped, and that is on
 record. What comes back is graded by ikde's plain numpy (`verify_many`) before it counts as solved.
@@ -56,13 +57,17 @@ class Tally:
 def run_case(
     case: Case, warm_up: Case, setup: Setup, clients: list[Client], options: argparse.Namespace
 ) -> dict[str, Any]:
-    """All peers on one case, after a few targets that do not count."""
-    tallies = [prepare(client, case.name, setup, warm_up, options) for client in clients]
-    order = np.random.default_rng(options.seed)
-    while waiting := [k for k, tally in enumerate(tallies) if is_waiting(tally, len(case.p), options)]:
-        for k in order.permutation(waiting):
-            take_turn(clients[k], tallies[k], case, options)
-    return {c.entry.name: summarise(case, tally, options) for c, tally in zip(clients, tallies, strict=True)}
+    """All peers on one case, once or over and over, after a few targets that do not count."""
+    order, rounds = np.random.default_rng(options.seed), []
+    for _ in range(options.rounds):
+        tallies = [prepare(client, case.name, setup, warm_up, options) for client in clients]
+        while waiting := [k for k, tally in enumerate(tallies) if is_waiting(tally, len(case.p), options)]:
+            for k in order.permutation(waiting):
+                take_turn(clients[k], tallies[k], case, options)
+        rounds.append(tallies)
+    return {
+        clients[k].entry.name: summarise(case, list(row), options) for k, row in enumerate(zip(*rounds, strict=True))
+    }
 
 
 def prepare(client: Client, case: str, setup: Setup, warm_up: Case, options: argparse.Namespace) -> Tally:
@@ -121,25 +126,34 @@ def grade(case: Case, answers: list[Answer], options: argparse.Namespace) -> np.
     return accepted & returned & np.array([seconds <= options.limit for seconds, _ in answers])
 
 
-def summarise(case: Case, tally: Tally, options: argparse.Namespace) -> dict[str, Any]:
-    """Shares and times of one peer in one case; times over all targets it was asked, solved or not."""
-    record: dict[str, Any] = {**{k: round(v, 4) for k, v in tally.start.items()}, "asked": len(tally.answers)}
-    if tally.lost:
-        record["lost"] = tally.lost
-    if not tally.answers:
+def summarise(case: Case, tallies: list[Tally], options: argparse.Namespace) -> dict[str, Any]:
+    """Shares and times of one peer in one case over all rounds; times over all targets it was asked, solved or not."""
+    answers = [answer for tally in tallies for answer in tally.answers]
+    record: dict[str, Any] = {k: round(v, 4) for k, v in tallies[0].start.items()}
+    record |= {"asked": len(answers), "rounds": len(tallies)}
+    if lost := [tally.lost for tally in tallies if tally.lost]:
+        record["lost"] = lost[0]
+    if not answers:
         return record
-    solved = grade(case, tally.answers, options)
-    ms = np.array([seconds for seconds, _ in tally.answers]) * 1e3
+    asked = [tally for tally in tallies if tally.answers]
+    solved = np.concatenate([grade(case, tally.answers, options) for tally in asked])
     record["solved"] = int(solved.sum())
-    record["returned"] = sum(q is not None for _, q in tally.answers)
-    record["ms"] = {name: shorten(np.percentile(ms, p)) for name, p in PERCENTILES.items()} | {
-        "mean": shorten(ms.mean())
-    }
+    record["returned"] = sum(q is not None for _, q in answers)
+    record["ms"] = take_figures([[seconds * 1e3 for seconds, _ in tally.answers] for tally in asked])
+    ms = np.array([seconds for seconds, _ in answers]) * 1e3
     times = np.sort(ms[solved])
     if times.size:
         picks = np.unique(np.linspace(0, times.size - 1, CURVE_POINTS).astype(int))
         record["curve"] = [[shorten(times[k]), round((k + 1) / len(ms), 6)] for k in picks]
     return record
+
+
+def take_figures(rounds: list[list[float]]) -> dict[str, float]:
+    """Median, tails and mean of each round; of these the median over the rounds."""
+    figures = [[*np.percentile(ms, list(PERCENTILES.values())), np.mean(ms)] for ms in rounds]
+    return {
+        name: shorten(value) for name, value in zip((*PERCENTILES, "mean"), np.median(figures, axis=0), strict=True)
+    }
 
 
 def shorten(value: float) -> float:
@@ -159,6 +173,7 @@ def read_options() -> argparse.Namespace:
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES)
     parser.add_argument("--only", nargs="+", default=None, metavar="WORD", help="peers whose name holds a word")
     parser.add_argument("--tolerance", nargs=2, type=float, default=(1e-4, 1e-3), metavar=("M", "RAD"))
+    parser.add_argument("--rounds", type=int, default=1, help="times that a case is gone through")
     parser.add_argument("--limit", type=float, default=5.0, help="seconds a target")
     parser.add_argument("--share", type=float, default=3.0, help="seconds a peer and case")
     parser.add_argument("--least", type=int, default=3, help="targets that even a slow peer is asked")
@@ -226,10 +241,10 @@ def format_record(record: dict[str, Any]) -> str:
 
 def print_case(name: str, peers: dict[str, Any]) -> None:
     """A line a peer."""
-    print(f"\n{name}: solved of asked, ms median / p95 / p99 / max")
+    print(f"\n{name}: solved of asked, ms median / p95 / p99 / max / mean")
     for peer, row in sorted(peers.items(), key=lambda item: item[1].get("ms", {}).get("median", np.inf)):
         if "ms" in row:
-            times = " / ".join(f"{row['ms'][k]:.4g}" for k in PERCENTILES)
+            times = " / ".join(f"{row['ms'][k]:.4g}" for k in (*PERCENTILES, "mean"))
             print(f"  {peer:42} {row['solved']:6} of {row['asked']:6}  {times}  {row.get('lost', '')}")
         else:
             print(f"  {peer:42} {row.get('lost')}")
