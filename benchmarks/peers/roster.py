@@ -24,8 +24,13 @@ class Entry:
 
 
 def select(words: list[str] | None) -> list[int]:
-    """Places in `ROSTER` of those whose adapter or name holds a word."""
-    return [k for k, e in enumerate(ROSTER) if words is None or any(word in f"{e.adapter} {e.name}" for word in words)]
+    """Places in `ROSTER` of those whose adapter or name holds a word; a whole name means that one alone."""
+    names = {entry.name for entry in ROSTER}
+
+    def is_meant(entry: Entry, word: str) -> bool:
+        return word == entry.name if word in names else word in f"{entry.adapter} {entry.name}"
+
+    return [k for k, e in enumerate(ROSTER) if words is None or any(is_meant(e, word) for word in words)]
 
 
 def _ikde(method: str) -> Entry:
@@ -68,7 +73,7 @@ ROSTER = (
     Entry(
         name="RoboPlan SimpleIk",
         adapter="roboplan_:Simple",
-        use="SimpleIk.solveIk(goal, home, solution) with its defaults (step 0.25, 100 iterations, 2 restarts, 5 ms) and "
+        use="SimpleIk.solveIk(goal, home, solution) with its defaults (step 0.25, 100 iterations, 2 restarts, 5 ms), "
         "our tolerances; asked again from a collision-free start while it fails",
         packages=("roboplan", "pin", "coal"),
     ),

@@ -171,7 +171,7 @@ def read_options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--targets", type=int, default=500, help="targets a case")
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES)
-    parser.add_argument("--only", nargs="+", default=None, metavar="WORD", help="peers whose name holds a word")
+    parser.add_argument("--only", nargs="+", default=None, metavar="WORD", help="peers by name or a word of it")
     parser.add_argument("--tolerance", nargs=2, type=float, default=(1e-4, 1e-3), metavar=("M", "RAD"))
     parser.add_argument("--rounds", type=int, default=1, help="times that a case is gone through")
     parser.add_argument("--limit", type=float, default=5.0, help="seconds a target")
