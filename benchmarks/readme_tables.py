@@ -209,8 +209,8 @@ def format_peers(record: dict[str, Any], tables: Sequence[tuple[str, str]], adap
 
 
 def format_rounds(rounds: int) -> str:
-    """What figures are of several rounds."""
-    return f", the median of {rounds} rounds" if rounds > 1 else ""
+    """What is taken of several rounds."""
+    return f" of each target's median over {rounds} rounds" if rounds > 1 else ""
 
 
 def format_ahead(record: dict[str, Any]) -> str:

@@ -4,11 +4,12 @@
     python benchmarks/peers/run.py --only ikde rtb --cases pose --targets 20 --out try.json
 
 In each turn every peer works on its next targets for at most a slice of time, in a new order; then comes the next
-turn, so that a swing of the machine's clock hits all alike. With `--rounds` all targets are asked over and over, and
-each figure is its median over the rounds. All peers get the same targets from the first on; a peer
-that has used up its share of time for a case stops there, so slow ones answer fewer (the counts are on record). An
-answer after the time limit does not count; a peer that gives none in more than twice that is stopped, and that is on
-record. What comes back is graded by ikde's plain numpy (`verify_many`) before it counts as solved.
+turn, so that a swing of the machine's clock hits all alike. With `--rounds` all targets are asked over and over, and a
+target's time is its median over the rounds; the rounds' own figures are on record beside it. All peers get the same
+targets from the first on; a peer that has used up its share of time for a case stops there, so slow ones answer fewer
+(the counts are on record). An answer after the time limit does not count; a peer that gives none in more than twice
+that is stopped, and that is on record. What comes back is graded by ikde's plain numpy (`verify_many`) before it counts
+as solved.
 """
 
 import argparse
@@ -17,6 +18,7 @@ import re
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -139,7 +141,10 @@ def summarise(case: Case, tallies: list[Tally], options: argparse.Namespace) -> 
     solved = np.concatenate([grade(case, tally.answers, options) for tally in asked])
     record["solved"] = int(solved.sum())
     record["returned"] = sum(q is not None for _, q in answers)
-    record["ms"] = take_figures([[seconds * 1e3 for seconds, _ in tally.answers] for tally in asked])
+    rounds = [[seconds * 1e3 for seconds, _ in tally.answers] for tally in asked]
+    record["ms"] = take_figures(take_medians(rounds))
+    if len(rounds) > 1:
+        record["ms_of_rounds"] = [take_figures(ms) for ms in rounds]
     ms = np.array([seconds for seconds, _ in answers]) * 1e3
     times = np.sort(ms[solved])
     if times.size:
@@ -148,12 +153,14 @@ def summarise(case: Case, tallies: list[Tally], options: argparse.Namespace) -> 
     return record
 
 
-def take_figures(rounds: list[list[float]]) -> dict[str, float]:
-    """Median, tails and mean of each round; of these the median over the rounds."""
-    figures = [[*np.percentile(ms, list(PERCENTILES.values())), np.mean(ms)] for ms in rounds]
-    return {
-        name: shorten(value) for name, value in zip((*PERCENTILES, "mean"), np.median(figures, axis=0), strict=True)
-    }
+def take_figures(ms: Sequence[float]) -> dict[str, float]:
+    """Median, tails and mean."""
+    return {name: shorten(np.percentile(ms, p)) for name, p in PERCENTILES.items()} | {"mean": shorten(np.mean(ms))}
+
+
+def take_medians(rounds: list[list[float]]) -> list[float]:
+    """Of each target that was asked in every round its median over them."""
+    return np.median([ms[: min(map(len, rounds))] for ms in rounds], axis=0).tolist()
 
 
 def shorten(value: float) -> float:
