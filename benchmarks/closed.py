@@ -1,11 +1,10 @@
-"""A UR5 on a fixed base: `ikde.solve`, which answers by its closed form, beside `lm` alone and EAIK's closed form.
+"""A UR5 on a fixed base: `ikde.solve`, which answers by its closed form, beside `lm` alone.
 
     python benchmarks/closed.py [--targets N] [--rounds N] [--sets ordinary hard none]
 
-needs EAIK (`pip install eaik`). Each round asks every way for every target, all in one shuffled order, from Python, on
-one core, and reads the clock around each call. EAIK's `HPRobot.IK` gives all branches; the first that is exact, inside
-the limits and free by the checker that all peers share (compiled) is its answer. Figures are of each target's median
-over the rounds; every answer is graded by plain numpy. Bulk is microseconds a target of `solve_many` on one thread.
+Each round asks every way for every target, all in one shuffled order, from Python, on one core, and reads the clock
+around each call. Figures are of each target's median over the rounds; every answer is graded by plain numpy. Bulk is
+microseconds a target of `solve_many` on one thread. Others' closed forms: `benchmarks/peers/run.py`, case *ur5 pose*.
 Ordinary and hard poses as in `benchmarks/peers/cases.py`; *none* are poses of which no branch is free, or none exists.
 With all sets it writes benchmarks/results/closed.json.
 """
@@ -17,9 +16,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-import numba
 import numpy as np
-from eaik.IK_HP import HPRobot
 from machine import describe
 from rich.console import Console
 from rich.table import Table
@@ -30,7 +27,6 @@ from ikde.model.rotation import rotation_from_quat_wxyz
 
 sys.path.insert(0, str(Path(__file__).parent / "peers"))
 from cases import draw_hard, draw_ordinary
-from checker import make_checker
 
 RESULTS = Path(__file__).parent / "results" / "closed.json"
 SEED = 20261
@@ -99,38 +95,7 @@ def make_ways(robot: ikde.Robot, targets: list[ikde.Target]) -> dict[str, Solve]
     return {
         "ikde.solve": lambda k: by_ikde(k, "auto"),
         "ikde.solve, lm": lambda k: by_ikde(k, "lm"),
-        "EAIK": make_eaik(robot, targets),
     }
-
-
-def make_eaik(robot: ikde.Robot, targets: list[ikde.Target]) -> Solve:
-    """All branches, and the first that is exact, inside and free; targets are in EAIK's own type already."""
-    frames = ikde.forward(robot, np.zeros(len(robot.joints)))
-    moving = [frame for frame in robot.frames if frame.joint]
-    T_tool, Ts = frames[robot.tool], [frames[frame.name] for frame in moving]
-    points = np.array([np.zeros(3), *(T[:3, 3] for T in Ts), T_tool[:3, 3]])
-    axes = np.array([T[:3, :3] @ frame.axis for T, frame in zip(Ts, moving, strict=True)])
-    solver = HPRobot(axes, np.diff(points, axis=0))
-    assert solver.hasKnownDecomposition()
-    poses = [np.vstack([target.T_world_tool, [0.0, 0.0, 0.0, 1.0]]) for target in targets]
-    for T in poses:  # EAIK's end effector is turned like the world at q = 0
-        T[:3, :3] = T[:3, :3] @ T_tool[:3, :3].T
-    lower, upper, is_free = robot.lower, robot.upper, make_checker(robot, SEED).is_free
-
-    @numba.njit
-    def choose(branches: Floats, approximate: np.ndarray) -> int:
-        for row in range(branches.shape[0]):
-            q = branches[row]
-            if not approximate[row] and np.all(q >= lower) and np.all(q <= upper) and is_free(q):
-                return row
-        return -1
-
-    def solve(k: int) -> Floats | None:
-        answer = solver.IK(poses[k])
-        row = choose(answer.Q, answer.is_LS) if len(answer.Q) else -1
-        return answer.Q[row] if row >= 0 else None
-
-    return solve
 
 
 def time_ways(ways: dict[str, Solve], count: int, rounds: int) -> tuple[dict[str, Floats], dict[str, list]]:

@@ -181,7 +181,8 @@ def format_race(row: dict[str, Any]) -> str:
 
 
 PEER_TABLES = (("pose", "hard pose"), ("position", "hard position"), ("paper task 1", "paper task 2"))
-ENOUGH = {"median": 1, "p95": 20, "p99": 100, "max": 1}  # targets that a figure asks for
+ARM_TABLES = (("ur5 pose", "ur5 hard pose"), ("pose", "hard pose"))
+ENOUGH = {"median": 1, "p95": 20, "p99": 100, "max": 1, "mean": 1}  # targets of a round that a figure asks for
 
 
 def format_peers(record: dict[str, Any], tables: Sequence[tuple[str, str]], adapters: str) -> str:
@@ -191,8 +192,8 @@ def format_peers(record: dict[str, Any], tables: Sequence[tuple[str, str]], adap
     lines = [
         f"ikde beside other solvers, interleaved, one core each, tolerances {position:g} m and {orientation:g} rad, "
         "limits and self-collision inside success, every answer graded by plain numpy; ms over all targets asked, "
-        f"median / p95 / p99 / max ({options['limit']:g} s at most, slow ones are asked fewer). How each is used: "
-        f"[benchmarks/peers]({adapters}).",
+        f"median / p95 / p99 / max / mean{format_rounds(options.get('rounds', 1))} ({options['limit']:g} s at most, "
+        f"slow ones are asked fewer). How each is used: [benchmarks/peers]({adapters}).",
     ]
     for names in tables:
         cases = [name for name in names if name in record["cases"]]
@@ -207,6 +208,28 @@ def format_peers(record: dict[str, Any], tables: Sequence[tuple[str, str]], adap
     return "\n".join(lines)
 
 
+def format_rounds(rounds: int) -> str:
+    """What is taken of several rounds."""
+    return f" of each target's median over {rounds} rounds" if rounds > 1 else ""
+
+
+def format_ahead(record: dict[str, Any]) -> str:
+    """In which figures of which cases another solver that solves as many is quicker than `ikde.solve`."""
+    found = []
+    for case, rows in record["cases"].items():
+        ours = rows["ikde"]
+        for name, row in rows.items():
+            if (
+                name.startswith("ikde")
+                or "ms" not in row
+                or row["solved"] * ours["asked"] < ours["solved"] * row["asked"]
+            ):
+                continue
+            ahead = [key for key in ENOUGH if row["ms"][key] < ours["ms"][key]]
+            found += [f"{name} on *{case}* ({', '.join(ahead)})"] if ahead else []
+    return f"Quicker than `ikde` here: {'; '.join(found)}." if found else "None is quicker than `ikde` in any figure."
+
+
 def order_peers(rows: dict[str, Any]) -> list[str]:
     """Names by median time; those that could not be used are left out."""
     used = [name for name, row in rows.items() if "ms" in row]
@@ -217,7 +240,8 @@ def format_peer(row: dict[str, Any]) -> str:
     """One cell: how many were solved of how many, and the times; no percentile of too few targets."""
     if "ms" not in row:
         return "-"
-    times = " / ".join(format_ms(row["ms"][key]) if row["asked"] >= n else "-" for key, n in ENOUGH.items())
+    asked = row["asked"] // row.get("rounds", 1)
+    times = " / ".join(format_ms(row["ms"][key]) if asked >= n else "-" for key, n in ENOUGH.items())
     share = f"{row['solved'] / row['asked']:.2%}".replace(".00", "")
     return f"{share} of {row['asked']:,}{', then stopped' if 'lost' in row else ''}: {times}"
 
@@ -253,12 +277,25 @@ def make_speed() -> str:
         format_ablation(ablation),
         "## Other solvers",
         format_peers(load("peers"), PEER_TABLES, "../benchmarks/peers/README.md"),
+        format_ahead(load("peers")),
+        "### RoboPlan, and an arm on a fixed base",
+        format_arm(load("peers_arm")),
         "## Differential evolution",
         format_memetic(load("memetic")),
         format_search(load("paper_search")),
         "## Data-driven kernels",
         format_kernels(load("kernel_times")),
     )
+
+
+def format_arm(record: dict[str, Any]) -> str:
+    """Peers that were added later, and cases of an arm that alone may move."""
+    machine = record["machine"]
+    return join(
+        f"{machine['processor']}, Python {machine['python']}, numba {machine['numba']}; others used the machine, too.",
+        format_peers(record, ARM_TABLES, "../benchmarks/peers/README.md"),
+        format_ahead(record),
+    ).rstrip()
 
 
 def make_following() -> str:

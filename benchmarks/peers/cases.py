@@ -1,4 +1,4 @@
-"""Targets: ordinary and hard ones, as poses and as positions, and the paper's two.
+"""Targets: ordinary and hard ones, as poses and as positions, the paper's two, and poses of an arm on a fixed base.
 
 Ordinary targets are tool poses of uniform, collision-free configurations. Hard ones are those of them with the tool
 below 0.45 m of which nearly every answer collides: of `RESTARTS` plain descents from random configurations, at least
@@ -17,7 +17,7 @@ from ikde.kernels.frames import compute_bodies, compute_jacobian, compute_tool
 from ikde.model.pack import pack_robot
 from ikde.paper.plain_search import limit_base
 
-ROBOT = "qiao2021"
+ROBOT, ARM = "qiao2021", "ur5"
 SEED = 20260
 LOW_M = 0.45
 RESTARTS, HARD_SHARE = 12, 0.9
@@ -25,7 +25,7 @@ BLOCK = 1000
 STEPS, DAMPING, REACHED_M, REACHED_RAD = 80, 1e-4, 1e-4, 1e-3
 PAPER_TARGETS_M = {"task 1": (0.8, 0.5, 1.0), "task 2": (0.54, -0.131, 0.974)}
 PAPER_BASE_M = 0.1
-NAMES = ("pose", "hard pose", "position", "hard position", "paper task 1", "paper task 2")
+NAMES = ("pose", "hard pose", "position", "hard position", "paper task 1", "paper task 2", "ur5 pose", "ur5 hard pose")
 
 Descend = Callable[[np.ndarray, np.ndarray], bool]
 Poses = tuple[np.ndarray, np.ndarray]
@@ -52,13 +52,13 @@ class Case:
 
 def make_case(name: str, count: int) -> Case:
     """`count` targets of one of `NAMES`; fewer are the first of more."""
-    robot = ikde.load_robot(ROBOT)
-    kind = name.removeprefix("hard ")
+    on_arm = name.startswith(f"{ARM} ")
+    robot, kind = ikde.load_robot(ARM if on_arm else ROBOT), name.removeprefix(f"{ARM} ").removeprefix("hard ")
     if kind.startswith("paper "):
         p = np.tile(PAPER_TARGETS_M[kind.removeprefix("paper ")], (count, 1))
         return Case(name, "position", limit_base(robot, PAPER_BASE_M), p, np.tile(np.eye(3), (count, 1, 1)))
     seed = SEED + NAMES.index(name)
-    hard = name.startswith("hard ")
+    hard = "hard " in name
     p, R = draw_hard(robot, kind, count, seed) if hard else draw_ordinary(robot, count, seed)
     return Case(name, kind, robot, p, R)
 

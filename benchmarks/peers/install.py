@@ -2,6 +2,7 @@
 
     python3.11 benchmarks/peers/install.py                       # .venv-peers in this repository
     .venv-peers/bin/python benchmarks/peers/run.py
+    python3.11 benchmarks/peers/install.py --only EAIK RoboPlan  # ikde and these alone
 
 They install together. What does not install is named and left out; `run.py` leaves it out as well. PyRoki and jaxls are
 not on the package index: they come from their repositories, or from `--source FOLDER` with clones called `pyroki` and
@@ -20,6 +21,7 @@ PEERS = (
     ("Robotics Toolbox", ("roboticstoolbox-python",)),
     ("TRAC-IK", ("pytracik",)),
     ("EAIK", ("eaik",)),
+    ("RoboPlan", ("roboplan",)),
     ("Drake", ("drake",)),
     ("mink", ("mink", "mujoco", "daqp")),
     ("Pink", ("pin-pink", "daqp")),
@@ -39,12 +41,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=ROOT / ".venv-peers")
     parser.add_argument("--source", type=Path, default=None, metavar="FOLDER", help="clones of jaxls and pyroki")
+    parser.add_argument("--only", nargs="+", default=None, metavar="NAME", help="peers by name")
     options = parser.parse_args()
     venv.create(options.folder, with_pip=True)
     python = options.folder / ("Scripts" if sys.platform == "win32" else "bin") / "python"
-    jobs = [("ikde", ("-e", str(ROOT))), *PEERS]
+    jobs = list(PEERS)
     for name, place in SOURCES.items():
         jobs.append((name, ("--no-deps", str(options.source / name) if options.source else place)))
+    jobs = [("ikde", ("-e", str(ROOT))), *(job for job in jobs if options.only is None or job[0] in options.only)]
     failed = []
     quiet = {"capture_output": True, "text": True}
     for name, packages in jobs:

@@ -24,8 +24,13 @@ class Entry:
 
 
 def select(words: list[str] | None) -> list[int]:
-    """Places in `ROSTER` of those whose adapter or name holds a word."""
-    return [k for k, e in enumerate(ROSTER) if words is None or any(word in f"{e.adapter} {e.name}" for word in words)]
+    """Places in `ROSTER` of those whose adapter or name holds a word; a whole name means that one alone."""
+    names = {entry.name for entry in ROSTER}
+
+    def is_meant(entry: Entry, word: str) -> bool:
+        return word == entry.name if word in names else word in f"{entry.adapter} {entry.name}"
+
+    return [k for k, e in enumerate(ROSTER) if words is None or any(is_meant(e, word) for word in words)]
 
 
 def _ikde(method: str) -> Entry:
@@ -58,6 +63,27 @@ ROSTER = (
         adapter="eaik_:Sampled",
         use="HPRobot(H, P).IK for the arm from bases drawn within its reach; every branch checked (numba)",
         packages=("EAIK",),
+    ),
+    Entry(
+        name="EAIK",
+        adapter="eaik_:Fixed",
+        use="HPRobot(H, P).IK for an arm on a fixed base; the first branch that is exact, inside and free (numba)",
+        packages=("EAIK",),
+    ),
+    Entry(
+        name="RoboPlan SimpleIk",
+        adapter="roboplan_:Simple",
+        use="SimpleIk.solveIk(goal, home, solution) with its defaults (step 0.25, 100 iterations, 2 restarts, 5 ms), "
+        "our tolerances; asked again from a collision-free start while it fails",
+        packages=("roboplan", "pin", "coal"),
+    ),
+    Entry(
+        name="RoboPlan SimpleIk, one call",
+        adapter="roboplan_:Simple",
+        use="the same with restarts and time without end, step_size=1, max_iters=40: the best mean of four steps, "
+        "three dampings and two limits here",
+        packages=("roboplan", "pin", "coal"),
+        options={"step_size": 1.0, "max_iters": 40, "max_restarts": 1_000_000, "max_time": 5.0},
     ),
     Entry(
         name="Pinocchio, LM loop in C++",

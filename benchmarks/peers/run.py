@@ -3,11 +3,13 @@
     python benchmarks/peers/run.py                                  # all cases, all peers: about ten minutes
     python benchmarks/peers/run.py --only ikde rtb --cases pose --targets 20 --out try.json
 
-In each round every peer works on its next targets for at most a slice of time, in a new order; then comes the next
-round, so that a swing of the machine's clock hits all alike. All peers get the same targets from the first on; a peer
-that has used up its share of time for a case stops there, so slow ones answer fewer (the counts are on record). An
-answer after the time limit does not count; a peer that gives none in more than twice that is stopped, and that is on
-record. What comes back is graded by ikde's plain numpy (`verify_many`) before it counts as solved.
+In each turn every peer works on its next targets for at most a slice of time, in a new order; then comes the next
+turn, so that a swing of the machine's clock hits all alike. With `--rounds` all targets are asked over and over, and a
+target's time is its median over the rounds; the rounds' own figures are on record beside it. All peers get the same
+targets from the first on; a peer that has used up its share of time for a case stops there, so slow ones answer fewer
+(the counts are on record). An answer after the time limit does not count; a peer that gives none in more than twice
+that is stopped, and that is on record. What comes back is graded by ikde's plain numpy (`verify_many`) before it counts
+as solved.
 """
 
 import argparse
@@ -16,6 +18,7 @@ import re
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -56,13 +59,17 @@ class Tally:
 def run_case(
     case: Case, warm_up: Case, setup: Setup, clients: list[Client], options: argparse.Namespace
 ) -> dict[str, Any]:
-    """All peers on one case, after a few targets that do not count."""
-    tallies = [prepare(client, case.name, setup, warm_up, options) for client in clients]
-    order = np.random.default_rng(options.seed)
-    while waiting := [k for k, tally in enumerate(tallies) if is_waiting(tally, len(case.p), options)]:
-        for k in order.permutation(waiting):
-            take_turn(clients[k], tallies[k], case, options)
-    return {c.entry.name: summarise(case, tally, options) for c, tally in zip(clients, tallies, strict=True)}
+    """All peers on one case, once or over and over, after a few targets that do not count."""
+    order, rounds = np.random.default_rng(options.seed), []
+    for _ in range(options.rounds):
+        tallies = [prepare(client, case.name, setup, warm_up, options) for client in clients]
+        while waiting := [k for k, tally in enumerate(tallies) if is_waiting(tally, len(case.p), options)]:
+            for k in order.permutation(waiting):
+                take_turn(clients[k], tallies[k], case, options)
+        rounds.append(tallies)
+    return {
+        clients[k].entry.name: summarise(case, list(row), options) for k, row in enumerate(zip(*rounds, strict=True))
+    }
 
 
 def prepare(client: Client, case: str, setup: Setup, warm_up: Case, options: argparse.Namespace) -> Tally:
@@ -121,25 +128,39 @@ def grade(case: Case, answers: list[Answer], options: argparse.Namespace) -> np.
     return accepted & returned & np.array([seconds <= options.limit for seconds, _ in answers])
 
 
-def summarise(case: Case, tally: Tally, options: argparse.Namespace) -> dict[str, Any]:
-    """Shares and times of one peer in one case; times over all targets it was asked, solved or not."""
-    record: dict[str, Any] = {**{k: round(v, 4) for k, v in tally.start.items()}, "asked": len(tally.answers)}
-    if tally.lost:
-        record["lost"] = tally.lost
-    if not tally.answers:
+def summarise(case: Case, tallies: list[Tally], options: argparse.Namespace) -> dict[str, Any]:
+    """Shares and times of one peer in one case over all rounds; times over all targets it was asked, solved or not."""
+    answers = [answer for tally in tallies for answer in tally.answers]
+    record: dict[str, Any] = {k: round(v, 4) for k, v in tallies[0].start.items()}
+    record |= {"asked": len(answers), "rounds": len(tallies)}
+    if lost := [tally.lost for tally in tallies if tally.lost]:
+        record["lost"] = lost[0]
+    if not answers:
         return record
-    solved = grade(case, tally.answers, options)
-    ms = np.array([seconds for seconds, _ in tally.answers]) * 1e3
+    asked = [tally for tally in tallies if tally.answers]
+    solved = np.concatenate([grade(case, tally.answers, options) for tally in asked])
     record["solved"] = int(solved.sum())
-    record["returned"] = sum(q is not None for _, q in tally.answers)
-    record["ms"] = {name: shorten(np.percentile(ms, p)) for name, p in PERCENTILES.items()} | {
-        "mean": shorten(ms.mean())
-    }
+    record["returned"] = sum(q is not None for _, q in answers)
+    rounds = [[seconds * 1e3 for seconds, _ in tally.answers] for tally in asked]
+    record["ms"] = take_figures(take_medians(rounds))
+    if len(rounds) > 1:
+        record["ms_of_rounds"] = [take_figures(ms) for ms in rounds]
+    ms = np.array([seconds for seconds, _ in answers]) * 1e3
     times = np.sort(ms[solved])
     if times.size:
         picks = np.unique(np.linspace(0, times.size - 1, CURVE_POINTS).astype(int))
         record["curve"] = [[shorten(times[k]), round((k + 1) / len(ms), 6)] for k in picks]
     return record
+
+
+def take_figures(ms: Sequence[float]) -> dict[str, float]:
+    """Median, tails and mean."""
+    return {name: shorten(np.percentile(ms, p)) for name, p in PERCENTILES.items()} | {"mean": shorten(np.mean(ms))}
+
+
+def take_medians(rounds: list[list[float]]) -> list[float]:
+    """Of each target that was asked in every round its median over them."""
+    return np.median([ms[: min(map(len, rounds))] for ms in rounds], axis=0).tolist()
 
 
 def shorten(value: float) -> float:
@@ -157,8 +178,9 @@ def read_options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--targets", type=int, default=500, help="targets a case")
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES)
-    parser.add_argument("--only", nargs="+", default=None, metavar="WORD", help="peers whose name holds a word")
+    parser.add_argument("--only", nargs="+", default=None, metavar="WORD", help="peers by name or a word of it")
     parser.add_argument("--tolerance", nargs=2, type=float, default=(1e-4, 1e-3), metavar=("M", "RAD"))
+    parser.add_argument("--rounds", type=int, default=1, help="times that a case is gone through")
     parser.add_argument("--limit", type=float, default=5.0, help="seconds a target")
     parser.add_argument("--share", type=float, default=3.0, help="seconds a peer and case")
     parser.add_argument("--least", type=int, default=3, help="targets that even a slow peer is asked")
@@ -226,10 +248,10 @@ def format_record(record: dict[str, Any]) -> str:
 
 def print_case(name: str, peers: dict[str, Any]) -> None:
     """A line a peer."""
-    print(f"\n{name}: solved of asked, ms median / p95 / p99 / max")
+    print(f"\n{name}: solved of asked, ms median / p95 / p99 / max / mean")
     for peer, row in sorted(peers.items(), key=lambda item: item[1].get("ms", {}).get("median", np.inf)):
         if "ms" in row:
-            times = " / ".join(f"{row['ms'][k]:.4g}" for k in PERCENTILES)
+            times = " / ".join(f"{row['ms'][k]:.4g}" for k in (*PERCENTILES, "mean"))
             print(f"  {peer:42} {row['solved']:6} of {row['asked']:6}  {times}  {row.get('lost', '')}")
         else:
             print(f"  {peer:42} {row.get('lost')}")

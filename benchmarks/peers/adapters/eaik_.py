@@ -1,4 +1,4 @@
-"""EAIK: closed form for the arm, with the base sampled around the target."""
+"""EAIK: closed form for an arm on a fixed base, or on a mobile one that is sampled around the target."""
 
 import time
 from collections.abc import Callable
@@ -7,34 +7,47 @@ from typing import Any
 import numba
 import numpy as np
 from eaik.IK_HP import HPRobot
-from protocol import Peer, Setup, random_rotation
+from protocol import Peer, Setup, random_rotation, to_matrix
 
 import ikde
 
 ARM_JOINTS = 6
 
 
+class Fixed(Peer):
+    """All branches, the first that is inside and free."""
+
+    def prepare(self, setup: Setup) -> None:
+        """All joints are the arm's."""
+        super().prepare(setup)
+        if len(setup.robot.joints) != ARM_JOINTS or not setup.is_pose:
+            raise ValueError("poses of six joints on a fixed base only")
+        self.solver, _, self.R_tool_end = make_arm(setup.robot, np.eye(4))
+        self.choose = make_choice(setup.lower, setup.upper, setup.checker.is_free)
+
+    def convert(self, p: np.ndarray, R: np.ndarray) -> np.ndarray:
+        """A homogeneous matrix of EAIK's end effector."""
+        return to_matrix(p, R @ self.R_tool_end)
+
+    def solve(self, target: Any, deadline: float) -> np.ndarray | None:
+        """There is nothing random to try again."""
+        answer, q = self.solver.IK(target), np.empty(ARM_JOINTS)
+        return q if len(answer.Q) and self.choose(q, answer.Q, answer.is_LS) else None
+
+
 class Sampled(Peer):
     """A random base from which the target is in reach, all branches, the first that is inside and free."""
 
     def prepare(self, setup: Setup) -> None:
-        """Axes and offsets of the arm at q = 0, seen from the frame that the base moves."""
+        """The arm as seen from the frame that the base moves."""
         super().prepare(setup)
-        robot = setup.robot
-        frames = ikde.forward(robot, np.zeros(len(robot.joints)))
-        moving = [frame for frame in robot.frames if frame.joint]
-        arm, self.base_frame = moving[-ARM_JOINTS:], moving[-ARM_JOINTS - 1].name
-        T_base_world = np.linalg.inv(frames[self.base_frame])
-        Ts = [T_base_world @ frames[frame.name] for frame in arm]
-        H = np.array([T[:3, :3] @ frame.axis for T, frame in zip(Ts, arm, strict=True)])
-        T_base_tool = T_base_world @ frames[robot.tool]
-        points = np.array([np.zeros(3), *(T[:3, 3] for T in Ts), T_base_tool[:3, 3]])
-        self.solver = HPRobot(H, np.diff(points, axis=0))
-        assert self.solver.hasKnownDecomposition()
+        moving = [frame.name for frame in setup.robot.frames if frame.joint]
+        if len(moving) <= ARM_JOINTS:
+            raise ValueError("no base to sample")
+        T_world_base = ikde.forward(setup.robot, np.zeros(len(setup.robot.joints)))[moving[-ARM_JOINTS - 1]]
+        self.solver, points, R_tool_end = make_arm(setup.robot, T_world_base)
         reach = np.linalg.norm(np.diff(points[2:], axis=0), axis=1).sum()
-        height = frames[self.base_frame][2, 3]
-        # EAIK's end effector is turned like the base at q = 0, hence the last argument.
-        self.propose = make_proposal(setup.lower, setup.upper, points[2], reach, height, T_base_tool[:3, :3].T.copy())
+        self.propose = make_proposal(setup.lower, setup.upper, points[2], reach, T_world_base[2, 3], R_tool_end)
         self.choose = make_choice(setup.lower, setup.upper, setup.checker.is_free)
 
     def solve(self, target: Any, deadline: float) -> np.ndarray | None:
@@ -48,6 +61,21 @@ class Sampled(Peer):
                 return q
             if time.perf_counter() > deadline:
                 return None
+
+
+def make_arm(robot: ikde.Robot, T_world_base: np.ndarray) -> tuple[HPRobot, np.ndarray, np.ndarray]:
+    """The last six joints seen from a base [4, 4] at q = 0: the solver, its points [8, 3] in m, and R_tool_end."""
+    frames = ikde.forward(robot, np.zeros(len(robot.joints)))
+    arm = [frame for frame in robot.frames if frame.joint][-ARM_JOINTS:]
+    T_base_world = np.linalg.inv(T_world_base)
+    Ts = [T_base_world @ frames[frame.name] for frame in arm]
+    H = np.array([T[:3, :3] @ frame.axis for T, frame in zip(Ts, arm, strict=True)])
+    T_base_tool = T_base_world @ frames[robot.tool]
+    points = np.array([np.zeros(3), *(T[:3, 3] for T in Ts), T_base_tool[:3, 3]])
+    solver = HPRobot(H, np.diff(points, axis=0))
+    assert solver.hasKnownDecomposition()
+    # EAIK's end effector is turned like the base at q = 0.
+    return solver, points, T_base_tool[:3, :3].T.copy()
 
 
 def make_proposal(
@@ -84,7 +112,7 @@ def make_choice(lower: np.ndarray, upper: np.ndarray, is_free: Callable[..., boo
         for row in range(branches.shape[0]):
             if approximate[row]:
                 continue
-            q[3:] = branches[row]
+            q[-ARM_JOINTS:] = branches[row]
             if np.all(q >= lower) and np.all(q <= upper) and is_free(q):
                 return True
         return False
