@@ -81,10 +81,9 @@ def test_while_it_waits_nothing_is_imported():
     assert done.stdout.strip() == "set()"
 
 
-@pytest.mark.parametrize("question", [("pose", "many of", "lm"), ("pose", "one", "analytic"), ("pose", "near", "analytic")])
-def test_what_is_asked_is_one_stage(substitute, question):
+@pytest.mark.parametrize(("call", "engine"), [("many of", "lm"), ("one", "analytic"), ("near", "analytic")])
+def test_what_is_asked_is_one_stage(substitute, call, engine):
     robot, done = ikde.load_robot("ur5"), []
     substitute(warmup.warm_up, done.extend)
-    compile_answer({"robot": encode(robot), "detector": None, "what": question})
-    kind, call, engine = question
-    assert [stage.name for stage in done] == [f"{engine}, {call} {kind}"]
+    compile_answer({"robot": encode(robot), "detector": None, "what": ("pose", call, engine)})
+    assert [stage.name for stage in done] == [f"{engine}, {call} pose"]

@@ -104,7 +104,7 @@ def test_what_a_few_attempts_do_not_reach_lanes_go_on_with(monkeypatch):
     row = ENGINES["lm"]._replace(attempts_before_proof=1)
     for module in (few, search_module):
         monkeypatch.setattr(module, "ENGINES", {**ENGINES, "lm": row})
-    problem, targets = problem_of(ROBOT), [*targets_of("pose"), FAR]
+    problem, targets = problem_of(ROBOT), [*targets_of("axis"), FAR]
     asked = {"seed": 3, "streams": range(len(targets))}
     ours = search(problem, targets, **asked)
     tried = ours.counts[:, ATTEMPTS]
