@@ -5,7 +5,7 @@ half a minute, a thousand are answered so, in plain Python (2 ms each) or by the
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache, partial
 
 import numpy as np
@@ -69,7 +69,7 @@ def _has_lanes(problem: Problem, kinds: Sequence[int]) -> bool:
 
 
 @lru_cache(maxsize=16)
-def find_answer(problem: Problem, kind: str) -> tuple[Way, Callable[..., bool]]:
+def find_answer(problem: Problem, kind: str) -> tuple[Way, partial[bool]]:
     """The way of a problem and a kind of target, and how a call of it begins while there is no machine code."""
     way = Way(load_kernels(problem.collision, kind).answer_target, Question(problem.collision, kind))
     return way, partial(way.begin, *pack_answer(problem, kind))
