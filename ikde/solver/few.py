@@ -41,15 +41,15 @@ def answer_few(
         return 0
     rows = np.empty((len(targets), size_of(found.q.shape[1], len(problem.collision.pairs))))
     attempts = min(ENGINES[ENGINE].attempts_before_proof, budget)
-    ways = [find_answer(problem, KINDS[kind]) for kind in kinds]
+    ways = {kind: find_answer(problem, KINDS[kind]) for kind in {*kinds}}
+    calls = {kind: partial(way.machine, *begin.args) if way.machine else begin for kind, (way, begin) in ways.items()}
     word = seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
     began, accepted = time.perf_counter(), []
-    for row, T_world_tool, stream, (way, begin) in zip(rows, targets.T_world_tool, streams, ways, strict=True):
-        answer = begin if way.machine is None else partial(way.machine, *begin.args)
-        accepted.append(answer(T_world_tool, word, stream, 0, attempts, row))
-    waited_s = sum(way.take_waited_s()[0] for way, _ in ways)
+    for row, T_world_tool, stream, kind in zip(rows, targets.T_world_tool, streams, kinds, strict=True):
+        accepted.append(calls[kind](T_world_tool, word, stream, 0, attempts, row))
+    waited_s = sum(way.take_waited_s()[0] for way, _ in ways.values())
     whole = rows[:, found.q.shape[1] + METRICS :].view(np.int64)
-    if (whole[:, FIRST_COUNT + REACHED].astype(bool) & ~np.array(accepted, dtype=bool)).any():
+    if not all(accepted) and (whole[:, FIRST_COUNT + REACHED].astype(bool) & ~np.array(accepted, dtype=bool)).any():
         return 0
     found.seconds[:] = (time.perf_counter() - began - waited_s) / max(1, len(targets))
     found.engine[:] = NAMES.index(ENGINE)
