@@ -11,6 +11,7 @@ from ikde.batch.parts import Part
 from ikde.batch.plan import Arm, Batch
 from ikde.model.robot import Detector
 from ikde.model.target import Targets
+from ikde.solver.background import WAIT, compile_way
 from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions
 
@@ -61,13 +62,14 @@ def solve_task(task: Task, threads: int | None = None) -> Answer:
     """Solve, grade and tabulate one part; the solutions are the same bits wherever this runs."""
     numbers = np.arange(task.part.first, task.part.last)
     local = numbers // task.repeats - numbers[0] // task.repeats
-    rows = solve_rows(
-        task.arm.problem,
-        task.targets.take(local),
-        BulkOptions(threads=threads, explain=task.explain),
-        seed=task.seed,
-        first_stream=task.part.first,
-    )
+    with compile_way(WAIT):  # others follow, for which it is compiled at last
+        rows = solve_rows(
+            task.arm.problem,
+            task.targets.take(local),
+            BulkOptions(threads=threads, explain=task.explain),
+            seed=task.seed,
+            first_stream=task.part.first,
+        )
     solutions = make_solutions(
         task.arm.name,
         rows,

@@ -1,6 +1,7 @@
 """`ikde batch`: solve everything that a run file asks for, into a folder; stop and go on at will."""
 
 import gc
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -8,7 +9,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption, note_unchecked
-from ikde.cli.output import name_work, note_compile, print_json, print_note, print_result, use_color
+from ikde.cli.output import print_json, print_note, print_result, use_color, working
 from ikde.cli.progress import show_progress
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def _preview(
         check_folder(out, plan, overwrite=overwrite)
     if cluster["dask"] is not None:
         print_note("a dry run solves its sample on this machine: the cluster is left alone")
-    with note_compile(work=_name(plan)):
+    with working("solving a sample ..."), _note_compile(plan):
         preview = preview_batch(plan, threads=threads)
     if as_json:
         print_json(preview_json(preview))
@@ -86,8 +87,11 @@ def _preview(
         print_result(format_preview(preview, color=use_color()))
 
 
-def _name(plan: "Batch") -> str:
-    return name_work("many targets", *(arm.problem.collision for arm in plan.arms))
+def _note_compile(plan: "Batch") -> AbstractContextManager[Any]:
+    """Say what the arms compile, once for all of them."""
+    from ikde.solver.compile_note import name_work, note_compile
+
+    return note_compile(lambda: name_work("many targets", *(arm.problem.collision for arm in plan.arms)))
 
 
 def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
@@ -96,7 +100,7 @@ def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
     from ikde.batch.run import run_batch
 
     try:
-        with show_progress(f"{plan.name} → {out}") as tell, note_compile(work=_name(plan)):
+        with show_progress(f"{plan.name} → {out}") as tell, _note_compile(plan):
             return run_batch(plan, out, progress=tell, **solving)
     except KeyboardInterrupt:
         raise typer.Abort(f"ikde: interrupted; {GO_ON}") from None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import JsonOption, note_unchecked, read_choices, repeat_command
-from ikde.cli.output import name_work, note_compile, print_json, print_line
+from ikde.cli.output import print_json, print_line
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def bench_track(
     from ikde.io.report_folder import RESULTS, format_results, open_folder, write_report
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
+    from ikde.solver.compile_note import name_work, note_compile
     from ikde.track.comparison import FULL, METHODS, QUICK, compare_methods, count_runs
 
     gc.enable()
@@ -48,7 +49,7 @@ def bench_track(
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
-        with note_compile("a minute or two", name_work("tracks", *(plan.collision for plan in plans))):
+        with note_compile(lambda: name_work("tracks", *(plan.collision for plan in plans)), "a minute or two"):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
         page = make_comparison_page(compared, budget, repeat_command(["bench", "track", *map(str, tracks)], given))

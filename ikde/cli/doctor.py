@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ikde.cli.options import JsonOption
-from ikde.cli.output import note_compile, print_json, print_result, use_color
+from ikde.cli.output import print_json, print_result, use_color
 
 PACKAGES = ("numpy", "numba", "pydantic", "pyarrow", "matplotlib", "typer", "rich")
 
@@ -47,7 +47,9 @@ def describe_machine() -> dict[str, Any]:
 
     import ikde
     from ikde.kernels.cache_folder import CACHE_FOLDER, CACHE_IS_WRITABLE
+    from ikde.model.collision_model import CollisionModel
     from ikde.solver.background import WAIT, compile_way
+    from ikde.solver.compile_note import name_work, note_compile
     from ikde.solver.search import usable_cores
     from ikde.solver.solve import solve
 
@@ -55,7 +57,7 @@ def describe_machine() -> dict[str, Any]:
     robot = ikde.load_robot("qiao2021")
     target = ikde.Target(p_world_tool=(0.8, 0.5, 1.0))
     before = time.perf_counter()
-    with compile_way(WAIT), note_compile():
+    with compile_way(WAIT), note_compile(lambda: name_work("position targets", CollisionModel.of(robot))):
         first = solve(robot, target)
     first_call = time.perf_counter() - before
     second = solve(robot, target)

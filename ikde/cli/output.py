@@ -2,14 +2,12 @@
 
 import json
 import sys
+import time
 from contextlib import AbstractContextManager, nullcontext
 from shutil import get_terminal_size
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ikde.errors import printable
-
-if TYPE_CHECKING:
-    from ikde.model.collision_model import CollisionModel
 
 
 def print_result(text: str) -> None:
@@ -45,34 +43,22 @@ def page_width() -> int:
 
 
 def working(text: str) -> AbstractContextManager[Any]:
-    """A spinner on stderr while the block runs, in a terminal."""
+    """A spinner on stderr while the block runs, in a terminal, with the seconds that it has taken."""
     if not sys.stderr.isatty():
         return nullcontext()
     from rich.console import Console
 
-    return Console(stderr=True).status(as_words(text))
+    return Console(stderr=True).status(Working(text))
 
 
-def as_words(text: str) -> Any:
-    """Text for a spinner that is shown as it is."""
-    from rich.text import Text
+class Working:
+    """Text for a spinner that is shown as it is, and for how long."""
 
-    return Text(printable(text))
+    def __init__(self, text: str) -> None:
+        self._text, self._started = printable(text), time.monotonic()
 
+    def __rich__(self) -> Any:
+        from rich.text import Text
 
-def name_work(what: str, *collisions: "CollisionModel") -> str:
-    """What is compiled, in words: `pose targets of ur5, detector default`."""
-    from ikde.model.robot import NO_DETECTOR
-
-    robots = ", ".join(dict.fromkeys(c.robot.name for c in collisions))
-    detectors = dict.fromkeys(c.detector.name if c.detector else NO_DETECTOR for c in collisions)
-    return f"{what} of {robots}, detector {', '.join(detectors)}"
-
-
-def note_compile(takes: str = "10 s to a minute", work: str = "") -> AbstractContextManager[Any]:
-    """Say once, on stderr, that kernels must be compiled inside the block, if they must, and for what work."""
-    from ikde.kernels.cache_folder import CACHE_IS_WRITABLE
-    from ikde.kernels.jit import compile_clock
-
-    often = "once on this machine" if CACHE_IS_WRITABLE else "every time, since no cache folder can be used"
-    return compile_clock(lambda: print_note(f"compiling the kernels{work and f' for {work}'}: {often}, {takes} ..."))
+        seconds = int(time.monotonic() - self._started)
+        return Text(f"{self._text} {seconds} s" if seconds else self._text)

@@ -26,16 +26,26 @@ def show_progress(title: str) -> AbstractContextManager["Tell"]:
 @contextmanager
 def _show_bar(title: str) -> Iterator["Tell"]:
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        SpinnerColumn,
+        TaskProgressColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
     from rich.progress import Progress as Bars
 
     pace = Pace()
     columns = (
+        SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
         BarColumn(),
         TaskProgressColumn(),
         MofNCompleteColumn(),
         TextColumn("solves, {task.fields[parts]} parts, {task.fields[rate]}"),
+        TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
     with Bars(*columns, console=Console(stderr=True), speed_estimate_period=600.0) as bars:
@@ -116,6 +126,8 @@ def show_benchmark(solves: int) -> Iterator["BenchProgress"]:
         return
     from rich.console import Console
     from rich.progress import Progress as Bars
+    from rich.progress import SpinnerColumn, TimeElapsedColumn
 
-    with Bars(console=Console(stderr=True)) as bars:
+    columns = (SpinnerColumn(), *Bars.get_default_columns(), TimeElapsedColumn())
+    with Bars(*columns, console=Console(stderr=True)) as bars:
         yield Bar(bars, solves)

@@ -8,7 +8,7 @@ import typer
 from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
-from ikde.cli.output import name_work, note_compile, print_json, print_note, print_result, use_color, working
+from ikde.cli.output import print_json, print_note, print_result, use_color, working
 from ikde.cli.startup import skip_blas_probe
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
@@ -114,6 +114,7 @@ def solve(
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
     from ikde.solver.background import LATER, compile_way
+    from ikde.solver.compile_note import name_work, note_compile
     from ikde.solver.distinct import check_rank, solve_distinct
     from ikde.solver.grade import confirm
     from ikde.solver.solve import solve as solve_one
@@ -129,8 +130,8 @@ def solve(
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
-    work = name_work(f"{target.kind} targets", checked)
-    with compile_way(LATER), working("searching ..."), note_compile(work=work) as clock:
+    note = note_compile(lambda: name_work(f"{target.kind} targets", checked))
+    with compile_way(LATER), working("searching ..."), note as clock:
         question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
         if count == 1:
             results = [confirm(model, solve_one(model, target, settings, **question))]

@@ -11,7 +11,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
-from ikde.cli.output import as_words, name_work, note_compile, print_json, print_result, use_color, working
+from ikde.cli.output import Working, print_json, print_result, use_color, working
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -56,8 +56,7 @@ def track(
     from ikde.report.track import format_track, track_json
 
     gc.enable()
-    with note_compile("a minute or two"):
-        plan = load_track(spec)
+    plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     given = {"method": method, "drive": drive, "seed": seed, "start": start}
@@ -83,9 +82,7 @@ def _follow(plan: "TrackPlan") -> "TrackSummary":
     from ikde.track.run import run_track
     from ikde.track.summary import summarise_track
 
-    with note_compile("a minute or two", name_work("tracks", plan.collision)):
-        trajectory = run_track(plan)
-    return summarise_track(plan.collision, trajectory)
+    return summarise_track(plan.collision, run_track(plan))
 
 
 def _draw(motion: "TrackSummary", title: str, command: str, tell: Callable[[str], None]) -> str:
@@ -100,4 +97,4 @@ def _draw(motion: "TrackSummary", title: str, command: str, tell: Callable[[str]
 def _show_steps() -> Iterator[Callable[[str], None]]:
     """What is being done, on stderr, in a terminal."""
     with working("") as status:
-        yield (lambda text: None) if status is None else lambda text: status.update(as_words(f"{text} ..."))
+        yield (lambda text: None) if status is None else lambda text: status.update(Working(f"{text} ..."))

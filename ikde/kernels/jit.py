@@ -161,6 +161,7 @@ class CompileClock:
 
     def __init__(self, announce: Callable[[], None] | None = None) -> None:
         self.seconds = 0.0
+        self.announces = announce is not None
         self._announce = announce
         self._depth = 0
         self._started = 0.0
@@ -189,8 +190,11 @@ class CompileClock:
 
 @contextmanager
 def compile_clock(announce: Callable[[], None] | None = None) -> Iterator[CompileClock]:
-    """Measure the compile time spent inside the block, and call `announce` once if kernels must be compiled there."""
-    clock = CompileClock(announce)
+    """Measure the compile time spent inside the block, and call `announce` once if kernels must be compiled there.
+
+    Of clocks inside one another the outermost that has an `announce` calls it, and it alone.
+    """
+    clock = CompileClock(None if any(clock.announces for clock in CLOCKS) else announce)
     CLOCKS.append(clock)
     try:
         yield clock

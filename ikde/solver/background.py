@@ -21,11 +21,13 @@ from ikde.kernels import cache_folder
 from ikde.kernels.jit import COMPILE, Bound
 from ikde.model.collision_model import CollisionModel
 from ikde.model.plain_data import encode
+from ikde.solver.compile_note import name_work
 
 BACKGROUND, WAIT, NEVER = WAYS = ("background", "wait", "never")
 LATER = "later"
 """Plain Python until that has failed, and no child: for a process of one answer, which ends before it were compiled."""
 UNLESS_TOLD: ContextVar[str] = ContextVar("way", default=BACKGROUND)
+ONE, NEAR, MANY = "one", "near", "many of"
 GRACE_S = 0.5
 START = "import json, sys; q = json.loads(sys.stdin.readline()); sys.path[:] = q['path']; "
 START += "from ikde.solver.compiler_process import run; run(q)"
@@ -33,7 +35,7 @@ START += "from ikde.solver.compiler_process import run; run(q)"
 
 @contextmanager
 def compile_way(way: str) -> Iterator[None]:
-    """What is done inside the block, unless `$IKDE_COMPILE` says otherwise."""
+    """What is done inside the block, on this thread, unless `$IKDE_COMPILE` says `wait` or `never`."""
     token = UNLESS_TOLD.set(way)
     try:
         yield
@@ -43,19 +45,23 @@ def compile_way(way: str) -> Iterator[None]:
 
 def choose_way() -> str:
     """One of `WAYS`, or `LATER`; raises `InputError` for another word in `$IKDE_COMPILE`."""
-    given = os.environ.get(COMPILE)
-    if given and given not in WAYS:
+    given = os.environ.get(COMPILE) or BACKGROUND
+    if given not in WAYS:
         raise InputError(f"expected {', '.join(WAYS)}, got {quoted(given)}", (f"${COMPILE}",))
-    return given or UNLESS_TOLD.get()
+    return UNLESS_TOLD.get() if given == BACKGROUND else given
 
 
 class Question(NamedTuple):
-    """What machine code answers: targets of a kind, with `near` or without, by an engine."""
+    """What machine code answers: targets of a kind, one without `near`, one with it, or many, by an engine."""
 
     collision: CollisionModel
     kind: str
-    is_near: bool = False
+    call: str = ONE
     engine: str = "lm"
+
+    def describe(self) -> str:
+        """What is compiled for it, in words."""
+        return name_work(f"{self.kind} targets", self.collision)
 
     def encode(self) -> dict[str, Any]:
         """Plain data for the child."""
@@ -68,9 +74,9 @@ def answers_plainly(answer: Bound, question: Question) -> bool:
     way = choose_way()
     if way in (NEVER, LATER):
         return True
-    if way == WAIT or not _can_start() or (not CHILD.is_at_work and answer.is_kept):
+    if way == WAIT or not _can_start():
         return False
-    return CHILD.compile(question)
+    return CHILD.works_on(question) or (not answer.is_kept and CHILD.compile(question))
 
 
 def _can_start() -> bool:
@@ -85,20 +91,29 @@ class Child:
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
         self._asked: set[Question] = set()
+        self._question: Question | None = None
 
     @property
     def is_at_work(self) -> bool:
         """True while it runs."""
         return self._process is not None and self._process.poll() is None
 
+    def works_on(self, question: Question) -> bool:
+        """True while it runs for this: what it compiles it may be writing still."""
+        return question == self._question and self.is_at_work
+
     def compile(self, question: Question) -> bool:
-        """True if it is at work, or has been started for this; False if it has ended without: it is not tried again."""
+        """True if it is at work, or has been started for this; False if it has ended without: it is not tried again.
+
+        What is asked while it works on something else has its turn when that is done, if it is still asked then.
+        """
         with self._lock:
             if self.is_at_work:
                 return True
             if question in self._asked:
                 return False
             self._asked.add(question)
+            self._question = question
             with suppress(OSError):
                 self._process = start(question.encode())
             return self.is_at_work

@@ -36,8 +36,8 @@ def compile_answer(question: dict[str, Any]) -> None:
 
     detector = decode(Detector | None, question["detector"])
     collision = CollisionModel.of(decode(Robot, question["robot"]), detector or NO_DETECTOR)
-    kind, is_near, engine = question["what"]
-    wanted = f"{engine}, {'near' if is_near else 'one'} {kind}"
+    kind, call, engine = question["what"]
+    wanted = f"{engine}, {call} {kind}"
     warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == wanted])
 
 

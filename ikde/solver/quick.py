@@ -12,12 +12,11 @@ import numpy as np
 
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE, size_of
 from ikde.kernels.arrays import REACHED, Floats
-from ikde.kernels.jit import Kernel, compile_clock
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.solver.background import Question, answers_plainly
+from ikde.solver.background import NEAR, ONE, Question
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.pool import load_kernels, runs_on_tables
@@ -27,36 +26,11 @@ from ikde.solver.proof import prove
 from ikde.solver.result import ResultMaker, SolveResult, StopReason
 from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings, choose_settings
+from ikde.solver.way import Answer, Way
 
 LM, CLOSED = "lm", "analytic"
 HALF_WORDS = 2**63
 OUT_OF_REACH = {"reached": False, "stop_reason": StopReason.OUT_OF_REACH, "_explain": explain_reach}
-
-Answer = Callable[..., bool]
-"""`answer(T_world_tool, seed, stream, first, last, out)`: attempts `first` .. `last` - 1 and their grade, as
-`lm.answer_target`."""
-
-
-class Way:
-    """A kernel that answers one target: in plain Python, until there is machine code."""
-
-    def __init__(self, kernel: Kernel, question: Question) -> None:
-        self._kernel, self._question = kernel, question
-        self.machine: Answer | None = None
-        self.waited_s, self.compile_s = 0.0, 0.0
-
-    def begin(self, *arguments: Any) -> bool:
-        """A call while machine code is not there, or the one that waits for it."""
-        *block, T_world_tool, seed, stream, first, last, row = arguments
-        bound = self._kernel.bind(*block)
-        if first > 0 or answers_plainly(bound, self._question):
-            return bound.plain(T_world_tool, np.int64(seed), stream, first, last, row)
-        started = time.perf_counter()
-        with compile_clock() as clock:
-            self._kernel.compiled(*arguments)
-        self.machine = answer = self._kernel.compiled
-        self.waited_s, self.compile_s = time.perf_counter() - started, clock.seconds
-        return answer(*arguments)
 
 
 class Ways:
@@ -67,7 +41,7 @@ class Ways:
         calls = {(LM, False): "answer_target", (LM, True): "answer_near"}
         calls |= {(CLOSED, False): "answer_pose", (CLOSED, True): "answer_pose_near"}
         self._ways = {
-            (engine, is_near): Way(getattr(kernels, call), Question(collision, kind, is_near, engine))
+            (engine, is_near): Way(getattr(kernels, call), Question(collision, kind, NEAR if is_near else ONE, engine))
             for (engine, is_near), call in calls.items()
             if hasattr(kernels, call)
         }
@@ -78,10 +52,8 @@ class Ways:
 
     def take_waited_s(self) -> tuple[float, float]:
         """For how long machine code has been waited for since this was asked last, and how much of it was compiling."""
-        waited = sum(way.waited_s for way in self._ways.values()), sum(way.compile_s for way in self._ways.values())
-        for way in self._ways.values():
-            way.waited_s, way.compile_s = 0.0, 0.0
-        return waited
+        waited_s, compile_s = zip(*(way.take_waited_s() for way in self._ways.values()), strict=True)
+        return sum(waited_s), sum(compile_s)
 
 
 class Plan(NamedTuple):

@@ -23,10 +23,11 @@ REFUSED = (1.0, 0.0)  # the score of a refused answer: any that is met is better
 class Referee:
     """Keeps the metrics of `found` (`solver.metrics`) those of its `q`."""
 
-    def __init__(self, problem: Problem, targets: Targets, found: SearchState) -> None:
+    def __init__(self, problem: Problem, targets: Targets, found: SearchState, *, is_graded: bool = False) -> None:
         self.found = found
         self._problem, self._targets, self._limits = problem, targets, _widest(problem)
-        self._graded = np.full(len(targets), -1)  # attempts of each row when it was graded: without a new one, no new q
+        attempts = found.counts[:, ATTEMPTS].copy()
+        self._graded = attempts if is_graded else np.full_like(attempts, -1)  # of each row: without a new one, no new q
 
     def grade(self, rows: slice) -> None:
         """Grade those of some rows that have new attempts; threads may do so at once, each with rows of its own."""

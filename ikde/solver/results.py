@@ -2,15 +2,15 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 
 from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
-from ikde.kernels.jit import compile_clock
-from ikde.model.target import Target, Targets
+from ikde.model.target import KINDS, Target, Targets
+from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, reason_from_counts, reason_from_proof, tell_out_of_reach
@@ -183,6 +183,11 @@ def _verdict(column: MaskedBools, index: int) -> bool | None:
     return None if value is np.ma.masked else bool(value)
 
 
+def _name_work(problem: Problem, targets: Targets) -> str:
+    kinds = [kind for index, kind in enumerate(KINDS) if index in targets.kind]
+    return name_work(f"{' and '.join(kinds)} targets", problem.collision)
+
+
 def solve_rows(
     problem: Problem,
     targets: Targets | Sequence[Target],
@@ -211,7 +216,7 @@ def solve_rows(
     """
     targets = Targets.of(targets)
     where = {"seed": seed, "streams": range(first_stream, first_stream + len(targets)), "first_attempt": first_attempt}
-    with compile_clock() as clock:
+    with note_compile(partial(_name_work, problem, targets)) as clock:
         found = search(problem, targets, threads=bulk.threads, spent_s=spent_s, **where)
         outcomes = grade(problem, targets, found, bulk, seed=seed, first_stream=first_stream, strict=strict)
     return SolveResults(

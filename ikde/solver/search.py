@@ -64,15 +64,17 @@ def search(
     plan = _plan(problem, _kinds(targets), attempts)
     (name, budget), *_ = plan
     is_plain = name == "lm" and attempts is None and first_attempt == 0
-    if is_plain and answer_few(problem, targets, found, budget, seed=seed, streams=streams):
-        return found
+    begun = answer_few(problem, targets, found, budget, seed=seed, streams=streams) if is_plain else 0
+    is_done = begun > 0 and bool(found.metrics.accepted.all())
     found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
     whole = len(targets) <= PIECE
     for first in range(0, max(len(targets), 1), PIECE):
         rows = slice(first, first + PIECE)
         some, part = (targets, found) if whole else (targets[rows], found.piece(rows))
-        inputs = SearchInputs(problem, some, part, seed=seed, streams=streams[rows])
-        _search_piece(inputs, some, plan, first_attempt, attempts, threads or usable_cores(), spent_s)
+        if not is_done:
+            inputs = SearchInputs(problem, some, part, seed=seed, streams=streams[rows])
+            cut = first_attempt, begun, attempts
+            _search_piece(inputs, some, plan, cut, threads or usable_cores(), spent_s)
         found.pair_counts.keep(first, part.counts[:, COLLIDING].nonzero()[0])
     found.pair_counts.drop_filled()
     return found
@@ -82,23 +84,24 @@ def _search_piece(
     inputs: SearchInputs,
     targets: Targets,
     plan: Plan,
-    first_attempt: int,
-    attempts: int | None,
+    cut: tuple[int, int, int | None],
     threads: int,
     spent_s: float,
 ) -> None:
-    """Search some targets, engine after engine."""
+    """Search some targets, engine after engine; `cut`: the first attempt, those made already, and how many if told."""
     problem, found = inputs.problem, inputs.found
-    referee = Referee(problem, targets, found)
+    first_attempt, begun, attempts = cut
+    referee = Referee(problem, targets, found, is_graded=begun > 0)
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
     for place, (name, budget) in enumerate(plan):
         rows = ((found.counts[:, REACHED] == 0) & ~found.is_excluded() & (found.seconds < left_s)).nonzero()[0]
         if not len(rows):
             break
-        before, spent = found.score[rows] if place else None, found.counts[:, ATTEMPTS] - first_attempt
+        before, had = found.score[rows] if place else None, 0 if place else begun
+        spent = found.counts[:, ATTEMPTS] * (not had) - first_attempt
         lanes = _Lanes(make_engine(name, inputs), referee, threads, left_s)
         few = min(ENGINES[name].attempts_before_proof, budget)
-        lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
+        lanes.run(first_attempt + had, np.full(len(targets), first_attempt + few))
         is_done = bool(found.metrics.accepted.all() and found.counts[:, REACHED].all())  # mostly
         if not is_done:
             if attempts is None and not (ENGINES[name].is_closed_form and name != plan[-1][0]):
@@ -181,8 +184,6 @@ class _Lanes:
         self._found, count = referee.found, len(referee.found.q)
         if left_s < np.inf:
             _hurry(engine, count)
-        if not engine.is_ready:  # no attempts at all: what `run` needs is compiled or loaded, and no clock counts it
-            engine.call(range(min(count, 1)), 0, np.zeros(count, dtype=np.int64))
 
     def run(self, first: int, last: Ints) -> None:
         """Make attempts `first` .. `last` [T] - 1 of the rows that are not reached yet; grade what they lead to."""
@@ -191,6 +192,8 @@ class _Lanes:
         if not open_rows.any():
             return
         last = np.where(open_rows, last, first)
+        if not self._engine.is_ready:  # no attempts: what is needed is compiled or loaded, and no clock counts it
+            self._engine.call(range(1), 0, np.zeros(len(last), dtype=np.int64))
 
         def run(rows: range) -> None:
             inside = slice(rows.start, rows.stop)

@@ -65,10 +65,14 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
     for number, stage in enumerate(stages):
         if progress is not None:
             progress(number, stage)
-        with compile_clock() as clock, compile_way(WAIT):
+        with compile_clock(_stay_silent) as clock, compile_way(WAIT):
             stage.run()
         done.append(Compiled(name=stage.name, seconds=clock.seconds))
     return done
+
+
+def _stay_silent() -> None:
+    """`progress` has told what is compiled."""
 
 
 def _solve_many(robot: Robot, collision: CollisionChoice, targets: list[Target], settings: SolveSettings) -> object:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ikde.kernels.arrays import DRIFT, Floats
-from ikde.kernels.jit import compile_clock
 from ikde.model.robot import MAX_MAGNITUDE
+from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
 from ikde.track.certify import bound_pairs
@@ -27,12 +27,13 @@ from ikde.track.trajectory import Followed, TrackStop
 
 WIDER = 8.0  # by how much what is kept above the safe distance grows if a motion is not certified between its samples
 MAX_MARGINS = 4
+TAKES = "a minute or two"
 
 
 def follow_continuation(follower: Follower) -> Followed:
     """The motion that `continuation` finds, from the plan's start or one of its own."""
     plan = follower.plan
-    with compile_clock() as clock:
+    with note_compile(lambda: name_work("tracks", plan.collision), TAKES) as clock:
         settings = plan.settings_of(ContinuationSettings)
         rollout = Continuation(follower=follower, settings=settings).find(plan.start)
         seconds = clock.run_seconds
@@ -46,7 +47,7 @@ Evolved = tuple[Floats, Floats, TrackStop | None]
 def follow_from_start(follower: Follower, evolve: Callable[[Follower, Floats], Evolved]) -> Followed:
     """What `evolve` makes of the plan's start, moved onto the first pose, or of the one that `continuation` finds."""
     plan = follower.plan
-    with compile_clock() as clock:
+    with note_compile(lambda: name_work("tracks", plan.collision), TAKES) as clock:
         if plan.start is not None:
             q, stop = settle_start(plan, plan.start)[None], None
         else:

@@ -1,9 +1,12 @@
 """First answers come from plain Python, to the bit; a child compiles meanwhile, and ends with what started it."""
 
+import json
 import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numba
@@ -12,13 +15,22 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
+from ikde.io.robots import robot_path
+from ikde.kernels.answer import size_of
 from ikde.kernels.jit import COMPILE
+from ikde.kernels.least_motion import reduce_motions
+from ikde.kernels.lm import answer_target
 from ikde.model.collision_model import CollisionModel
+from ikde.model.pack import pack_targets
 from ikde.model.target import KINDS
 from ikde.solver import background
 from ikde.solver.background import LATER, WAIT, Child, Question, answers_plainly, choose_way, compile_way
+from ikde.solver.engines.engine import make_descent, make_ranges
+from ikde.solver.engines.lm import pack_answer
+from ikde.solver.problem import pack_searched
 from ikde.solver.quick import find_quick
 from ikde.solver.quick_near import find_quick_near
+from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
 ROOT = Path(__file__).parents[2]
@@ -52,15 +64,38 @@ def answer(robot, kind, way, written):
     return lines
 
 
-SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("ur5", "panda")]
+PAIRS = [(name, kind) for name in ("qiao2021", "ur5", "panda") for kind in KINDS]
+SLOW = [pytest.param(*pair, marks=[] if pair == PAIRS[0] else pytest.mark.slow) for pair in PAIRS]
 
 
 @needs_compiler
-@pytest.mark.parametrize("name", ["qiao2021", *SLOW])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("name", "kind"), SLOW)
 def test_plain_python_and_machine_code_give_the_same_bits(name, kind, written):
     robot = ikde.load_robot(name)
     assert answer(robot, kind, "never", written) == answer(robot, kind, "wait", written)
+
+
+@needs_compiler
+@pytest.mark.parametrize(("name", "kind"), PAIRS)
+def test_kernels_of_tables_give_the_same_bits_both_ways(name, kind):
+    """Of all robots, compiled once: it is the same Python about other kinematics. Then the descent to `near`."""
+    robot, rng = ikde.load_robot(name), np.random.default_rng(3)
+    problem = problem_of(robot, ikde.SolveSettings.for_method("lm"))
+    near = replace(problem, near=robot.home)
+    asked = pack_searched(near.collision), make_ranges(near), make_descent(near, kind)
+    answer = answer_target.bind(*pack_answer(problem, kind))
+    for stream in range(3):
+        q = free_q(robot, rng)
+        target = make_target(robot, q, kind)
+        models, ranges, descent = asked
+        descend = reduce_motions.bind(*models, pack_targets([target]), np.array([0]), ranges, descent, near.weights)
+        rows, moved = np.zeros((2, size_of(len(q), len(problem.collision.pairs)))), np.array([[q], [q]])
+        for row, Q, way in zip(rows, moved, ("plain", "compiled"), strict=True):
+            getattr(answer, way)(target.T_world_tool, np.int64(-1), stream, 0, 16, row)
+            getattr(descend, way)(Q)
+        assert rows[0].tobytes() == rows[1].tobytes()
+        assert moved[0].tobytes() == moved[1].tobytes()
+        assert (moved[0] != q).any()
 
 
 class Answer:
@@ -107,6 +142,25 @@ def test_one_child_at_a_time_and_one_trial_a_question(qiao, child):
     assert child._process is not first
 
 
+def test_what_was_asked_while_the_child_was_at_work_has_its_turn_when_it_is_asked_again(qiao, child):
+    collision, lost = CollisionModel.of(qiao), Answer(is_kept=False)
+    questions = [Question(collision, "pose", call) for call in ("one", "near", "many of")]
+    for question in questions:
+        assert answers_plainly(lost, question)
+    for done, question in pairwise(questions):
+        assert child.works_on(done)
+        child._process.code = 0
+        assert answers_plainly(lost, question)
+        assert child.works_on(question)
+
+
+def test_what_is_kept_is_made_use_of_while_the_child_works_on_something_else(qiao, child):
+    collision = CollisionModel.of(qiao)
+    assert answers_plainly(Answer(is_kept=False), Question(collision, "pose", "near"))
+    assert not answers_plainly(Answer(is_kept=True), Question(collision, "pose"))
+    assert child.is_at_work
+
+
 def test_a_child_that_has_done_its_work_is_made_use_of(qiao, child):
     collision, made = CollisionModel.of(qiao), Answer(is_kept=False)
     assert answers_plainly(made, Question(collision, "pose"))
@@ -124,8 +178,9 @@ def test_the_environment_decides(qiao, child, monkeypatch, way, plain):
     assert not child.is_at_work
 
 
-def test_a_process_of_one_answer_starts_no_child(qiao, child, monkeypatch):
-    monkeypatch.delenv(COMPILE)
+@pytest.mark.parametrize("told", ["", "background"])
+def test_a_process_of_one_answer_starts_no_child(qiao, child, monkeypatch, told):
+    monkeypatch.setenv(COMPILE, told)
     with compile_way(LATER):
         assert answers_plainly(Answer(is_kept=True), Question(CollisionModel.of(qiao), "pose"))
     assert not child.is_at_work
@@ -190,6 +245,61 @@ def test_a_short_script_is_answered_without_numba_and_leaves_nothing(tmp_path):
     assert (reached, numba_is_there, done.stderr) == ("True", "False", "")
     assert ends(pid)
     assert not list(tmp_path.rglob("*.tmp"))
+
+
+MANY = """
+import sys
+import ikde
+robot, places = ikde.load_robot("ur5"), [[0.3, 0.1 + 0.005 * k, 0.4] for k in range(40)]
+rows = ikde.solve_many(robot, [ikde.Target(p) for p in [*places, [9.0, 0.0, 0.0]]], seed=7, method="lm")
+from ikde.solver import background
+process = background.CHILD._process
+print(int(rows.reached.sum()), rows.reason(40)[:21], "numba" in sys.modules, process.pid, sep=",")
+"""
+
+
+def test_some_targets_one_of_them_out_of_reach_are_answered_without_numba(tmp_path):
+    done = run_first(tmp_path, MANY)
+    reached, reason, numba_is_there, pid = done.stdout.split(",")
+    assert (reached, reason, numba_is_there, done.stderr) == ("40", "out of reach: at leas", "False", "")
+    assert ends(pid)
+
+
+COMMAND = """
+import sys
+from ikde.__main__ import main
+sys.argv = ["ikde", "solve", "--json", *{words}]
+try:
+    main()
+except SystemExit as end:
+    code = end.code
+print(code, "numba" in sys.modules, file=sys.stderr)
+"""
+DOWN = ["--quat-wxyz", "0", "1", "0", "0"]
+BENT = "0,-1.5,1.5,-1.5,-1.5,0"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--near", BENT],
+        [*DOWN],
+        [*DOWN, "--near", BENT],
+        ["--freeze", "wrist_1_joint=-1"],
+        ["--near", BENT, "--weights", "elbow_joint=3"],
+        ["--axis", "0", "0", "-1", "--robot", "own"],
+    ],
+    ids=" ".join,
+)
+def test_the_command_answers_one_target_without_numba(tmp_path, words):
+    """Also of a robot that does not come with ikde, whose seeds are drawn."""
+    text = robot_path("ur5").read_text().replace("425]", "435]")
+    (tmp_path / "own.yaml").write_text(text)
+    given = [word.replace("own", str(tmp_path / "own.yaml")) for word in words]
+    asked = ["--robot", "ur5", "--position", "0.3", "0.2", "0.4", *given]
+    done = run_first(tmp_path / "cache", COMMAND.format(words=asked))
+    assert done.stderr.strip() == "0 False"
+    assert json.loads(done.stdout)["reached"]
 
 
 def test_a_closed_standard_input_changes_nothing(tmp_path):

@@ -22,7 +22,7 @@ def test_it_compiles_one_kind_of_target_for_the_robot_that_it_is_told(substitute
     robot, done = ikde.load_robot("ur5"), []
     substitute(warmup.warm_up, done.extend)
     detector = robot.detectors[robot.default_detector]
-    compile_answer({"robot": encode(robot), "detector": encode(detector), "what": [kind, False]})
+    compile_answer({"robot": encode(robot), "detector": encode(detector), "what": [kind, "one", "lm"]})
     (stage,) = done
     assert stage.name == f"lm, one {kind}"
     asked, target, *_ = stage.run.args
@@ -33,7 +33,7 @@ def test_it_compiles_one_kind_of_target_for_the_robot_that_it_is_told(substitute
 def test_with_near_and_without_a_detector_it_compiles_for_that(substitute):
     robot, done = ikde.load_robot("ur5"), []
     substitute(warmup.warm_up, done.extend)
-    compile_answer({"robot": encode(robot), "detector": None, "what": ["axis", True]})
+    compile_answer({"robot": encode(robot), "detector": None, "what": ["axis", "near", "lm"]})
     asked = done[0].run.keywords
     assert asked["collision"].detector is None
     assert asked["near"].tolist() == robot.home.tolist()
@@ -79,3 +79,11 @@ def test_while_it_waits_nothing_is_imported():
     script = "import sys; from ikde.solver import compiler_process; print({'numpy', 'numba'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+@pytest.mark.parametrize(("call", "engine"), [("many of", "lm"), ("one", "analytic"), ("near", "analytic")])
+def test_what_is_asked_is_one_stage(substitute, call, engine):
+    robot, done = ikde.load_robot("ur5"), []
+    substitute(warmup.warm_up, done.extend)
+    compile_answer({"robot": encode(robot), "detector": None, "what": ("pose", call, engine)})
+    assert [stage.name for stage in done] == [f"{engine}, {call} pose"]

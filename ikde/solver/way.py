@@ -1,0 +1,42 @@
+"""A kernel that answers one target, and when it is machine code."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ikde.kernels.jit import Kernel
+from ikde.solver.background import Question, answers_plainly
+from ikde.solver.compile_note import note_compile
+
+Answer = Callable[..., bool]
+"""`answer(T_world_tool, seed, stream, first, last, out)`: attempts `first` .. `last` - 1 and their grade, as
+`lm.answer_target`."""
+
+
+class Way:
+    """A kernel that answers one target: in plain Python, until there is machine code."""
+
+    def __init__(self, kernel: Kernel, question: Question) -> None:
+        self._kernel, self._question = kernel, question
+        self.machine: Answer | None = None
+        self.waited_s, self.compile_s = 0.0, 0.0
+
+    def begin(self, *arguments: Any) -> bool:
+        """A call while machine code is not there, or the one that waits for it."""
+        *block, T_world_tool, seed, stream, first, last, row = arguments
+        bound = self._kernel.bind(*block)
+        if first > 0 or answers_plainly(bound, self._question):
+            return bound.plain(T_world_tool, np.int64(seed), stream, first, last, row)
+        started = time.perf_counter()
+        with note_compile(self._question.describe) as clock:
+            self._kernel.compiled(*arguments)
+        self.machine = answer = self._kernel.compiled
+        self.waited_s, self.compile_s = time.perf_counter() - started, clock.seconds
+        return answer(*arguments)
+
+    def take_waited_s(self) -> tuple[float, float]:
+        """For how long machine code has been waited for since this was asked last, and how much of it was compiling."""
+        waited, self.waited_s, self.compile_s = (self.waited_s, self.compile_s), 0.0, 0.0
+        return waited
