@@ -32,6 +32,9 @@ class BothWays:
     def __init__(self, function):
         self.compiled = self.plain = function
 
+    def __call__(self, *arguments):
+        return self.compiled(*arguments)
+
     def bind(self, *arguments):
         """The function with its first arguments."""
         return BothWays(partial(self.compiled, *arguments))

@@ -46,7 +46,7 @@ class Liar:
     def change(self, module):
         """The module with its solvers exchanged; its seeds are honest."""
         solvers = {"solve_target": BothWays(self.solve_target), "solve_targets": self.solve_many(6)}
-        solvers["answer_target"] = BothWays(self.answer_target)
+        solvers |= {"answer_target": BothWays(self.answer_target), "answer_near": BothWays(self.answer_near)}
         if hasattr(module, "solve_branches"):
             solvers["solve_branches"] = self.solve_many(5)
         return SimpleNamespace(**{**vars(module), **solvers})
@@ -63,6 +63,10 @@ class Liar:
         q, score, counts, _ = open_row(len(self.q), first, out)
         self.solve_target(first, last, q, score, counts, None)
         return grade_row(grader, terms, TargetArrays(kinds, T_world_tool.reshape(1, 3, 4)), len(self.q), out)
+
+    def answer_near(self, numbers, whole, pool, pool_T, weight, *question):
+        """The same: a lie is not moved."""
+        return self.answer_target(numbers, whole, pool, pool_T, *question)
 
     def solve_many(self, place):
         """Like `solve_targets` and `solve_branches`; which rows they solve stands at this place."""

@@ -66,7 +66,7 @@ def test_only_what_was_checked_is_counted(run):
     for arm, checked in zip(summary.arms, (0, 32), strict=True):
         verdicts = [row["verified"] for row in of_arm(rows, arm.name) if row["verified"] is not None]
         assert arm.verified == Rate(len(verdicts), len(verdicts))
-        assert 0 < len(verdicts) < 32
+        assert len(verdicts) < 32
         assert arm.collision_checked == checked == sum(row["collision"] is not None for row in of_arm(rows, arm.name))
 
 

@@ -43,6 +43,7 @@ BEYOND = {
     "convention",
     "outside_limits",
     "attempts",
+    "motion",
     "rejected",
     "blocking_pairs",
     "settings",

@@ -4,6 +4,7 @@ Answers are judged by the naive twins of `tests/reference.py`, which share no co
 """
 
 from itertools import combinations
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 import ikde
 from tests.conftest import random_q
 from tests.problems import are_apart
+from tests.substitutes import BothWays
 from tests.three_joints import KINDS, ROBOT, free_q, is_met, meet
 from tests.uncompiled import plain_module
 from tests.written import written_kernels
@@ -94,13 +96,18 @@ def test_out_of_reach_is_told(kind):
     assert {(result.reached, result.stop_reason) for result in results} == {(False, "out_of_reach")}
 
 
+def both_ways(module):
+    """Its functions as kernels."""
+    return SimpleNamespace(**{name: BothWays(own) if callable(own) else own for name, own in vars(module).items()})
+
+
 def test_a_closed_form_meets_poses(rng, monkeypatch):
     """By its module as plain Python: six joints take long to compile."""
     arm, settings = ikde.load_robot("ur5"), settings_of("analytic")
     free = [q for q in random_q(arm, rng, 12) if is_met(arm, meet(arm, q, "pose"), q, settings)]
     targets = [meet(arm, q, "pose") for q in free]
     assert len(targets) > 4
-    with written_kernels(monkeypatch, plain_module) as asked:
+    with written_kernels(monkeypatch, lambda module: both_ways(plain_module(module))) as asked:
         results = [ikde.solve(arm, targets[0], settings), *ikde.solve_many(arm, targets[1:], settings)]
         near = ikde.solve(arm, targets[0], settings, near=free[0] + 0.02)
         frozen = ikde.solve(arm, targets[0], settings, freeze={arm.joint_names[0]: free[0][0]})

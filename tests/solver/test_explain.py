@@ -278,12 +278,12 @@ def test_what_other_random_numbers_find_free_is_not_called_a_collision(qiao, sub
     def unlucky(problem, targets, **options):
         found = make_search_state(problem, len(targets))
         found.counts[:, [ATTEMPTS, COLLIDING]] = 3
-        metrics = compute_metrics(CollisionModel.of(qiao), targets, found.q)
+        metrics = compute_metrics(CollisionModel.of(qiao), targets, found.q, settings)
         found.metrics.put(np.arange(len(targets)), metrics)
         return found
 
-    substitute(search, after_the_first(unlucky, search))
     settings = ikde.SolveSettings(method="lm")
+    substitute(search, after_the_first(unlucky, search))
     result = ikde.solve_many(qiao, [TARGET], settings, freeze=PARKED)[0]
     assert result.stop_reason == "budget"
     stream = int(re.fullmatch(r"other random numbers: with this seed and stream (\d+) .*", result.hint)[1])

@@ -68,7 +68,7 @@ def test_of_many_targets_those_that_were_reached_least_often_are_shown(answers, 
 def test_one_arm_with_single_solves_has_one_table(bare):
     section = make_success(bare)
     assert [table.rows for table in tables(section)] == [
-        (("auto", "12", "0", "0.0 (0.0–24.2)", "12", "checked", "1 of 1"),)
+        (("auto", "12", "0", "0.0 (0.0–24.2)", "12", "checked", "not checked"),)
     ]
     assert figures(section) == []
 
