@@ -87,6 +87,7 @@ def test_a_search_that_claims_too_much_is_not_believed(qiao, substitute):
         engine = np.zeros(len(targets), dtype=np.int64)
         score = np.zeros((len(targets), 2))
         some = {"score": score, "excess_m": nothing, "excess_rad": nothing, "seconds": nothing, "engine": engine}
+        some["ruled_out"] = np.full(len(targets), -1)
         some["metrics"] = compute_metrics(CollisionModel.of(qiao), targets, q, QUICK)
         return SearchState(q=q, counts=counts, pair_counts=keep_pairs(pair_counts), **some)
 
