@@ -39,7 +39,7 @@ OrientationToleranceOption = Annotated[
     float | None, of_target(help="Orientation tolerance, in --angles (default: 1e-4 rad).")
 ]
 NearOption = Annotated[
-    str | None, of_robot(metavar="Q", help="Move as little as can be from these joint values (as --q of check).")
+    str | None, of_robot(metavar="Q", help="Stay near these joint values (as --q of check): no small change is nearer.")
 ]
 FreezeOption = Annotated[
     str | None, of_robot(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home.")

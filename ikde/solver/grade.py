@@ -25,10 +25,7 @@ from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, Grade, MaskedBools, verify_many
 
 SPLIT = "met by the last digit: rounding takes it across a tolerance or the safe distance for one of the two graders"
-BLOCK, SAMPLED = (
-    4096,
-    64,
-)  # the last 64 streams of each 4096, wherever a batch is cut: few calls of numpy, and full ones
+BLOCK, SAMPLED = 4096, 64  # the last 64 streams of each 4096, wherever a batch is cut: few calls of numpy, full ones
 AT_ONCE = 256  # rows that plain numpy grades in a call: 11 us each (qiao2021); 38 with 16 of them
 
 

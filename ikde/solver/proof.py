@@ -11,7 +11,8 @@ from ikde.solver.problem import Problem
 def prove(problem: Problem, target: Target) -> tuple[float, float]:
     """By how much bounds prove that the tool misses a target at least, m and rad; 0 within the tolerances.
 
-    0, 0: not proved to be out of reach. The bounds are kept; asked again with the same ranges it takes 10 to 30 us.
+    0, 0: not proved to be out of reach. The bounds are kept; asked again with the same ranges it takes
+    3 to 5 us of the shipped robots, 23 of a SCARA.
     """
     settings = problem.settings
     far_m, off_rad = find_bounds(problem.robot, problem.lower, problem.upper).excess(target)

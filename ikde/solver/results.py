@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any
 
-import numpy as np
-
 from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.model.target import KINDS, Target, Targets
@@ -175,12 +173,6 @@ class SolveResults:
 def _find_maker(problem: Problem, method: str) -> ResultMaker:
     """What all rows of a problem share is made once."""
     return ResultMaker(problem, method)
-
-
-def _verdict(column: MaskedBools, index: int) -> bool | None:
-    """One of a column; None where it is masked."""
-    value = column[index]
-    return None if value is np.ma.masked else bool(value)
 
 
 def _name_work(problem: Problem, targets: Targets) -> str:

@@ -354,3 +354,21 @@ def test_a_fork_has_no_child():
 
 def test_never_imports_numba_and_starts_nothing(tmp_path):
     assert run_first(tmp_path, **{COMPILE: "never"}).stdout.split() == ["True", "False", "None"]
+
+
+NEVER = """
+import sys
+import warnings
+warnings.simplefilter("error")
+import ikde
+robot = ikde.load_robot("ur5")
+targets = [ikde.Target([0.3, 0.2, 0.4]), ikde.Target([0.3, 0.1, 0.4])]
+results = [ikde.solve_many(robot, targets), ikde.solve_many(robot, targets, near=robot.home)]
+print([bool(rows.reached.all()) for rows in results], "numba" in sys.modules)
+"""
+
+
+def test_never_answers_many_without_a_warning(tmp_path):
+    """Of words that wrap around, which machine code does without a word."""
+    done = run_first(tmp_path, NEVER, **{COMPILE: "never"})
+    assert (done.stdout.strip(), done.stderr) == ("[True, True] False", "")

@@ -1,7 +1,6 @@
 """`lm`: damped least squares from collision-free seeds, by kernels written for the robot."""
 
-from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,11 +39,6 @@ def pack_block(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> 
     """All that stays from target to target, as `solve_target` takes it."""
     settings = make_ranges(problem), make_descent(problem, kind), seeds or make_seeds(problem, kind)
     return flatten_search(*pack_searched(problem.collision), *settings)
-
-
-def prepare_search(problem: Problem, kind: str) -> Callable[..., None]:
-    """Damped least squares on one target: `search(*targets, row, seed, stream, begin, end, *outputs)`."""
-    return partial(load_kernels(problem.collision, kind).solve_target.compiled, *pack_block(problem, kind))
 
 
 def pack_answer(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> tuple[Floats, Ints, Floats, Floats]:
