@@ -121,7 +121,11 @@ class SolveResult:
     @cached_property
     def near(self) -> Floats | None:
         """[N] what `q` was to stay close to, brought inside the joint ranges; None: nothing."""
-        return self._maker.problem.near
+        near = self._maker.problem.near
+        if near is not None:
+            near = near.view()
+            near.setflags(write=False)
+        return near
 
     @cached_property
     def motion(self) -> float:

@@ -108,3 +108,11 @@ def test_where_nothing_may_move_there_is_no_quick_way(written, qiao):
 def test_bad_input_is_said_in_a_line(written, qiao, changes, words):
     with pytest.raises(InputError, match=words):
         ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0)), **changes)
+
+
+def test_near_of_a_result_cannot_be_changed(qiao, rng):
+    q = free_q(qiao, rng)
+    result = ikde.solve(qiao, make_target(qiao, q, "position"), near=q)
+    with pytest.raises(ValueError, match="read-only"):
+        result.near[0] = 9.0
+    assert result.motion == 0.0

@@ -42,8 +42,11 @@ class SearchInputs:
         self.problem, self.found = problem, found
         self.targets: TargetArrays = pack_targets(targets)
         self.seed: np.uint64 = np.uint64(seed)
-        ends = (streams.start, streams.stop, streams.step) if isinstance(streams, range) else None
-        self.streams: Ints = np.arange(*ends) if ends else np.array(streams, dtype=np.int64)  # 60 ns a number otherwise
+        self.streams: Ints = (
+            streams.start + streams.step * np.arange(len(streams))  # its end may be 2^63, which is no int64
+            if isinstance(streams, range)
+            else np.array(streams, dtype=np.int64)  # 60 ns a number
+        )
 
     def attempts(self, rows: range, first: int, last: Ints, kind: int | None = None) -> Ints:
         """Attempts [rows, 2] to make: first .. last - 1 where a row is open and its target of this kind, else none."""

@@ -7,7 +7,7 @@ import ikde
 from ikde.kernels.damped import compute_turn
 from ikde.model.pack import pack_targets
 from ikde.model.rotation import rotation_from_rpy
-from ikde.solver.engines.engine import make_descent, make_ranges, measure_turn
+from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges, measure_turn
 from tests.problems import problem_of
 from tests.solver.engines.questions import make_question
 
@@ -19,6 +19,13 @@ def test_attempts_go_to_open_rows_of_the_kind_only(qiao, rng):
     attempts = question.attempts(range(4), 2, np.array([9, 8, 7, 6]), kind=0)
     assert attempts.tolist() == [[2, 2], [2, 8], [2, 2], [2, 2]]
     assert question.attempts(range(0, 2), 2, np.array([9, 8, 7, 6])).tolist() == [[2, 9], [2, 8]]
+
+
+def test_the_last_streams_are_whole_numbers(qiao, rng):
+    question, targets = make_question(qiao, rng, ("pose", "pose"))
+    last = range(2**63 - 2, 2**63)
+    streams = SearchInputs(question.problem, targets, question.found, seed=1, streams=last).streams
+    assert (streams.dtype, streams.tolist()) == (np.int64, [*last])
 
 
 def test_ranges_hold_limits_and_the_middle_or_near(qiao):
