@@ -208,9 +208,11 @@ def answer_pose(numbers, whole, T_world_tool, seed, stream, first, last, out):
     As `lm.answer_target`, but that one attempt, `first`, shows all there is. True if it is reached and accepted.
     """
     grader, terms, kinds, turns = unpack_answer(numbers, whole)
-    out_q, reached = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
+    out_q, is_met, _ = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
+    if not is_met:
+        return False
     unwind(turns[0], turns[1], turns[2], turns[3], out_q)
-    return reached and grade_row(grader, terms, TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), whole[0], out)
+    return grade_row(grader, terms, TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), whole[0], out)
 
 
 @kernel
@@ -218,24 +220,26 @@ def answer_pose_near(numbers, whole, descent, weight, T_world_tool, seed, stream
     """The same, moved to the least motion from ranges[2]; `descent` [9] as `DescentArrays`, `weight` [N]."""
     grader, terms, kinds, turns = unpack_answer(numbers, whole)
     target = TargetArrays(kinds, T_world_tool.reshape((1, 3, 4)))
-    out_q, reached = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
+    out_q, is_met, is_reached = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
+    if not is_met:
+        return False
     unwind(turns[0], turns[1], turns[2], turns[3], out_q)
-    if reached:
+    if is_reached:
         d, (ranges, _, _) = descent, unpack_closed_form(numbers, whole)
         settings = DescentArrays(d[0], d[1], d[2], d[3], d[4], d[5], int(d[6]), int(d[7]), d[8])
         robot, collision = unpack_models(numbers[whole[2] :], whole[whole[3] :])
         reduce_motion(robot, collision, target, 0, ranges, settings, weight, out_q)
-    return reached and grade_row(grader, terms, target, whole[0], out)
+    return grade_row(grader, terms, target, whole[0], out)
 
 
 @kernel
 def find_branch(numbers, whole, T_world_tool, seed, stream, attempt, out):
-    """One attempt on one pose [3, 4] into a row; its q [N], and whether it is reached."""
+    """One attempt on one pose [3, 4] into a row; its q [N], whether that meets the pose, and whether it is free."""
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
     buffers, outputs = make_buffers(models[0], models[1], whole[0]), open_row(whole[0], attempt, out)
     try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs)
-    return outputs[0], outputs[2][REACHED] == 1
+    return outputs[0], outputs[1][0] == 0.0, outputs[2][REACHED] == 1
 
 
 @kernel

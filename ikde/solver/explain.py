@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
+from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
 from ikde.model.target import Target
 from ikde.solver.branches import tell_branches
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.engines.search_state import SearchState
+from ikde.solver.engines.search_state import SearchState, make_search_state
 from ikde.solver.fixed import tell_fixed
 from ikde.solver.hints import (
     Probe,
@@ -28,7 +29,7 @@ from ikde.solver.proof import prove
 from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.touching import find_always_touching
-from ikde.solver.verify import Grade
+from ikde.solver.verify import Grade, verify
 
 COUNTED = 64  # attempts whose collisions are counted pair by pair
 
@@ -134,6 +135,19 @@ def explain_reach(problem: Problem, target: Target) -> Explanation:
         hint=hint_at_bounds(problem, target),
         blocking_pairs={},
     )
+
+
+def explain_ruled_out(
+    problem: Problem, target: Target, *, row: Floats, why: int, seed: int, stream: int
+) -> Explanation:
+    """Explain what the closed form rules out for the reason of this number, from the row of the best that was found."""
+    found, joints = make_search_state(problem, 1), len(problem.lower)
+    whole = row[joints + METRICS :].view(np.int64)
+    found.q[0], found.counts[0], found.ruled_out[0] = row[:joints], whole[FIRST_COUNT:SCORE], why
+    found.pair_counts.filled[0] = whole[BLOCKED:]
+    found.pair_counts.keep(0, np.array([0]))
+    graded = verify(problem.robot, target, found.q[0], settings=problem.settings, collision=problem.collision)
+    return explain(problem, target, found, graded, seed=seed, stream=stream)
 
 
 def tell_out_of_reach(far_m: float, off_rad: float) -> str:

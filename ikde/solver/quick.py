@@ -15,15 +15,16 @@ from ikde.kernels.arrays import REACHED, Floats
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
 from ikde.solver.background import NEAR, ONE, Question
+from ikde.solver.branches import rule_out
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.pool import load_kernels, runs_on_tables
-from ikde.solver.explain import explain_reach
+from ikde.solver.explain import explain_reach, explain_ruled_out
 from ikde.solver.problem import Problem, make_problem
 from ikde.solver.proof import prove
-from ikde.solver.result import ResultMaker, SolveResult, StopReason
+from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason
 from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings, choose_settings
 from ikde.solver.way import Answer, Way
@@ -137,14 +138,19 @@ class Quick:
 
     def _go_on(self, tried: Floats, target: Target, word: int, stream: int) -> Callable[..., SolveResult] | None:
         """What no branch reaches: a few attempts of `lm`, counted with those of the closed form, and a proof."""
-        plan, maker = self._plan, ResultMaker(self._problem, LM)
+        plan, problem = self._plan, self._problem
         row, (answer, _) = np.empty(plan.size), self._bind(LM)
         is_reached = answer(target.T_world_tool, word, stream, 0, plan.few, row)
-        if not is_reached and prove(self._problem, target) == (0.0, 0.0):
+        is_far = not is_reached and prove(problem, target) != (0.0, 0.0)
+        why = -1 if is_reached or is_far else int(rule_out(problem, Targets.of([target]))[0])
+        if not is_reached and not is_far and why < 0:
             return None
-        for part in (slice(FIRST_COUNT, SCORE), slice(BLOCKED, None)):
-            row[plan.counts :].view(np.int64)[part] += tried[plan.counts :].view(np.int64)[part]
-        return partial(maker.make if is_reached else partial(make_unreachable, maker), row)
+        best, maker = keep_better(plan, tried, row), ResultMaker(problem, LM)
+        if best is tried:
+            maker = self._maker
+        if is_reached:
+            return partial(maker.make, best)
+        return partial(make_unreachable, maker, best) if is_far else partial(make_ruled_out, maker, best, why)
 
     def _solve_first(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
         """An answer while there is no machine code, or the first with it: waiting for it is not solving."""
@@ -161,6 +167,24 @@ def make_unreachable(
 ) -> SolveResult:
     """A result of what is proved to be out of reach; the proof is put into words when it is asked for."""
     return maker.make(row, target, seed, stream, solve_seconds).with_changes(**OUT_OF_REACH)
+
+
+def make_ruled_out(
+    maker: ResultMaker, row: Floats, why: int, target: Target, seed: int, stream: int, solve_seconds: float
+) -> SolveResult:
+    """A result of what the closed form rules out for the reason of this number; its words are made when asked for."""
+    explain = partial(explain_ruled_out, row=row, why=why, seed=seed, stream=stream)
+    known = {"reached": False, "stop_reason": STOP_REASONS[why], "_explain": explain}
+    return maker.make(row, target, seed, stream, solve_seconds).with_changes(**known)
+
+
+def keep_better(plan: Plan, tried: Floats, row: Floats) -> Floats:
+    """Of two rows the one whose score is better, the first of equals, with the counts of both."""
+    whole = [part[plan.counts :].view(np.int64) for part in (tried, row)]
+    scores = [tuple(part[plan.counts + SCORE : plan.counts + BLOCKED].tolist()) for part in (tried, row)]
+    for part in (slice(FIRST_COUNT, SCORE), slice(BLOCKED, None)):
+        whole[0][part] = whole[1][part] = whole[0][part] + whole[1][part]
+    return row if scores[1] < scores[0] else tried
 
 
 def lay_out(problem: Problem, kind: str, engine: str) -> Sequence[Any]:

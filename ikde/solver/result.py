@@ -200,6 +200,8 @@ class SolveResult:
     @cached_property
     def blocking_pairs(self) -> Mapping[tuple[str, str], int]:
         """How often each pair blocked a pose that was met, most often first."""
+        if "_explain" in self.__dict__:
+            return self._explanation.blocking_pairs
         return count_blocking_pairs(self._maker.problem.collision.pairs, self._counted[BLOCKED:])
 
     @cached_property
