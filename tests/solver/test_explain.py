@@ -339,5 +339,6 @@ def test_short_searches_share_what_is_left_of_the_time(qiao, substitute):
 
     substitute(search, after_the_first(search, probe))
     timed = flat_settings(population=6, generations=1, restarts=1, timeout_s=1e6)
-    searched_s = ikde.solve(qiao, CLOSE, timed, freeze=STRAIGHT).solve_seconds
+    waited_s, searched_s = ikde.solve(qiao, CLOSE, timed, freeze=STRAIGHT).solve_seconds, spent[0]
+    assert 0.0 < searched_s < waited_s
     assert spent == [searched_s, searched_s + 2.0, searched_s + 4.0, searched_s + 6.0]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS
+from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
@@ -211,6 +211,7 @@ def test_where_no_branch_is_free_lm_goes_on_with_what_was_counted(rng, monkeypat
     def fail(T, seed, stream, first, last, out):
         whole = out[len(UR5.joints) + METRICS :].view(np.int64)
         whole[:] = 0
+        out[len(UR5.joints) + METRICS + SCORE :][:2] = np.inf
         whole[FIRST_COUNT + ATTEMPTS], whole[FIRST_COUNT + COLLIDING], whole[BLOCKED] = 1, 2, 2
         return False
 
