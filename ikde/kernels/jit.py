@@ -41,17 +41,7 @@ class Kernel:
     @cached_property
     def compiled(self) -> Any:
         """A dispatcher of numba's; where nothing is compiled there is none, and it is `plain`."""
-        return self._compile()
-
-    @cached_property
-    def _inner(self) -> Any:
-        """What kernels call: without the code that unpacks Python's objects, which took 5 of 48 s in the largest."""
-        if self.py_func.__name__ in self.py_func.__code__.co_names:  # calls itself, and numba tells that by dispatcher
-            return self.compiled
-        return self._compile(no_cpython_wrapper=True)
-
-    def _compile(self, **options: Any) -> Any:
-        options = {**self._options, "no_cfunc_wrapper": True, **options}
+        options = {**self._options, "no_cfunc_wrapper": True}
         compiled = self.py_func if never_compiles() else _load_compiler()(self.py_func, options)
         return self.plain if compiled is self.py_func else compiled
 
@@ -67,7 +57,7 @@ class Kernel:
 
     @property
     def _numba_type_(self) -> Any:
-        return self._inner._numba_type_
+        return self.compiled._numba_type_
 
     def bind(self, *arguments: Any) -> "Bound":
         """The kernel with its first arguments."""

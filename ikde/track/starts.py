@@ -1,12 +1,16 @@
 """Where a motion may start: configurations that meet the first pose, free of collision and inside all limits."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.solver.joints import joints_outside
 from ikde.solver.plain import compute_frames
+from ikde.solver.problem import make_problem
 from ikde.solver.result import SolveResult
+from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings
 from ikde.solver.solve import solve, solve_many
 from ikde.solver.verify import Bools, verify
@@ -26,14 +30,16 @@ def draw_starts(plan: TrackPlan, draws: int = DRAWS) -> tuple[Floats, SolveResul
     first = solve(robot, target, EXACT, seed=seed, **question)
     if not first.reached:
         return np.empty((0, len(robot.joints))), first
-    question |= {"bulk": BulkOptions(threads=1, explain=False)}
-    rows = solve_many(robot, [target] * draws, EXACT, seed=seed, **question)
+    bulk = BulkOptions(threads=1, explain=False)
+    rows = solve_many(robot, [target] * draws, EXACT, seed=seed, bulk=bulk, **question)
     found = [rows.q[rows.reached]]
     rng = np.random.default_rng(seed)
     quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")
     for stream in range(draws):
         near = np.where(robot.is_prismatic, robot.home, rng.uniform(*robot.drawn))
-        row = solve_many(robot, [target], quick, seed=stream, near=near, **question)
+        # Not moved to the least motion: that may end at a limit or a contact, where no motion should start.
+        problem = replace(make_problem(robot, quick, near=near, **question), descends=False)
+        row = solve_rows(problem, [target], bulk, seed=stream)
         found.append(row.q[row.reached])
     q = np.concatenate(found)
     _, unlike = np.unique(q.round(3), axis=0, return_index=True)

@@ -76,6 +76,7 @@ def test_plain_python_and_machine_code_give_the_same_bits(name, kind, written):
 
 
 @needs_compiler
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "kind"), PAIRS)
 def test_kernels_of_tables_give_the_same_bits_both_ways(name, kind):
     """Of all robots, compiled once: it is the same Python about other kinematics. Then the descent to `near`."""
