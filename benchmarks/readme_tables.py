@@ -87,8 +87,8 @@ def format_batch(record: dict[str, Any]) -> str:
     """Runs of `ikde batch`, a row a run."""
     lines = [
         "`ikde batch` on targets that random collision-free configurations reach, all columns, every answer graded, "
-        "the last 64 of each 4,096 by plain numpy as well; the median of interleaved rounds, s of whole processes, the other figures "
-        "without their start:",
+        "the last 64 of each 4,096 by plain numpy as well; the median of interleaved rounds, s of whole processes, "
+        "the other figures without their start:",
         "",
         "| run | targets | s | answers a second | µs a target | of it search | peak MB | reached | times one thread |",
         "|---|---|---|---|---|---|---|---|---|",
