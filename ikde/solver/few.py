@@ -19,11 +19,10 @@ from ikde.solver.engines.lm import pack_answer, prepare
 from ikde.solver.engines.pool import load_kernels, runs_on_tables
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.problem import Problem
-from ikde.solver.way import Way
+from ikde.solver.way import Way, as_word
 
 FEW, FEW_WITHOUT_LANES = 32, 1000
 ENGINE = "lm"
-HALF_WORDS = 2**63
 
 
 def answer_few(
@@ -43,7 +42,7 @@ def answer_few(
     attempts = min(ENGINES[ENGINE].attempts_before_proof, budget)
     ways = {kind: find_answer(problem, KINDS[kind]) for kind in {*kinds}}
     calls = {kind: partial(way.machine, *begin.args) if way.machine else begin for kind, (way, begin) in ways.items()}
-    word = seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
+    word = as_word(seed)
     began, accepted = time.perf_counter(), []
     for row, T_world_tool, stream, kind in zip(rows, targets.T_world_tool, streams, kinds, strict=True):
         accepted.append(calls[kind](T_world_tool, word, stream, 0, attempts, row))

@@ -27,10 +27,9 @@ from ikde.solver.proof import prove
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason
 from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings, choose_settings
-from ikde.solver.way import Answer, Way
+from ikde.solver.way import Answer, Way, as_word
 
 LM, CLOSED = "lm", "analytic"
-HALF_WORDS = 2**63
 OUT_OF_REACH = {"reached": False, "stop_reason": StopReason.OUT_OF_REACH, "_explain": explain_reach}
 
 
@@ -117,7 +116,7 @@ class Quick:
         return partial(way.machine or way.begin, *self._lay_out(engine)), way.machine is not None
 
     def _ask(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
-        plan, word = self._plan, seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
+        plan, word = self._plan, as_word(seed)
         row = np.empty(plan.size)
         if self._answer(target.T_world_tool, word, stream, 0, 1 if plan.is_closed else plan.few, row):
             return self._maker.make(row, target, seed, stream, time.perf_counter() - started)

@@ -13,6 +13,12 @@ from ikde.solver.compile_note import note_compile
 Answer = Callable[..., bool]
 """`answer(T_world_tool, seed, stream, first, last, out)`: attempts `first` .. `last` - 1 and their grade, as
 `lm.answer_target`."""
+HALF_WORDS = 2**63
+
+
+def as_word(seed: int) -> int:
+    """A seed as numba takes it without another signature: the same 64 bits as a number with a sign."""
+    return seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
 
 
 class Way:
