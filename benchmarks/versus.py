@@ -28,9 +28,9 @@ SHARES = (50, 95, 99, 100)
 class Side:
     """One checkout: a process that runs rounds when it is asked to."""
 
-    def __init__(self, script: Path, checkout: Path) -> None:
+    def __init__(self, script: Path, checkout: Path, only: str) -> None:
         environment = {**os.environ, "PYTHONPATH": str(checkout), "PYTHONWARNINGS": "ignore", "IKDE_COMPILE": "wait"}
-        command = [sys.executable, str(Path(__file__).resolve()), str(script.resolve()), "--serve"]
+        command = [sys.executable, str(Path(__file__).resolve()), str(script.resolve()), "--serve", "--only", only]
         self._process = subprocess.Popen(
             command, env=environment, cwd=checkout, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
@@ -60,14 +60,14 @@ def time_calls(call: Callable[[int], object], count: int) -> list[float]:
     return spent
 
 
-def serve(script: Path) -> None:
+def serve(script: Path, only: str) -> None:
     """Run the rounds whose names come in, one a line; each has been run once before."""
     spec = importlib.util.spec_from_file_location("cases", script)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    cases: dict[str, Case] = module.cases()
+    cases: dict[str, Case] = {name: case for name, case in module.cases().items() if only in name}
     for case in cases.values():
         case()
     print(json.dumps(list(cases)), flush=True)
@@ -75,9 +75,9 @@ def serve(script: Path) -> None:
         print(json.dumps([round(float(us), 3) for us in cases[line.strip()]()]), flush=True)
 
 
-def compare(sides: dict[str, Side], rounds: int, only: str) -> dict[str, dict[str, Any]]:
+def compare(sides: dict[str, Side], rounds: int) -> dict[str, dict[str, Any]]:
     """Figures of each case, by side, and the ratio of their medians: least, median and largest over the rounds."""
-    names = [name for name in dict.fromkeys(n for side in sides.values() for n in side.names) if only in name]
+    names = list(dict.fromkeys(name for side in sides.values() for name in side.names))
     spent: dict[str, dict[str, list[list[float]]]] = {name: {label: [] for label in sides} for name in names}
     for number in range(rounds):
         for name in names:
@@ -119,11 +119,11 @@ def main() -> None:
     parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.serve:
-        serve(asked.script)
+        serve(asked.script, asked.only)
         return
     checkouts = {"before": asked.before.resolve()} if asked.before else {}
-    sides = {label: Side(asked.script, path) for label, path in {**checkouts, "after": HERE}.items()}
-    figures = compare(sides, asked.rounds, asked.only)
+    sides = {label: Side(asked.script, path, asked.only) for label, path in {**checkouts, "after": HERE}.items()}
+    figures = compare(sides, asked.rounds)
     show(figures)
     if asked.out:
         asked.out.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")

@@ -6,9 +6,10 @@ from types import SimpleNamespace
 from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, EVALUATIONS, REACHED, TargetArrays
 from ikde.kernels.flat_arguments import unpack_answer
+from ikde.solver.asker import find_asker
 from ikde.solver.engines import pool
 from ikde.solver.engines.lm import prepare
-from ikde.solver.few import find_answer
+from ikde.solver.few import find_ask
 from ikde.solver.quick import find_quick
 from tests.substitutes import BothWays, substituted
 
@@ -34,7 +35,8 @@ def _forget():
     find_quick.cache_clear()
     pool.find_whole.cache_clear()
     prepare.cache_clear()
-    find_answer.cache_clear()
+    find_ask.cache_clear()
+    find_asker.cache_clear()
 
 
 class Liar:

@@ -1,89 +1,145 @@
 """So few targets that preparing lanes takes longer than they save: a call each, one after the other.
 
-Ten poses of qiao2021 take 90 us, where lanes take 160; from 40 on lanes are faster. Until those are compiled, for
-half a minute, a thousand are answered so, in plain Python (2 ms each) or by the machine code of one target.
+Until lanes are compiled, for half a minute, a thousand are answered so, in plain Python (2 ms each) or by the machine
+code of one target.
 """
 
 import time
 from collections.abc import Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, PAIR, SCORE, size_of
-from ikde.kernels.arrays import REACHED
 from ikde.model.target import KINDS, Targets
+from ikde.solver.ask import Ask
+from ikde.solver.asker import find_asker
 from ikde.solver.background import MANY, Question, answers_plainly
-from ikde.solver.engine_table import ENGINES, NAMES
-from ikde.solver.engines.lm import pack_answer, prepare
-from ikde.solver.engines.pool import load_kernels, runs_on_tables
-from ikde.solver.engines.search_state import SearchState
+from ikde.solver.choice import find_free, is_inside
+from ikde.solver.engine_table import NAMES
+from ikde.solver.engines.lm import prepare
+from ikde.solver.engines.search_state import PairCounts, SearchState
+from ikde.solver.metrics import Metrics
 from ikde.solver.problem import Problem
-from ikde.solver.way import Way, as_word
+from ikde.solver.way import as_word
 
 FEW, FEW_WITHOUT_LANES = 32, 1000
-ENGINE = "lm"
 
 
-def answer_few(
-    problem: Problem, targets: Targets, found: SearchState, budget: int, *, seed: int, streams: Sequence[int]
-) -> int:
-    """Fill `found` with what the engine `lm` finds, graded: the attempts that each target has had, reached or not.
+def answer_few(problem: Problem, targets: Targets, *, seed: int, streams: Sequence[int]) -> SearchState | None:
+    """What `solver.ask` says of each target, a row each, or None: they are too many, or have no such.
 
-    0, and nothing is filled, if they are too many, or the grader refuses one. `budget`: attempts of the engine. The
-    bits are those of lanes and `referee`.
+    A row that it leaves to other engines is empty: nothing has been attempted. The bits are those of lanes and
+    `referee`.
     """
-    if problem.near is not None or problem.settings.timeout_s is not None or runs_on_tables():
-        return 0
-    kinds = targets.kind.tolist()
-    if len(kinds) > FEW and (len(kinds) > FEW_WITHOUT_LANES or _has_lanes(problem, kinds)):
-        return 0
-    rows = np.empty((len(targets), size_of(found.q.shape[1], len(problem.collision.pairs))))
-    attempts = min(ENGINES[ENGINE].attempts_before_proof, budget)
-    ways = {kind: find_answer(problem, KINDS[kind]) for kind in {*kinds}}
-    calls = {kind: partial(way.machine, *begin.args) if way.machine else begin for kind, (way, begin) in ways.items()}
-    word = as_word(seed)
-    began, accepted = time.perf_counter(), []
-    for row, T_world_tool, stream, kind in zip(rows, targets.T_world_tool, streams, kinds, strict=True):
-        accepted.append(calls[kind](T_world_tool, word, stream, 0, attempts, row))
-    waited_s = sum(way.take_waited_s()[0] for way, _ in ways.values())
-    whole = rows[:, found.q.shape[1] + METRICS :].view(np.int64)
-    if not all(accepted) and (whole[:, FIRST_COUNT + REACHED].astype(bool) & ~np.array(accepted, dtype=bool)).any():
-        return 0
-    found.seconds[:] = (time.perf_counter() - began - waited_s) / max(1, len(targets))
-    found.engine[:] = NAMES.index(ENGINE)
-    _unpack(rows, found)
-    found.metrics.accepted[:] = accepted
-    return attempts
+    count = len(targets)
+    if problem.settings.timeout_s is not None or count > FEW_WITHOUT_LANES or not _is_usual(problem):
+        return None
+    asked = _find_asked(problem, {*targets.kind.tolist()})
+    if not asked or (count > FEW and _has_lanes(problem, asked)):
+        return None
+    return _Rows(problem, targets, asked).answer(as_word(seed), streams)
 
 
-def _has_lanes(problem: Problem, kinds: Sequence[int]) -> bool:
-    """Whether machine code of lanes is loaded, kept or to be waited for; else a child is asked to compile it."""
-    for kind in map(KINDS.__getitem__, {*kinds}):
-        kernels, _, ready = prepare(problem, kind)
-        question = Question(problem.collision, kind, MANY)
+@lru_cache(maxsize=16)
+def _is_usual(problem: Problem) -> bool:
+    """Whether its ranges are inside the robot's limits, and only what is frozen cannot move: not so of some probes."""
+    robot, free = problem.robot, find_free(problem.lower, problem.upper)
+    return is_inside(problem) and free == find_free(robot.lower, robot.upper) - {
+        *map(robot.joint_names.index, problem.frozen)
+    }
+
+
+def _find_asked(problem: Problem, kinds: set[int]) -> dict[int, Ask]:
+    """How each kind of target is asked; none for kinds that lanes answer by another engine where they are mixed."""
+    asked = {}
+    for kind in kinds:
+        ask = find_ask(problem, KINDS[kind])
+        if ask is None or (ask.plan.is_closed and len(kinds) > 1):
+            return {}
+        asked[kind] = ask
+    return asked
+
+
+@lru_cache(maxsize=16)
+def find_ask(problem: Problem, kind: str) -> Ask | None:
+    """How one kind of target is asked, kept for the next call about the same problem."""
+    return find_asker(problem.collision, problem.settings, kind).make(problem, Ask)
+
+
+def _has_lanes(problem: Problem, asked: dict[int, Ask]) -> bool:
+    """Whether machine code of lanes is loaded, kept or to be waited for; else a child is asked to compile it.
+
+    That of the closed form is always waited for: it is compiled in seconds.
+    """
+    for kind, ask in asked.items():
+        if ask.plan.is_closed:
+            continue
+        kernels, _, ready = prepare(problem, KINDS[kind])
+        question = Question(problem.collision, KINDS[kind], MANY)
         if False not in ready and answers_plainly(kernels.solve_targets.bind(), question):
             return False
     return True
 
 
-@lru_cache(maxsize=16)
-def find_answer(problem: Problem, kind: str) -> tuple[Way, partial[bool]]:
-    """The way of a problem and a kind of target, and how a call of it begins while there is no machine code."""
-    way = Way(load_kernels(problem.collision, kind).answer_target, Question(problem.collision, kind))
-    return way, partial(way.begin, *pack_answer(problem, kind))
+class _Rows:
+    """A row of numbers a target (`kernels/answer.py`), and beside them what is not said in them."""
 
+    def __init__(self, problem: Problem, targets: Targets, asked: dict[int, Ask]) -> None:
+        self._targets, self._asked, count, joints = targets, asked, len(targets), len(problem.lower)
+        self._joints, self._counts = joints, joints + METRICS
+        self._rows = np.empty((count, size_of(joints, len(problem.collision.pairs))))
+        self._accepted, self._excess = np.empty(count, dtype=np.bool_), np.zeros((2, count))
+        engines = [NAMES.index(asked[kind].engine) if kind in asked else 0 for kind in range(len(KINDS))]
+        self._engine, self._why = np.array(engines)[targets.kind], np.full(count, -1)
 
-def _unpack(rows: np.ndarray, found: SearchState) -> None:
-    """Rows of numbers (`kernels/answer.py`) as columns."""
-    joints, metrics = found.q.shape[1], found.metrics
-    whole, score = rows[:, joints + METRICS :].view(np.int64), joints + METRICS + SCORE
-    found.q[:], found.score[:], found.counts[:] = (
-        rows[:, :joints],
-        rows[:, score : score + 2],
-        whole[:, FIRST_COUNT:SCORE],
-    )
-    for place, column in enumerate((metrics.position_error_m, metrics.orientation_error_rad, metrics.clearance_m)):
-        column[:] = rows[:, joints + place]
-    metrics.closest_pair[:] = whole[:, PAIR]
-    found.pair_counts.filled[: len(rows)] = whole[:, BLOCKED:]
+    def answer(self, word: int, streams: Sequence[int]) -> SearchState:
+        """Ask for each, one after the other."""
+        began, accepted, asked = time.perf_counter(), [], self._asked
+        kinds, poses = self._targets.kind.tolist(), self._targets.T_world_tool
+        for kind, T_world_tool, row, stream in zip(kinds, poses, self._rows, streams, strict=True):
+            ask = asked[kind]
+            if not ask.is_ready:
+                ask.bind()
+            accepted.append(ask.answer(T_world_tool, word, stream, 0, ask.plan.first, row))
+        self._accepted[:] = accepted
+        if not all(accepted):
+            for index in (~self._accepted).nonzero()[0].tolist():
+                self._settle(index, asked[kinds[index]], word, streams[index])
+        waited_s = sum(ask.ways.take_waited_s()[0] for ask in asked.values())
+        return self._found((time.perf_counter() - began - waited_s) / max(1, len(kinds)))
+
+    def _settle(self, index: int, ask: Ask, word: int, stream: int) -> None:
+        """What the first call has not answered: a solution, a proof, or an empty row."""
+        row = self._rows[index]
+        settled = ask.settle(row, self._targets[index], word, stream)
+        if settled is None:
+            row[:], row[self._counts :].view(np.int64)[:] = 0.0, 0
+            row[self._counts + SCORE : self._counts + BLOCKED] = np.inf
+            return
+        row[:], self._engine[index] = settled.row, NAMES.index(settled.engine)
+        self._excess[:, index], self._why[index] = settled.excess, settled.why
+        self._accepted[index] = settled.excess == (0.0, 0.0) and settled.why < 0
+
+    def _found(self, seconds: float) -> SearchState:
+        """The rows as columns, most of them views."""
+        joints, rows = self._joints, self._rows
+        whole = rows[:, self._counts :].view(np.int64)
+        return SearchState(
+            q=rows[:, :joints].copy(),
+            score=rows[:, self._counts + SCORE : self._counts + BLOCKED],
+            counts=whole[:, FIRST_COUNT:SCORE],
+            pair_counts=PairCounts(whole[:, BLOCKED:]),
+            excess_m=self._excess[0],
+            excess_rad=self._excess[1],
+            ruled_out=self._why,
+            seconds=np.zeros(len(rows)) + seconds,
+            engine=self._engine,
+            metrics=Metrics(
+                position_error_m=rows[:, joints],
+                orientation_error_rad=rows[:, joints + 1],
+                clearance_m=rows[:, joints + 2],
+                closest_pair=whole[:, PAIR],
+                accepted=self._accepted,
+            ),
+        )

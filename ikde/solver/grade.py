@@ -140,7 +140,7 @@ def _choose(bulk: BulkOptions, first_stream: int, accepted: Bools) -> Ints:
     if bulk.verify == "all":
         return np.arange(len(accepted))
     chosen = ~accepted if bulk.explain else np.zeros(len(accepted), dtype=bool)
-    if bulk.verify == "sample":
+    if bulk.verify == "sample" and first_stream % BLOCK + len(accepted) > BLOCK - SAMPLED:
         chosen |= np.arange(first_stream, first_stream + len(accepted)) % BLOCK >= BLOCK - SAMPLED
     return chosen.nonzero()[0]
 

@@ -24,8 +24,8 @@ class Referee:
     """Keeps the metrics of `found` (`solver.metrics`) those of its `q`."""
 
     def __init__(self, problem: Problem, targets: Targets, found: SearchState, *, is_graded: bool = False) -> None:
-        self.found = found
-        self._problem, self._targets, self._limits = problem, targets, _widest(problem)
+        self.found, self.targets = found, targets
+        self._problem, self._limits = problem, _widest(problem)
         attempts = found.counts[:, ATTEMPTS].copy()
         self._graded = attempts if is_graded else np.full_like(attempts, -1)  # of each row: without a new one, no new q
 
@@ -47,7 +47,7 @@ class Referee:
         return refused
 
     def _grade(self, rows: Ints | slice) -> None:
-        found, problem, asked = self.found, self._problem, self._targets.take(rows)
+        found, problem, asked = self.found, self._problem, self.targets.take(rows)
         Q = found.q[rows]  # of rows side by side a view: it is changed in place
         unwind_rows(*_turns(problem), Q)
         if problem.near is not None and problem.descends:

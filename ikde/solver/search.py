@@ -5,18 +5,16 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from importlib import import_module
 
 import numpy as np
 
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
-from ikde.model.closed_form import find_still_arm, find_ur_arm
-from ikde.model.robot import Robot
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.branches import rule_out
 from ikde.solver.cancellation import get_cancel_check
-from ikde.solver.engine_table import AUTO, ENGINES, NAMES
+from ikde.solver.choice import Budgets, choose_budgets
+from ikde.solver.engine_table import ENGINES, NAMES
 from ikde.solver.engines.engine import Engine, SearchInputs
 from ikde.solver.engines.search_state import SearchState, make_search_state
 from ikde.solver.few import answer_few
@@ -24,10 +22,6 @@ from ikde.solver.fixed import look
 from ikde.solver.problem import Problem
 from ikde.solver.proof import prove_many
 from ikde.solver.referee import Referee
-from ikde.solver.settings import SolveSettings
-
-Plan = tuple[tuple[str, int], ...]
-"""Engines in their order, each with its attempts."""
 
 REFUSALS = 16  # of one row by the grader, before the next engine takes over
 PIECE = 2**17  # targets: so many are finished before the next are begun, which bounds what is not kept
@@ -56,25 +50,29 @@ def search(
     The answer for a target depends on (seed, stream, attempt) only: not on the other targets, the number of threads, or
     how the attempts are cut into calls; with a timeout also on the clock.
     """
-    targets = Targets.of(targets)
-    found = make_search_state(problem, len(targets), None if problem.is_fixed else PIECE)
+    targets, few = Targets.of(targets), None
     if problem.is_fixed:
+        found = make_search_state(problem, len(targets))
         look(problem, targets, found)
         return found
-    plan = _plan(problem, _kinds(targets), attempts)
-    (name, budget), *_ = plan
-    is_plain = name == "lm" and attempts is None and first_attempt == 0
-    begun = answer_few(problem, targets, found, budget, seed=seed, streams=streams) if is_plain else 0
-    is_done = begun > 0 and bool(found.metrics.accepted.all())
-    found.engine[:] = NAMES.index(plan[0][0])  # also of rows that no engine has time for
+    if attempts is None and first_attempt == 0:
+        few = answer_few(problem, targets, seed=seed, streams=streams)
+        if few is not None and few.is_settled:
+            few.pair_counts.keep(0, few.counts[:, COLLIDING].nonzero()[0])
+            few.pair_counts.drop_filled()
+            return few
+    found = make_search_state(problem, len(targets), PIECE)
+    budgets = choose_budgets(problem, _kinds(targets), attempts)
+    found.engine[:] = NAMES.index(budgets[0][0])  # also of rows that no engine has time for
+    if few is not None:
+        found.put(few)
     whole = len(targets) <= PIECE
     for first in range(0, max(len(targets), 1), PIECE):
         rows = slice(first, first + PIECE)
         some, part = (targets, found) if whole else (targets[rows], found.piece(rows))
-        if not is_done:
-            inputs = SearchInputs(problem, some, part, seed=seed, streams=streams[rows])
-            cut = first_attempt, begun, attempts
-            _search_piece(inputs, some, plan, cut, threads or usable_cores(), spent_s)
+        inputs = SearchInputs(problem, some, part, seed=seed, streams=streams[rows])
+        referee = Referee(problem, some, part, is_graded=few is not None)
+        _search_piece(inputs, referee, budgets, (first_attempt, attempts), threads or usable_cores(), spent_s)
         found.pair_counts.keep(first, part.counts[:, COLLIDING].nonzero()[0])
     found.pair_counts.drop_filled()
     return found
@@ -82,29 +80,28 @@ def search(
 
 def _search_piece(
     inputs: SearchInputs,
-    targets: Targets,
-    plan: Plan,
-    cut: tuple[int, int, int | None],
+    referee: Referee,
+    budgets: Budgets,
+    cut: tuple[int, int | None],
     threads: int,
     spent_s: float,
 ) -> None:
-    """Search some targets, engine after engine; `cut`: the first attempt, those made already, and how many if told."""
-    problem, found = inputs.problem, inputs.found
-    first_attempt, begun, attempts = cut
-    referee = Referee(problem, targets, found, is_graded=begun > 0)
+    """Search some targets, engine after engine; `cut`: the first attempt, and how many if that is asked for."""
+    problem, targets, found = inputs.problem, referee.targets, inputs.found
+    first_attempt, attempts = cut
     left_s = np.inf if problem.settings.timeout_s is None else problem.settings.timeout_s - spent_s
-    for place, (name, budget) in enumerate(plan):
+    for place, (name, budget) in enumerate(budgets):
         rows = ((found.counts[:, REACHED] == 0) & ~found.is_excluded() & (found.seconds < left_s)).nonzero()[0]
         if not len(rows):
             break
-        before, had = found.score[rows] if place else None, 0 if place else begun
-        spent = found.counts[:, ATTEMPTS] * (not had) - first_attempt
+        before = found.score[rows] if place else None
+        spent = found.counts[:, ATTEMPTS] - first_attempt
         lanes = _Lanes(make_engine(name, inputs), referee, threads, left_s)
         few = min(ENGINES[name].attempts_before_proof, budget)
-        lanes.run(first_attempt + had, np.full(len(targets), first_attempt + few))
+        lanes.run(first_attempt, np.full(len(targets), first_attempt + few))
         is_done = bool(found.metrics.accepted.all() and found.counts[:, REACHED].all())  # mostly
         if not is_done:
-            if attempts is None and not (ENGINES[name].is_closed_form and name != plan[-1][0]):
+            if attempts is None and not (ENGINES[name].is_closed_form and name != budgets[-1][0]):
                 _exclude(problem, targets, found)
             lanes.run(first_attempt + few, np.full(len(targets), first_attempt + budget))
             _go_on(lanes, referee, found, spent, first_attempt + budget)
@@ -124,47 +121,6 @@ def make_engine(name: str, inputs: SearchInputs) -> Engine:
     """An engine by name; each brings its kernels along, so only the one that is needed is imported."""
     module, maker = ENGINES[name].maker.split(":")
     return getattr(import_module(f"ikde.solver.engines.{module}"), maker)(inputs)
-
-
-def choose_engines(
-    robot: Robot, settings: SolveSettings, kinds: set[str], *, inside: bool = True, free: set[int] | None = None
-) -> list[str]:
-    """Engines in the order in which they try; the later ones take over what the first leaves.
-
-    `kinds` of the targets. `inside`: the joint ranges are within the limits. `free`: the joints that may move; by
-    default those that the limits leave free.
-    """
-    if not inside:
-        return [name for name in settings.engines if not ENGINES[name].stays_in_limits] or [AUTO[-1]]
-    if len(settings.engines) == 1:
-        return [*settings.engines]
-    arm, free = find_ur_arm(robot), find_free(robot.lower, robot.upper) if free is None else free
-    is_closed = arm is not None and free == set(arm.coordinates)
-    rows = {name: ENGINES[name] for name in settings.engines}
-    return [n for n, row in rows.items() if kinds <= {*row.target_kinds} and (is_closed or not row.is_closed_form)]
-
-
-def find_free(lower: Floats, upper: Floats) -> set[int]:
-    """Joints that may move: all but those that are frozen."""
-    return set(np.flatnonzero(upper > lower).tolist())
-
-
-@lru_cache(maxsize=64)
-def _plan(problem: Problem, kinds: tuple[str, ...], attempts: int | None) -> Plan:
-    """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""
-    robot, settings = problem.robot, problem.settings
-    inside = bool((problem.lower >= robot.lower).all() and (problem.upper <= robot.upper).all())
-    free = find_free(problem.lower, problem.upper)
-    names = choose_engines(robot, settings, {*kinds}, inside=inside, free=free)
-    stands_still = find_still_arm(robot, problem.lower, problem.upper) is not None
-
-    def budget(name: str) -> int:
-        if stands_still and ENGINES[name].is_closed_form:
-            return 1
-        before_next = ENGINES[name].attempts_before_next if name != names[-1] else None
-        return attempts or before_next or settings.budget(name)
-
-    return tuple((name, budget(name)) for name in names)
 
 
 def _exclude(problem: Problem, targets: Targets, found: SearchState) -> None:

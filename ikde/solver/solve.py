@@ -8,14 +8,16 @@ from ikde.errors import InputError
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
+from ikde.solver.asker import find_asker
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, Problem, make_problem
-from ikde.solver.quick import find_quick
-from ikde.solver.quick_near import find_quick_near
+from ikde.solver.quick import Quick, find_quick
 from ikde.solver.result import SolveResult
 from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, check_stream, choose_settings
+
+USUAL = BulkOptions()
 
 
 def solve(
@@ -71,7 +73,8 @@ def solve(
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
     if near is not None or freeze is not None or weights is not None:
-        result = find_quick_near(problem.collision, chosen, target.kind).solve(problem, target, seed, stream, started)
+        quick = find_asker(problem.collision, chosen, target.kind).make(problem, Quick)
+        result = quick.solve(target, seed, stream, started) if quick else None
         if result is not None:
             return result
     result = solve_rows(problem, [target], seed=seed, first_stream=stream, strict=True).row(0)
@@ -108,7 +111,7 @@ def solve_many(
         problem = _find_problem(CollisionModel.of(robot, collision), chosen)
     else:
         problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
-    return solve_rows(problem, targets, bulk or BulkOptions(), seed=check_seed(seed))
+    return solve_rows(problem, targets, bulk or USUAL, seed=check_seed(seed))
 
 
 @lru_cache(maxsize=16)

@@ -24,12 +24,12 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.target import KINDS
 from ikde.solver import background
+from ikde.solver.asker import find_asker
 from ikde.solver.background import LATER, WAIT, Child, Question, answers_plainly, choose_way, compile_way
 from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.lm import pack_answer
 from ikde.solver.problem import pack_searched
 from ikde.solver.quick import find_quick
-from ikde.solver.quick_near import find_quick_near
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
 
@@ -44,17 +44,17 @@ def written(monkeypatch):
     """As users run it: by kernels written for a robot."""
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
     find_quick.cache_clear()
-    find_quick_near.cache_clear()
+    find_asker.cache_clear()
     yield monkeypatch
     find_quick.cache_clear()
-    find_quick_near.cache_clear()
+    find_asker.cache_clear()
 
 
 def answer(robot, kind, way, written):
     """Bits of some answers."""
     written.setenv(COMPILE, way)
     find_quick.cache_clear()
-    find_quick_near.cache_clear()
+    find_asker.cache_clear()
     rng, lines = np.random.default_rng(7), []
     for stream in range(25):
         target = make_target(robot, free_q(robot, rng), kind)

@@ -4,7 +4,6 @@ import os
 import pickle
 import subprocess
 import sys
-from functools import partial
 
 import numpy as np
 import pytest
@@ -16,23 +15,16 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.grade import confirm
-from ikde.solver.quick import Quick, Ways, find_quick, lay_out, make_plan
+from ikde.solver.quick import find_quick
 from ikde.solver.result import FIELDS
 from ikde.solver.results import solve_rows
-from ikde.solver.search import choose_engines, find_free
 from ikde.solver.settings import SolveSettings
 from tests.conftest import random_q
 from tests.problems import problem_of
+from tests.quick_ways import AUTO, make_quick
 from tests.targets import free_q, make_target
 
-AUTO, LM = SolveSettings.for_method("auto"), SolveSettings.for_method("lm")
-
-
-def make_quick(robot, kind, settings=AUTO, detector=None):
-    """The quick way itself: on the tables, which tests run on, `ikde.solve` goes the long way."""
-    collision, problem = CollisionModel.of(robot, detector), problem_of(robot, settings, collision=detector)
-    plan = make_plan(collision, settings, kind, find_free(robot.lower, robot.upper))
-    return Quick(problem, plan, Ways(collision, kind), partial(lay_out, problem, kind))
+LM = SolveSettings.for_method("lm")
 
 
 def solve_quick(robot, target, seed, stream, detector=None):
@@ -99,7 +91,7 @@ def test_a_result_of_the_quick_way_cannot_be_changed(qiao):
 def test_what_the_grader_does_not_accept_goes_the_long_way(qiao):
     quick, target = make_quick(qiao, "position"), ikde.Target((0.8, 0.5, 1.0))
     assert quick.solve(target, 0, 0, 0.0) is not None
-    quick._answer = refuse(quick._answer)
+    quick.answer = refuse(quick.answer)
     assert quick.solve(target, 0, 0, 0.0) is None
 
 
@@ -176,8 +168,6 @@ UR5 = ikde.load_robot("ur5")
 
 
 def test_a_fixed_arm_is_answered_by_its_closed_form():
-    assert choose_engines(UR5, AUTO, {"pose"}) == ["analytic", "lm", "memetic"]
-    assert choose_engines(UR5, AUTO, {"pose", "axis"}) == ["lm", "memetic"]
     target = make_target(UR5, np.array([0.3, -1.2, 1.4, -1.5, -1.3, 0.4]), "pose")
     assert ikde.solve(UR5, target).method == "analytic"
 
@@ -215,7 +205,7 @@ def test_where_no_branch_is_free_lm_goes_on_with_what_was_counted(rng, monkeypat
         whole[FIRST_COUNT + ATTEMPTS], whole[FIRST_COUNT + COLLIDING], whole[BLOCKED] = 1, 2, 2
         return False
 
-    monkeypatch.setattr(quick, "_answer", fail)
+    monkeypatch.setattr(quick, "answer", fail)
     result = quick.solve(target, 4, 0, 0.0)
     assert (result.method, result.q.tobytes()) == ("lm", alone.q.tobytes())
     assert (result.attempts, result.rejected) == (alone.attempts + 1, alone.rejected + 2)
@@ -223,35 +213,8 @@ def test_where_no_branch_is_free_lm_goes_on_with_what_was_counted(rng, monkeypat
     assert result.blocking_pairs[pair] == alone.blocking_pairs.get(pair, 0) + 2
     quick = make_quick(UR5, "pose", SolveSettings.for_method("analytic"))
     quick.solve(target, 4, 0, 0.0)
-    monkeypatch.setattr(quick, "_answer", fail)
+    monkeypatch.setattr(quick, "answer", fail)
     assert quick.solve(target, 4, 0, 0.0) is None
-
-
-def test_the_quick_way_for_poses_is_that_of_arms_that_alone_may_move(monkeypatch):
-    monkeypatch.delenv("IKDE_KERNELS")
-    qiao = ikde.load_robot("qiao2021")
-
-    def is_closed(robot, method, kind):
-        found = find_quick.__wrapped__(robot, None, method, None, kind)
-        return found and found._plan.is_closed
-
-    assert is_closed(UR5, "auto", "pose") is is_closed(UR5, "analytic", "pose") is True
-    assert is_closed(UR5, "lm", "pose") is is_closed(UR5, "auto", "axis") is is_closed(qiao, "auto", "pose") is False
-    assert is_closed(qiao, "analytic", "pose") is is_closed(UR5, "analytic", "axis") is None
-
-
-def test_no_more_attempts_are_made_than_the_settings_allow(rng):
-    panda = ikde.load_robot("panda")
-    once, harder = AUTO.with_changes(method="lm", restarts=1), 0
-    quick, way = make_quick(panda, "pose", once), make_quick(panda, "pose")
-    for stream in range(40):
-        target = make_target(panda, free_q(panda, rng), "pose")
-        usual = way.solve(target, 4, stream, 0.0)
-        if usual is None or usual.attempts == 1:
-            continue
-        assert quick.solve(target, 4, stream, 0.0) is None
-        harder += 1
-    assert harder > 0
 
 
 def test_a_search_that_is_begun_goes_on_where_it_stopped(rng):

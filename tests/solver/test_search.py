@@ -10,12 +10,13 @@ import pytest
 import ikde
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED
 from ikde.kernels.evolution import solve_lanes
+from ikde.solver import choice
 from ikde.solver import search as module
 from ikde.solver.engine_table import ENGINES, NAMES
 from ikde.solver.engines import de
 from ikde.solver.engines.de import DifferentialEvolution
 from ikde.solver.proof import prove_many
-from ikde.solver.search import choose_engines, make_engine, run_on_threads, search, usable_cores
+from ikde.solver.search import make_engine, run_on_threads, search, usable_cores
 from tests.conftest import random_q
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
@@ -122,23 +123,6 @@ def test_short_searches_share_a_call_and_long_ones_do_not(qiao):
 FROZEN_BASE, BASE_AND_ELBOW = {"d_x", "d_y", "q_z"}, {"d_x", "d_y", "q_z", "q3"}
 
 
-@pytest.mark.parametrize(
-    ("frozen", "engines"),
-    [
-        (set(), ["lm", "memetic"]),
-        ({"d_x", "d_y"}, ["lm", "memetic"]),
-        ({"q1", "q2", "q3"}, ["lm", "memetic"]),
-        (FROZEN_BASE, ["analytic", "lm", "memetic"]),
-        (BASE_AND_ELBOW, ["lm", "memetic"]),
-    ],
-)
-def test_auto_takes_the_closed_form_where_the_arm_alone_may_move(qiao, frozen, engines):
-    free = {k for k, name in enumerate(qiao.joint_names) if name not in frozen}
-    auto = ikde.SolveSettings()
-    assert choose_engines(qiao, auto, {"pose"}, free=free) == engines
-    assert choose_engines(qiao, auto, {"pose", "axis"}, free=free) == ["lm", "memetic"]
-
-
 @pytest.mark.parametrize(("frozen", "attempts"), [(FROZEN_BASE, 1), (BASE_AND_ELBOW, 1), ({"d_x"}, 20)])
 def test_the_branches_of_an_arm_on_a_frozen_base_are_enumerated_once(qiao, frozen, attempts):
     target, settings = make_target(qiao, qiao.home, "pose"), ikde.SolveSettings(method="analytic", restarts=20)
@@ -221,7 +205,8 @@ def test_there_is_a_core_to_use():
 @pytest.mark.parametrize(("kind", "later"), [("axis", "memetic")])
 def test_what_a_later_engine_reaches_replaces_what_an_earlier_one_met_in_collision(qiao, rng, monkeypatch, kind, later):
     hasty = ENGINES["lm"]._replace(attempts_before_next=1)
-    monkeypatch.setattr(module, "ENGINES", {**ENGINES, "lm": hasty})
+    monkeypatch.setattr(choice, "ENGINES", {**ENGINES, "lm": hasty})
+    choice.choose_budgets.cache_clear()
     taken_over = 0
     for stream in range(40):
         q = free_q(qiao, rng)

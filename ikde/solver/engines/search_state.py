@@ -22,9 +22,9 @@ class PairCounts:
 
         Rows come in order.
         """
-        places, pairs = np.nonzero(self.filled[some])
-        if not len(places):
+        if not len(some):
             return
+        places, pairs = np.nonzero(self.filled[some])
         rows = some[places]
         new = np.column_stack([first + rows, pairs, self.filled[rows, pairs]])
         self._entries = np.concatenate([self._entries, new])
@@ -61,6 +61,19 @@ class SearchState:
         """Which of these targets are proved to have no solution [T]."""
         return (self.excess_m[rows] > 0.0) | (self.excess_rad[rows] > 0.0) | (self.ruled_out[rows] >= 0)
 
+    @property
+    def is_settled(self) -> bool:
+        """Whether every target is reached, or proved to have no solution."""
+        accepted = self.metrics.accepted
+        return bool(accepted.all()) or bool((accepted | self.is_excluded()).all())
+
+    def put(self, other: "SearchState") -> None:
+        """Take over the columns of as many rows, their pairs as they are filled now."""
+        for name in COLUMNS:
+            getattr(self, name)[:] = getattr(other, name)
+        self.pair_counts.filled[:] = other.pair_counts.filled
+        self.metrics.put(slice(None), other.metrics)
+
     def piece(self, rows: slice) -> "SearchState":
         """Some rows side by side, as views; their pairs are those that are filled now."""
         return self._take(rows, self.pair_counts, self.metrics.piece(rows))
@@ -72,9 +85,11 @@ class SearchState:
         return self._take(rows, pairs, self.metrics.take(rows))
 
     def _take(self, rows: Ints | slice, pair_counts: PairCounts, metrics: Metrics) -> "SearchState":
-        names = [field.name for field in fields(self) if field.name not in ("pair_counts", "metrics")]
-        columns = {name: getattr(self, name)[rows] for name in names}
+        columns = {name: getattr(self, name)[rows] for name in COLUMNS}
         return SearchState(pair_counts=pair_counts, metrics=metrics, **columns)
+
+
+COLUMNS = tuple(field.name for field in fields(SearchState) if field.name not in ("pair_counts", "metrics"))
 
 
 def keep_pairs(counts: Ints) -> PairCounts:

@@ -9,8 +9,9 @@ import ikde
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
+from ikde.solver.asker import Asker
 from ikde.solver.problem import make_problem
-from ikde.solver.quick_near import QuickNear
+from ikde.solver.quick import Quick
 from ikde.solver.result import FIELDS
 from ikde.solver.results import solve_rows
 from ikde.solver.settings import SolveSettings
@@ -21,8 +22,9 @@ AUTO = SolveSettings.for_method("auto")
 
 @pytest.fixture
 def written(monkeypatch):
-    """Kernels written for a robot, as users run them."""
+    """Kernels written for a robot, as users run them; `solve_rows` goes the long way about few targets, too."""
     monkeypatch.delenv("IKDE_KERNELS", raising=False)
+    monkeypatch.setattr("ikde.solver.search.answer_few", lambda *arguments, **options: None)
 
 
 def ask(robot, **changes):
@@ -40,24 +42,24 @@ def assert_same(quick, long):
 
 @pytest.mark.parametrize("kind", [KINDS[0], *(pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS[1:])])
 def test_every_call_has_a_near_of_its_own(written, qiao, rng, kind):
-    way = QuickNear(CollisionModel.of(qiao), AUTO, kind)
+    way = Asker(CollisionModel.of(qiao), AUTO, kind)
     for stream in range(4):
         q = free_q(qiao, rng)
         target, near = make_target(qiao, q, kind), (q + rng.normal(0.0, 0.2, 9)).clip(qiao.lower, qiao.upper)
         problem = ask(qiao, near=near)
-        quick = way.solve(problem, target, 5, stream, 0.0)
+        quick = way.make(problem, Quick).solve(target, 5, stream, 0.0)
         assert_same(quick, solve_rows(problem, [target], seed=5, first_stream=stream).row(0))
         assert quick.near.tobytes() == near.tobytes()
 
 
 @pytest.mark.parametrize("joints", [("d_x",), ("d_x", "q_z"), ("q2",), ("d_y", "q5")])
 def test_every_call_has_frozen_values_of_its_own(written, qiao, rng, joints):
-    way = QuickNear(CollisionModel.of(qiao), AUTO, "position")
+    way = Asker(CollisionModel.of(qiao), AUTO, "position")
     places = [qiao.joint_names.index(name) for name in joints]
     for stream in range(3):
         q = free_q(qiao, rng)
         target, problem = make_target(qiao, q, "position"), ask(qiao, freeze=dict(zip(joints, q[places], strict=True)))
-        quick = way.solve(problem, target, 5, stream, 0.0)
+        quick = way.make(problem, Quick).solve(target, 5, stream, 0.0)
         assert_same(quick, solve_rows(problem, [target], seed=5, first_stream=stream).row(0))
         assert quick.q[places].tobytes() == q[places].tobytes()
 
@@ -65,8 +67,8 @@ def test_every_call_has_frozen_values_of_its_own(written, qiao, rng, joints):
 def test_near_and_frozen_joints_and_weights_go_together(written, qiao, rng):
     q = free_q(qiao, rng)
     problem = ask(qiao, near=q + 0.05, freeze={"d_x": q[0]}, weights={"q1": 7.0})
-    target, way = make_target(qiao, q, "position"), QuickNear(problem.collision, AUTO, "position")
-    assert_same(way.solve(problem, target, 5, 0, 0.0), solve_rows(problem, [target], seed=5).row(0))
+    target, way = make_target(qiao, q, "position"), Asker(problem.collision, AUTO, "position")
+    assert_same(way.make(problem, Quick).solve(target, 5, 0, 0.0), solve_rows(problem, [target], seed=5).row(0))
 
 
 def test_a_result_keeps_its_own_near(written, qiao, rng):
@@ -90,8 +92,8 @@ def test_what_is_out_of_reach_is_known_at_once(written, qiao):
 
 def test_where_nothing_may_move_there_is_no_quick_way(written, qiao):
     problem = ask(qiao, freeze=qiao.joint_names)
-    way = QuickNear(problem.collision, AUTO, "position")
-    assert way.solve(problem, ikde.Target((0.8, 0.5, 1.0)), 0, 0, 0.0) is None
+    way = Asker(problem.collision, AUTO, "position")
+    assert way.make(problem, Quick) is None
 
 
 @pytest.mark.parametrize(
