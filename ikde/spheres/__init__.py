@@ -1,0 +1,1 @@
+"""Spheres that cover the shapes of a robot's links."""
