@@ -13,9 +13,9 @@ import numpy as np
 from ikde.model.robot import Robot
 
 LEAVES_ANSWERS_ALONE = (  # all pairs are in `pair_lists`
-    *("title", "provenance", "wheels", "adjacent", "neighbours", "file_ranges"),
+    *("title", "provenance", "wheels", "adjacent", "neighbours", "file_ranges", "drive", "inertias"),
 )
-OF_TRACKS = ("max_speed", "max_acceleration")  # of joints: a batch solves for poses, not for motions
+OF_TRACKS = ("max_speed", "max_acceleration", "max_effort")  # of joints: a batch solves for poses, not for motions
 
 
 def as_plain(value: Any) -> Any:
@@ -43,7 +43,7 @@ def ikde_version() -> str:
 
 
 def robot_digest(robot: Robot) -> str:
-    """Digest of everything that an answer depends on: not title, wheels, speeds, accelerations, reasons nor sources."""
+    """Digest of everything that an answer depends on: not title, wheels, speeds, masses, reasons nor sources."""
     changes = {field.name: as_plain(getattr(robot, field.name)) for field in fields(robot)}
     changes["joints"] = [{k: v for k, v in joint.items() if k not in OF_TRACKS} for joint in changes["joints"]]
     return digest({name: value for name, value in changes.items() if name not in LEAVES_ANSWERS_ALONE})

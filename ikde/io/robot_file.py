@@ -14,7 +14,18 @@ from ikde.formats.robot_entries import make_detector
 from ikde.io.schema import as_file_error
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
-from ikde.model.robot import NO_DETECTOR, AdjacentPair, Frame, Joint, Provenance, Robot, SphereRow, Wheels
+from ikde.model.robot import (
+    NO_DETECTOR,
+    AdjacentPair,
+    Drive,
+    Frame,
+    Inertia,
+    Joint,
+    Provenance,
+    Robot,
+    SphereRow,
+    Wheels,
+)
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import check_robot
 
@@ -56,6 +67,8 @@ class JointEntry(SourcedEntry):
     home: Number = 0.0
     max_speed: Number | None = None
     max_acceleration: Number | None = None
+    max_effort: Number | None = None
+    """N or N m; kept for other programs."""
 
 
 class FrameEntry(SourcedEntry):
@@ -116,6 +129,16 @@ class WheelsEntry(SourcedEntry):
     half_track: Number
 
 
+class InertiaEntry(SourcedEntry):
+    """The mass that moves with a frame, in kg and kg m^2 whatever the units; kept for other programs."""
+
+    mass: Number
+    com: Vector = [0.0, 0.0, 0.0]
+    """The centre of mass in the frame."""
+    inertia: Annotated[list[Number], Field(min_length=6, max_length=6)]
+    """xx, yy, zz, xy, xz, yz about the centre of mass, along the axes of the frame."""
+
+
 class RobotFile(Entry):
     """The whole file."""
 
@@ -134,6 +157,8 @@ class RobotFile(Entry):
     detectors: Annotated[dict[Name, RobotDetectorEntry], OfLists] = {}
     default_detector: Name | None = None
     wheels: WheelsEntry | None = None
+    drive: Drive | None = None
+    inertias: Annotated[dict[Name, InertiaEntry], Field(max_length=MAX_ENTRIES)] = {}
 
 
 def parse_robot(document: Document) -> Robot:
@@ -170,12 +195,21 @@ def _to_robot(file: RobotFile) -> Robot:
         conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
         provenance=_provenance(file),
         wheels=Wheels(radius_m=wheels.radius * length, half_track_m=wheels.half_track * length) if wheels else None,
+        drive=file.drive,
+        inertias={name: _to_inertia(entry, length) for name, entry in file.inertias.items()},
     )
+
+
+def _to_inertia(entry: InertiaEntry, length: float) -> Inertia:
+    xx, yy, zz, xy, xz, yz = entry.inertia
+    I_com_frame = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return Inertia(mass_kg=entry.mass, p_frame_com=np.array(entry.com) * length, I_com_frame=I_com_frame)
 
 
 def _to_joint(name: str, entry: JointEntry, unit: float) -> Joint:
     keys = ("lower", "upper", "home", "max_speed", "max_acceleration")
     given = {key: value * unit for key in keys if (value := getattr(entry, key)) is not None}
+    given |= {} if entry.max_effort is None else {"max_effort": entry.max_effort}
     for key in keys[:2]:
         if key not in given and entry.kind != "continuous":
             raise InputError("this key is missing", ("joints", name, key))
@@ -253,7 +287,7 @@ def _choose_default(file: RobotFile) -> str:
 def _provenance(file: RobotFile) -> dict[Where, Provenance]:
     """Path of every entry (or of every key of it) that names a source -> that source."""
     found: dict[Where, Provenance] = {}
-    sections = ("joints", "frames", "conventions", "pairs", "detectors")
+    sections = ("joints", "frames", "conventions", "pairs", "detectors", "inertias")
     entries: list[tuple[Where, Any]] = [
         ((s, name), entry) for s in sections for name, entry in getattr(file, s).items()
     ]

@@ -6,7 +6,6 @@ heading run linearly. So does every joint of an arm.
 """
 
 from functools import lru_cache
-from typing import Literal, get_args
 
 import numpy as np
 
@@ -15,11 +14,9 @@ from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Floats, Ints
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.pairs import component_bodies
-from ikde.model.robot import Robot, Wheels
+from ikde.model.robot import DRIVES, Drive, Robot, Wheels
 from ikde.model.tree import build_tree
 
-Drive = Literal["differential", "omnidirectional"]
-DRIVES: tuple[Drive, ...] = get_args(Drive)
 NO_BASE = np.array([-1, -1, -1])
 NO_BASE.setflags(write=False)
 HEADING = 3  # the body that a base's third joint turns
@@ -64,8 +61,8 @@ def base_carries(collision: CollisionModel) -> bool:
 
 
 def usual_drive(robot: Robot) -> Drive:
-    """`differential` for a robot that has a base to drive, `omnidirectional` for one that has none."""
-    return "differential" if find_planar_base(robot)[0] >= 0 else "omnidirectional"
+    """What the robot's file says, else `differential`; `omnidirectional` for a robot that has no base to drive."""
+    return (robot.drive or "differential") if find_planar_base(robot)[0] >= 0 else "omnidirectional"
 
 
 def find_wheels(robot: Robot, drive: str) -> Ints:

@@ -1,9 +1,11 @@
 """A robot as data: joints, a tree of frames, sphere approximations, pair lists and detectors. SI units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from importlib import import_module
+from os import PathLike
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +21,8 @@ FULL_TURN_RAD = 2.0 * np.pi - 1e-12  # but for rounding
 
 JointKind = Literal["revolute", "prismatic", "continuous"]
 Spacing = Literal["touching", "even"]
+Drive = Literal["differential", "omnidirectional"]
+DRIVES: tuple[Drive, ...] = get_args(Drive)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +39,8 @@ class Joint:
     """m/s or rad/s; None: the robot's file gives none. No solve depends on it, a track does (`MotionLimits.of`)."""
     max_acceleration: float | None = None
     """m/s^2 or rad/s^2, likewise."""
+    max_effort: float | None = None
+    """N or N m: kept for programs that move masses; nothing here depends on it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,6 +56,17 @@ class Frame:
     joint: str | None = None
     axis: Floats | None = None
     """[3] unit vector in this frame; the joint turns about it or slides along it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Inertia:
+    """The mass that moves with a frame: kept for programs that move masses; nothing here depends on it."""
+
+    mass_kg: float
+    p_frame_com: Floats
+    """[3] m: the centre of mass."""
+    I_com_frame: Floats
+    """[3, 3] kg m^2, symmetric: about the centre of mass, along the axes of the frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,6 +161,10 @@ class Robot:
     """Path of a number in the robot's file -> where it comes from."""
     wheels: Wheels | None = None
     """None for a robot without a base that drives on two wheels, or whose wheel geometry is not given."""
+    drive: Drive | None = None
+    """How a base that drives in the plane moves unless a track says otherwise; None: `differential`."""
+    inertias: Mapping[str, Inertia] = field(default_factory=dict)
+    """By frame, of those whose mass is known."""
     neighbours: tuple[LeftOutPair, ...] = ()
     """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
     file_ranges: tuple[tuple[float, float], ...] = ()
@@ -209,6 +230,14 @@ class Robot:
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
         return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the robot's file, from which `ikde.load_robot(path)` makes an equal one: YAML, m and rad.
+
+        Limits, offsets and radii come back to the bit, rotations within 1e-15. Raises `FileError` if it cannot be
+        written; then nothing is.
+        """
+        import_module("ikde.io.robot_writer").write_robot(self, path)  # files are above this floor
 
 
 class _Columns(NamedTuple):

@@ -10,7 +10,18 @@ from ikde.model.base_motion import find_planar_base
 from ikde.model.collision_model import check_detector
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
-from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, TOOL, WORLD, Frame, Joint, Pairs, Robot, SphereRow
+from ikde.model.robot import (
+    DRIVES,
+    MAX_MAGNITUDE,
+    NO_DETECTOR,
+    TOOL,
+    WORLD,
+    Frame,
+    Joint,
+    Pairs,
+    Robot,
+    SphereRow,
+)
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
 
@@ -44,6 +55,7 @@ def check_robot(draft: Robot) -> Robot:
     _check_detectors(robot)
     _check_conventions(robot)
     _check_wheels(robot)
+    _check_inertias(robot)
     return robot
 
 
@@ -96,7 +108,7 @@ def _check_joints(robot: Robot) -> None:
         _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
         _require(inside, "home is outside the limits", *where, "home")
-        for key in ("max_speed", "max_acceleration"):
+        for key in ("max_speed", "max_acceleration", "max_effort"):
             value = getattr(joint, key)
             is_good = value is None or bool(0.0 < value < np.inf)
             _require(is_good, f"expected a finite number above 0, got {value}", *where, key)
@@ -239,12 +251,26 @@ def _check_conventions(robot: Robot) -> None:
 
 
 def _check_wheels(robot: Robot) -> None:
-    """Wheels with a size, under a base that they can drive."""
+    """Wheels with a size, and a drive, under a base that they can drive."""
     wheels = robot.wheels
+    for key, what, value in (("wheels", "wheels need", wheels), ("drive", "a drive needs", robot.drive)):
+        drives = value is None or bool(find_planar_base(robot)[0] >= 0)
+        needed = f"{what} a base that slides along x, then y, turns about z, and carries all that can collide"
+        _require(drives, needed, key)
+    _require(robot.drive is None or robot.drive in DRIVES, f"expected one of {', '.join(DRIVES)}", "drive")
     if wheels is None:
         return
-    drives = bool(find_planar_base(robot)[0] >= 0)
-    needed = "wheels need a base that slides along x, then y, turns about z, and carries all that can collide"
-    _require(drives, needed, "wheels")
     for key, what, value in (("radius", "radius", wheels.radius_m), ("half_track", "distance", wheels.half_track_m)):
         _require(0.0 < value <= MAX_MAGNITUDE, f"expected a {what} above 0, up to {MAX_MAGNITUDE:g} m", "wheels", key)
+
+
+def _check_inertias(robot: Robot) -> None:
+    names = [frame.name for frame in robot.frames]
+    for name, inertia in robot.inertias.items():
+        where = ("inertias", name)
+        _check_name(name, names, where, "frame")
+        _require(0.0 <= inertia.mass_kg < np.inf, "expected a finite mass of at least 0 kg", *where, "mass")
+        is_near = bool(np.all(np.abs(inertia.p_frame_com) <= MAX_MAGNITUDE))
+        _require(is_near, f"expected finite numbers, at most {MAX_MAGNITUDE:g} m from 0", *where, "com")
+        is_finite = bool(np.all(np.isfinite(inertia.I_com_frame)))
+        _require(is_finite, "expected finite numbers", *where, "inertia")

@@ -24,4 +24,4 @@ class Shape:
     mesh: Path | None = None
     """The file of a mesh, which exists and lies in a folder that may be read from."""
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    """Of a mesh's coordinates along its own axes, to m; a negative product mirrors it and turns its faces inside out."""
+    """Of a mesh's coordinates along its own axes, to m; a negative product mirrors it and its faces."""

@@ -6,9 +6,9 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.model.base_motion import Drive, base_joints, find_planar_base
+from ikde.model.base_motion import base_joints, find_planar_base
 from ikde.model.collision_model import CollisionChoice
-from ikde.model.robot import Robot
+from ikde.model.robot import Drive, Robot
 from ikde.solver.joints import JointValues
 from ikde.solver.problem import Freeze
 from ikde.track.certify import certify, measure_deviation

@@ -10,8 +10,8 @@ from ikde.formats.entries import UnitsEntry
 from ikde.formats.error_path import prefix_errors
 from ikde.formats.robot_entries import read_collision, to_si, with_ranges
 from ikde.kernels.arrays import Floats
-from ikde.model.base_motion import Drive, find_wheels, usual_drive
-from ikde.model.robot import WORLD, Robot
+from ikde.model.base_motion import find_wheels, usual_drive
+from ikde.model.robot import WORLD, Drive, Robot
 from ikde.solver.joints import joints_outside
 from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path

@@ -6,9 +6,9 @@ from typing import Self, TypeVar
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.model.base_motion import Drive, base_carries, find_wheels, usual_drive
+from ikde.model.base_motion import base_carries, find_wheels, usual_drive
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.robot import Robot
+from ikde.model.robot import Drive, Robot
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed

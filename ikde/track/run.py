@@ -5,9 +5,8 @@ from functools import partial
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.model.base_motion import Drive
 from ikde.model.collision_model import CollisionChoice
-from ikde.model.robot import Robot
+from ikde.model.robot import Drive, Robot
 from ikde.solver.joints import JointValues
 from ikde.solver.plain import compute_frames
 from ikde.solver.warmup import Stage

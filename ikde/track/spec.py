@@ -16,7 +16,7 @@ from ikde.formats.entries import (
     Vector,
 )
 from ikde.formats.names import Name, Text
-from ikde.model.base_motion import Drive
+from ikde.model.robot import Drive
 
 TrackMethod = Literal["continuation", "optimized", "typical"]
 TRACK_METHODS: tuple[TrackMethod, ...] = get_args(TrackMethod)

@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.model.base_motion import Drive
+from ikde.model.robot import Drive
 from ikde.track.certify import Certificate
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
