@@ -20,6 +20,10 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.robots import robot_names as robot_names
     from ikde.io.trajectory_files import write_trajectory as write_trajectory
     from ikde.io.urdf import format_urdf as format_urdf
+    from ikde.io.urdf_import.imported import ImportedUrdf as ImportedUrdf
+    from ikde.io.urdf_import.options import ImportOptions as ImportOptions
+    from ikde.io.urdf_import.read_urdf import import_urdf as import_urdf
+    from ikde.io.urdf_import.read_urdf import read_urdf as read_urdf
     from ikde.kernels.jit import compile_clock as compile_clock
     from ikde.model.collision_model import CollisionModel as CollisionModel
     from ikde.model.convention import from_convention as from_convention
@@ -75,6 +79,10 @@ _HOME = {
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
     "format_urdf": "ikde.io.urdf",
+    "import_urdf": "ikde.io.urdf_import.read_urdf",
+    "read_urdf": "ikde.io.urdf_import.read_urdf",
+    "ImportOptions": "ikde.io.urdf_import.options",
+    "ImportedUrdf": "ikde.io.urdf_import.imported",
     "format_mjcf": "ikde.io.mjcf",
     "CollisionModel": "ikde.model.collision_model",
     "Robot": "ikde.model.robot",

@@ -12,7 +12,7 @@ from ikde.errors import FileError, InputError
 from ikde.formats.error_path import prefix_errors
 from ikde.formats.reading import read_text
 from ikde.io.robot_file import parse_robot
-from ikde.io.robots import is_file_name, load_robot
+from ikde.io.robots import is_file_name, is_urdf, load_robot, parse_file
 from ikde.io.schema import Given, as_file_error
 from ikde.io.yaml_file import Document, read_yaml
 from ikde.model.robot import Robot
@@ -85,4 +85,4 @@ def _load_robot(name: str, folder: Path) -> Robot:
         text = read_text(path)
     except FileError as error:
         raise InputError(f"{error.message}: {path}") from None
-    return parse_robot(Document(path, text))
+    return parse_file(path) if is_urdf(path) else parse_robot(Document(path, text))

@@ -1,4 +1,4 @@
-"""Robots by name (those that ship with ikde) or by file."""
+"""Robots by name (those that ship with ikde) or by file: a robot file, or a URDF."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -7,6 +7,7 @@ from ikde.errors import InputError, nearest
 from ikde.io.ready_robot import read_ready
 from ikde.model.robot import Robot
 
+OF_URDF = (".urdf", ".xacro")
 FOLDER = Path(__file__).parent.parent / "robots"
 
 
@@ -17,7 +18,12 @@ def robot_names() -> tuple[str, ...]:
 
 def is_file_name(text: str) -> bool:
     """True for what names a file rather than a robot that ships with ikde."""
-    return "/" in text or "\\" in text or text.endswith((".yaml", ".yml"))
+    return "/" in text or "\\" in text or text.endswith((".yaml", ".yml", *OF_URDF))
+
+
+def is_urdf(path: Path) -> bool:
+    """True for the name of a URDF, or of what becomes one."""
+    return path.suffix in OF_URDF
 
 
 def robot_path(name_or_path: str | Path) -> Path:
@@ -35,7 +41,8 @@ def load_robot(name_or_path: str | Path) -> Robot:
     """Load a robot.
 
     Args:
-        name_or_path: the name of a robot that ships with ikde (`robot_names()`), or the path of a YAML file.
+        name_or_path: the name of a robot that ships with ikde (`robot_names()`), or the path of a YAML file, or of a
+            URDF, which is read as by `ikde.import_urdf(path)`.
 
     Raises:
         InputError: for an unknown name.
@@ -52,6 +59,10 @@ def _load_shipped(path: Path) -> Robot:
 
 def parse_file(path: Path) -> Robot:
     """The robot that a file describes; pydantic is imported here, since it takes as long as a solve without it."""
+    if is_urdf(path):
+        from ikde.io.urdf_import.read_urdf import import_urdf
+
+        return import_urdf(path)
     from ikde.io.robot_file import parse_robot
     from ikde.io.yaml_file import read_yaml
 

@@ -1,0 +1,154 @@
+"""A robot as its YAML file, m and rad: what `load_robot` reads back is equal, rotations to the last digits."""
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ikde.errors import printable
+from ikde.io.urdf import rpy_from_rotation
+from ikde.io.xml_file import write_xml
+from ikde.model.robot import Frame, Inertia, Joint, Provenance, Robot, SphereRow
+from ikde.model.validate import NON_ADJACENT
+
+Entry = dict[str, Any]
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
+_NO_WORDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # to some readers of YAML
+_AS_SPHERES = "spheres"
+
+
+def write_robot(robot: Robot, path: str | PathLike[str], notes: Iterable[str] = ()) -> None:
+    """Write a robot's file, whole or not at all; raises `FileError` in one line."""
+    write_xml(Path(path), format_robot_file(robot, notes))
+
+
+def format_robot_file(robot: Robot, notes: Iterable[str] = ()) -> str:
+    """The text of a robot's file, a line an entry, `notes` as comments on top."""
+    sources = _Sources(robot.provenance)
+    sections = {
+        "joints": {joint.name: _joint_entry(joint) for joint in robot.joints},
+        "frames": {frame.name: _frame_entry(frame) for frame in robot.frames},
+        "conventions": {name: {"offsets": dict(offsets)} for name, offsets in robot.conventions.items()},
+        "pairs": {
+            name: {"pairs": _group((a, b, None) for a, b in listed)}
+            for name, listed in robot.pair_lists.items()
+            if name != NON_ADJACENT
+        },
+        "detectors": {
+            name: {"spheres": d.spheres, "pairs": d.pairs, "safe_distance": d.safe_distance_m}
+            for name, d in robot.detectors.items()
+        },
+        "inertias": {name: _inertia_entry(inertia) for name, inertia in robot.inertias.items()},
+    }
+    texts = {key: _section(key, {n: sources.add(e, key, n) for n, e in own.items()}) for key, own in sections.items()}
+    head = {"name": robot.name, "title": robot.title, "convention": robot.convention}
+    lines = [*(f"# {printable(note)}" for note in notes), *(f"{key}: {_flow(value)}" for key, value in head.items())]
+    below = [*texts["joints"], *texts["frames"], "", f"tool: {_flow(robot.tool)}", *_base_lines(robot, sources)]
+    below += [*texts["conventions"], *_sphere_lines(robot, sources), *_adjacent_lines(robot, sources), *texts["pairs"]]
+    below += [*texts["detectors"], "", f"default_detector: {_flow(robot.default_detector)}", *texts["inertias"]]
+    return "\n".join([*lines, *_section("sources", sources.entries), *below]) + "\n"
+
+
+class _Sources:
+    """Sources of a robot's numbers under names of their own, and which entries name them."""
+
+    def __init__(self, provenance: Mapping[tuple[str | int, ...], Provenance]) -> None:
+        every = dict.fromkeys(provenance.values())
+        names = {source: f"source_{number}" for number, source in enumerate(every, 1)}
+        self.entries: dict[str, Entry] = {names[s]: {"kind": s.kind, "text": s.text} for s in every}
+        self._whole = {where: names[source] for where, source in provenance.items()}
+        self._keys: dict[tuple[str | int, ...], dict[str, str]] = {}
+        for where, source in provenance.items():
+            self._keys.setdefault(where[:-1], {})[str(where[-1])] = names[source]
+
+    def add(self, entry: Entry, *where: str | int) -> Entry:
+        """The entry at a path with its source, or the sources of its keys."""
+        source = self._whole.get(where) or self._keys.get(where)
+        return entry | ({"source": source} if source else {})
+
+
+def _joint_entry(joint: Joint) -> Entry:
+    ends = {} if joint.kind == "continuous" else {"lower": joint.lower, "upper": joint.upper}
+    more = {key: getattr(joint, key) for key in ("max_speed", "max_acceleration", "max_effort")}
+    return {"kind": joint.kind, **ends, "home": joint.home} | {k: v for k, v in more.items() if v is not None}
+
+
+def _frame_entry(frame: Frame) -> Entry:
+    entry: Entry = {"parent": frame.parent}
+    if frame.p_parent_frame.any():
+        entry["xyz"] = frame.p_parent_frame.tolist()
+    if not np.array_equal(frame.R_parent_frame, np.eye(3)):
+        entry["rpy"] = rpy_from_rotation(frame.R_parent_frame).tolist()
+    if frame.joint is not None and frame.axis is not None:
+        entry |= {"joint": frame.joint, "axis": frame.axis.tolist()}
+    return entry
+
+
+def _row_entry(row: SphereRow) -> Entry:
+    line = {} if row.end == row.start else {"to": row.end}
+    many = {} if row.count == 1 else {"count": row.count, "spacing": row.spacing}
+    return {"component": row.component, "from": row.start, **line, "radius": row.radius_m, **many}
+
+
+def _inertia_entry(inertia: Inertia) -> Entry:
+    I_com = inertia.I_com_frame
+    moments = [*np.diag(I_com).tolist(), I_com[0, 1], I_com[0, 2], I_com[1, 2]]
+    return {"mass": inertia.mass_kg, "com": inertia.p_frame_com.tolist(), "inertia": list(map(float, moments))}
+
+
+def _group(pairs: Iterable[tuple[str, str, str | None]]) -> Entry:
+    """Pairs by their first component: lists, or the reasons of each."""
+    grouped: dict[str, Any] = {}
+    for a, b, reason in pairs:
+        if reason is None:
+            grouped.setdefault(a, []).append(b)
+        else:
+            grouped.setdefault(a, {})[b] = reason
+    return grouped
+
+
+def _sphere_lines(robot: Robot, sources: _Sources) -> list[str]:
+    lines = ["", "spheres:"] if robot.approximations else []
+    for name, rows in robot.approximations.items():
+        lines.append(f"  {_flow(name)}:{'' if rows else ' []'}")
+        lines += [f"    - {_flow(sources.add(_row_entry(row), _AS_SPHERES, name, k))}" for k, row in enumerate(rows)]
+    return lines
+
+
+def _adjacent_lines(robot: Robot, sources: _Sources) -> list[str]:
+    if not robot.adjacent:
+        return []
+    grouped = _group((pair.a, pair.b, pair.reason) for pair in robot.adjacent)
+    source = sources.add({}, "adjacent")
+    lines = ["", "adjacent:", *(f"  {key}: {_flow(value)}" for key, value in source.items()), "  pairs:"]
+    return [*lines, *(f"    {_flow(a)}: {_flow(others)}" for a, others in grouped.items())]
+
+
+def _base_lines(robot: Robot, sources: _Sources) -> list[str]:
+    lines = [f"drive: {robot.drive}"] if robot.drive else []
+    if robot.wheels:
+        entry = {"radius": robot.wheels.radius_m, "half_track": robot.wheels.half_track_m}
+        lines.append(f"wheels: {_flow(sources.add(entry, 'wheels'))}")
+    return lines
+
+
+def _section(key: str, entries: Mapping[str, Entry]) -> list[str]:
+    """A key with its entries, a line each; nothing for none."""
+    return ["", f"{key}:", *(f"  {_flow(name)}: {_flow(entry)}" for name, entry in entries.items())] if entries else []
+
+
+def _flow(value: Any) -> str:
+    """Plain data as YAML in one line."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_flow(key)}: {_flow(item)}' for key, item in value.items())}}}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_flow, value))}]"
+    if isinstance(value, float):
+        return repr(value + 0.0).removesuffix(".0")
+    if isinstance(value, str):
+        return value if _WORD.fullmatch(value) and value.lower() not in _NO_WORDS else json.dumps(value)
+    return str(value)

@@ -1,0 +1,68 @@
+"""What an SRDF adds to a URDF: named configurations, and pairs of links that need no test, with reasons."""
+
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+
+from ikde.errors import printable, shorten
+from ikde.io.xml_elements import XmlFile
+
+PREFERRED = ("home", "ready", "default")
+MAX_REASON_LENGTH = 80
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DisabledPair:
+    """Two links that the SRDF leaves out."""
+
+    a: str
+    b: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Srdf:
+    """The parts of an SRDF that are read; without a file, nothing."""
+
+    states: tuple[tuple[str, str, dict[str, float]], ...] = ()
+    """Group, name, and values by joint, in m or rad."""
+    disabled: tuple[DisabledPair, ...] = ()
+
+    def choose_states(self) -> tuple[tuple[str, ...], dict[str, float]]:
+        """One state of each group, called home, ready or default if there is one, else its first; and all values."""
+        chosen: dict[str, tuple[str, dict[str, float]]] = {}
+        for group, name, values in self.states:
+            known = chosen.get(group)
+            if known is None or _rank(name) < _rank(known[0]):
+                chosen[group] = (name, values)
+        values = {joint: value for _, state in chosen.values() for joint, value in state.items()}
+        return tuple(f"{name} of {group}" for group, (name, _) in chosen.items()), values
+
+
+def _rank(name: str) -> int:
+    return PREFERRED.index(name.lower()) if name.lower() in PREFERRED else len(PREFERRED)
+
+
+def read_srdf(path: Path) -> Srdf:
+    """Read an SRDF; raises `FileError` with line and key for what is wrong."""
+    file = XmlFile(path)
+    if file.root.tag != "robot":
+        raise file.error(f"expected <robot>, got <{file.root.tag}>", file.root)
+    states = []
+    for state in file.root.find_all("group_state"):
+        group, name = (file.read_name(state, key, "group_state") for key in ("group", "name"))
+        joints = [joint for joint in state.find_all("joint") if len(joint.attributes.get("value", "").split()) == 1]
+        values = {
+            file.read_name(joint, "name", "group_state", name): file.read_number(joint, "value", None, name)
+            for joint in joints  # those of several numbers are planar or floating
+        }
+        states.append((group, name, {joint: value for joint, value in values.items() if isfinite(value)}))
+    disabled = [
+        DisabledPair(
+            a=file.read_name(pair, "link1", "disable_collisions"),
+            b=file.read_name(pair, "link2", "disable_collisions"),
+            reason=shorten(printable(pair.attributes.get("reason", "").strip()), MAX_REASON_LENGTH),
+        )
+        for pair in file.root.find_all("disable_collisions")
+    ]
+    return Srdf(states=tuple(states), disabled=tuple(disabled))

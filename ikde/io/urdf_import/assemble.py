@@ -1,0 +1,123 @@
+"""The robot out of its parts: spheres with their detector, pairs that are left out, a home that is free."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from ikde.io.srdf import Srdf
+from ikde.io.urdf_import.cover_links import LinkSpheres
+from ikde.io.urdf_import.description import Description
+from ikde.io.urdf_import.frames import Skeleton
+from ikde.io.urdf_import.free_home import find_free_home
+from ikde.io.urdf_import.options import ImportOptions
+from ikde.io.xml_file import reserve_name
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import NO_DETECTOR, WORLD, AdjacentPair, Detector, Drive, Frame, Joint, Robot, SphereRow
+from ikde.model.validate import NON_ADJACENT, check_robot
+from ikde.solver.touching import CONFIGURATIONS, find_always_touching
+
+SPHERES = "spheres"
+DRIVES: dict[str, Drive] = {"omni": "omnidirectional", "differential": "differential"}
+ALWAYS = f"always touching: in each of {CONFIGURATIONS:,} random configurations"
+
+
+def assemble(description: Description, skeleton: Skeleton, tool: str, options: ImportOptions) -> Robot:
+    """The robot without spheres, not yet checked."""
+    masses = {frame: description.links[link].inertia for link, frame in skeleton.frame_of.items() if frame != WORLD}
+    return Robot(
+        name=description.name,
+        title=f"from {description.path.name}",
+        joints=tuple(skeleton.joints),
+        frames=tuple(skeleton.frames),
+        tool=tool,
+        approximations={},
+        adjacent=(),
+        pair_lists={},
+        detectors={},
+        default_detector=NO_DETECTOR,
+        convention="own",
+        conventions={},
+        provenance={},
+        drive=DRIVES.get(options.base),
+        inertias={frame: inertia for frame, inertia in masses.items() if inertia},
+    )
+
+
+def set_home(draft: Robot, values: Mapping[str, float]) -> Robot:
+    """Joints at these values, within their limits; others stay."""
+
+    def move(joint: Joint) -> Joint:
+        return replace(joint, home=min(max(values.get(joint.name, joint.home), joint.lower), joint.upper))
+
+    return replace(draft, joints=tuple(map(move, draft.joints)))
+
+
+def add_spheres(
+    draft: Robot, skeleton: Skeleton, covered: Mapping[str, LinkSpheres], srdf: Srdf
+) -> tuple[Robot, list[str]]:
+    """The robot with spheres and a detector of all pairs but neighbours, the SRDF's and those that always touch.
+
+    Returns:
+        The robot, checked, and what is worth a warning.
+    """
+    frames, rows = list(draft.frames), []
+    for link, own in covered.items():
+        frame = skeleton.frame_of[link]
+        for index, (centre, radius) in enumerate(zip(own.centres, own.radii, strict=True)):
+            point = frame
+            if centre.any():
+                point = reserve_name(f"{frame}/sphere_{index}", skeleton.frame_names)
+                frames.append(Frame(name=point, parent=frame, p_parent_frame=centre, R_parent_frame=np.eye(3)))
+            rows.append(SphereRow(component=frame, start=point, end=point, radius_m=float(radius)))
+    if not rows:
+        return check_robot(draft), ["no link has spheres: self-collision is not checked"]
+    draft = replace(draft, frames=tuple(frames), approximations={SPHERES: tuple(rows)})
+    adjacent, notes = _read_disabled(skeleton, {row.component for row in rows}, srdf)
+    draft = replace(draft, adjacent=adjacent)
+    robot = check_robot(draft)
+    while pairs := robot.pair_lists[NON_ADJACENT]:
+        detector = Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT)
+        draft = replace(draft, detectors={SPHERES: detector}, default_detector=SPHERES)
+        robot = check_robot(draft)
+        touching = find_always_touching(CollisionModel.of(robot))
+        if touching is None:
+            return robot, notes
+        found = tuple(AdjacentPair(a=a, b=b, reason=ALWAYS) for a, b in touching.pairs)
+        notes.append(f"{len(found)} of {len(pairs)} pairs always touch and are left out")
+        draft = replace(draft, adjacent=draft.adjacent + found, detectors={}, default_detector=NO_DETECTOR)
+        robot = check_robot(draft)
+    return robot, [*notes, "no two links are left that could collide: self-collision is not checked"]
+
+
+def _read_disabled(skeleton: Skeleton, components: set[str], srdf: Srdf) -> tuple[tuple[AdjacentPair, ...], list[str]]:
+    """Pairs of components that the SRDF leaves out, each once, and which of its links are unknown."""
+    found: dict[frozenset[str], AdjacentPair] = {}
+    unknown: dict[str, None] = {}
+    for pair in srdf.disabled:
+        for link in (pair.a, pair.b):
+            if link not in skeleton.frame_of:
+                unknown[link] = None
+        a, b = (skeleton.frame_of.get(link, "") for link in (pair.a, pair.b))
+        if a != b and {a, b} <= components:
+            found.setdefault(frozenset((a, b)), AdjacentPair(a=a, b=b, reason=f"SRDF: {pair.reason or 'disabled'}"))
+    notes = [f"the SRDF names links that there are not: {', '.join(list(unknown)[:8])}"] if unknown else []
+    return tuple(found.values()), notes
+
+
+def free_home(robot: Robot, states: tuple[str, ...]) -> tuple[Robot, str, bool | None]:
+    """The robot with a home that is free if one is found, where it comes from, and whether it is free."""
+    source = f"SRDF state {', '.join(states)}" if states else "0, or the limit next to it"
+    if not robot.detectors:
+        return robot, source, None
+    found = find_free_home(CollisionModel.of(robot), robot.home)
+    if found is None:
+        return robot, f"{source}; it collides, and no free one was found near it", False
+    if np.array_equal(found, robot.home):
+        return robot, source, True
+    return _with_home(robot, found.tolist()), f"{source}; moved to a free configuration near it", True
+
+
+def _with_home(robot: Robot, home: list[float]) -> Robot:
+    joints = tuple(replace(joint, home=value) for joint, value in zip(robot.joints, home, strict=True))
+    return replace(robot, joints=joints)

@@ -1,0 +1,58 @@
+"""Spheres for the shapes of links."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikde.io.urdf_import.chain import LinkTree
+from ikde.io.urdf_import.description import Description, UrdfShape
+from ikde.io.urdf_import.imported import CoveredLink
+from ikde.io.urdf_import.meshes import find_mesh
+from ikde.io.urdf_import.options import ImportOptions
+from ikde.kernels.arrays import Floats
+from ikde.spheres.shapes import Shape
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinkSpheres:
+    """Spheres of one link."""
+
+    centres: Floats
+    """[S, 3] m, in the link."""
+    radii: Floats
+    """[S] m"""
+    report: CoveredLink
+
+
+PLURALS = {"box": "boxes", "mesh": "meshes"}
+
+
+def cover_links(description: Description, tree: LinkTree, options: ImportOptions) -> dict[str, LinkSpheres]:
+    """Spheres of each link that has shapes; every mesh is found before any is covered."""
+    shapes = {name: _find_shapes(description, description.links[name].shapes, options) for name in tree.order}
+    return {name: _cover(name, own, options.protrusion_m) for name, own in shapes.items() if own}
+
+
+def _find_shapes(description: Description, shapes: Iterable[UrdfShape], options: ImportOptions) -> list[Shape]:
+    return [
+        Shape(
+            kind=shape.kind,
+            size=shape.size,
+            T_link_shape=shape.T_link_shape,
+            mesh=find_mesh(description.path, shape.mesh, options.package_paths, shape.line) if shape.mesh else None,
+            scale=shape.scale,
+        )
+        for shape in shapes
+    ]
+
+
+def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
+    kinds = Counter(shape.kind for shape in shapes)
+    words = ", ".join(f"{n} {kind if n == 1 else PLURALS.get(kind, kind + 's')}" for kind, n in kinds.items())
+    own = [shape for shape in shapes if shape.kind == "sphere"]
+    centres = np.array([shape.T_link_shape[:3, 3] for shape in own]).reshape(-1, 3)
+    radii = np.array([shape.size[0] for shape in own])
+    done = CoveredLink(link=link, shapes=words, spheres=len(radii), covered=None, protrusion_m=0.0, how="as they are")
+    return LinkSpheres(centres=centres, radii=radii, report=done)

@@ -1,0 +1,141 @@
+"""Joints and frames of a robot from the tree of a URDF, with the base that it stands on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ikde.io.urdf_import.chain import LinkTree
+from ikde.io.urdf_import.description import Description, UrdfJoint
+from ikde.io.urdf_import.held import HeldJoint, nearest_to_zero
+from ikde.io.urdf_import.options import ImportOptions
+from ikde.io.xml_file import reserve_name
+from ikde.kernels.arrays import Floats
+from ikde.model.robot import MAX_MAGNITUDE, TOOL, WORLD, Frame, Joint
+from ikde.model.rotation import rotation_about, rotation_with_z
+
+FAR_M = 100.0
+"""Limits of a sliding joint without any, either way."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Skeleton:
+    """Joints and frames as they are collected; `frame_of` is the frame of each link."""
+
+    joints: list[Joint] = field(default_factory=list)
+    frames: list[Frame] = field(default_factory=list)
+    frame_of: dict[str, str] = field(default_factory=dict)
+    notes: dict[str, str] = field(default_factory=dict)
+    """Joint -> what is worth knowing about it."""
+    warnings: list[str] = field(default_factory=list)
+    joint_names: set[str] = field(default_factory=set)
+    """Taken."""
+    frame_names: set[str] = field(default_factory=set)
+
+    def add(self, name: str, parent: str, p: Floats, R: Floats, moved: tuple[Joint, Floats] | None = None) -> None:
+        """A frame, and the joint that moves it about or along an axis."""
+        joint, axis = moved or (None, None)
+        if joint:
+            self.joints.append(joint)
+        self.frames.append(
+            Frame(
+                name=name,
+                parent=parent,
+                p_parent_frame=p,
+                R_parent_frame=R,
+                joint=joint.name if joint else None,
+                axis=axis,
+            )
+        )
+
+
+def build_skeleton(
+    description: Description, tree: LinkTree, tool: str, options: ImportOptions, held: Mapping[str, HeldJoint]
+) -> Skeleton:
+    """Every link as a frame of its name; joints of the chain move, all others are part of what they connect."""
+    skeleton = Skeleton(joint_names=set(description.joints), frame_names={WORLD, TOOL, *description.links})
+    _add_root(skeleton, tree.root, tool, options)
+    for link in tree.order[1:]:
+        joint = tree.joint_of[link]
+        parent = skeleton.frame_of[joint.parent]
+        name = _name_frame(skeleton, link, tool)
+        p, R = joint.p_parent_child, joint.R_parent_child
+        if joint.name in held:
+            value = held[joint.name].value
+            slide = value * joint.axis if joint.kind == "prismatic" else np.zeros(3)
+            turn = rotation_about(joint.axis, value) if joint.kind in ("revolute", "continuous") else np.eye(3)
+            skeleton.add(name, parent, p + R @ slide, R @ turn)
+        elif joint.kind == "planar":
+            _add_planar(skeleton, name, parent, joint, options)
+        elif joint.kind == "fixed":
+            skeleton.add(name, parent, p, R)
+        else:
+            skeleton.add(name, parent, p, R, (_to_joint(skeleton, joint), joint.axis))
+    return skeleton
+
+
+def _name_frame(skeleton: Skeleton, link: str, tool: str) -> str:
+    """A link's own name, unless ikde calls something else so."""
+    name = link
+    if link == WORLD or (link == TOOL and tool != link):
+        name = reserve_name(f"{link}_link", skeleton.frame_names)
+        skeleton.warnings.append(f"the link {link!r} is called {name!r} here: {link!r} has a meaning of its own")
+    skeleton.frame_of[link] = name
+    return name
+
+
+def _add_root(skeleton: Skeleton, root: str, tool: str, options: ImportOptions) -> None:
+    """The root link: in the world, or on a base."""
+    if options.base not in ("omni", "differential"):
+        if root == WORLD:
+            skeleton.frame_of[root] = WORLD
+        else:
+            skeleton.add(_name_frame(skeleton, root, tool), WORLD, np.zeros(3), np.eye(3))
+        return
+    name = _name_frame(skeleton, root, tool)
+    x, y, yaw = (reserve_name(f"base_{key}", skeleton.joint_names) for key in ("x", "y", "yaw"))
+    _add_plane(skeleton, (x, y, yaw), name, (WORLD, np.zeros(3), np.eye(3)), (np.eye(3), options.base_reach_m))
+
+
+def _add_planar(skeleton: Skeleton, name: str, parent: str, joint: UrdfJoint, options: ImportOptions) -> None:
+    """A planar joint: two slides in the plane, and a turn about its normal."""
+    x, y, yaw = (reserve_name(f"{joint.name}_{key}", skeleton.joint_names) for key in ("x", "y", "yaw"))
+    place = (parent, joint.p_parent_child, joint.R_parent_child)
+    _add_plane(skeleton, (x, y, yaw), name, place, (rotation_with_z(joint.axis), options.base_reach_m))
+    for part in (x, y, yaw):
+        skeleton.notes[part] = f"of the planar joint {joint.name}"
+
+
+def _add_plane(
+    skeleton: Skeleton,
+    names: tuple[str, str, str],
+    frame: str,
+    place: tuple[str, Floats, Floats],
+    plane: tuple[Floats, float],
+) -> None:
+    """Joints `names` that move `frame` in a plane: x, y [m] and the turn about its normal, the columns of a matrix."""
+    (x, y, yaw), (parent, p, R), (axes, reach_m) = names, place, plane
+    first, second = (reserve_name(name, skeleton.frame_names) for name in (x, y))
+    slides = [Joint(name=name, kind="prismatic", lower=-reach_m, upper=reach_m, home=0.0) for name in (x, y)]
+    skeleton.add(first, parent, p, R, (slides[0], axes[:, 0]))
+    skeleton.add(second, first, np.zeros(3), np.eye(3), (slides[1], axes[:, 1]))
+    turn = Joint(name=yaw, kind="continuous", home=0.0)
+    skeleton.add(frame, second, np.zeros(3), np.eye(3), (turn, axes[:, 2]))
+
+
+def _to_joint(skeleton: Skeleton, joint: UrdfJoint) -> Joint:
+    """A joint of the chain, its home at 0 or the limit next to it."""
+    given = {"name": joint.name, "max_speed": joint.max_speed, "max_effort": joint.max_effort}
+    no_limits = max(-joint.lower, joint.upper) > MAX_MAGNITUDE
+    if joint.kind == "continuous" or (joint.kind == "revolute" and no_limits):
+        if joint.kind == "revolute":
+            skeleton.notes[joint.name] = "no limits in the file: continuous"
+        return Joint(**given, kind="continuous", home=0.0)
+    lower, upper = joint.lower, joint.upper
+    if joint.kind == "prismatic" and no_limits:
+        lower, upper = max(lower, -FAR_M), min(upper, FAR_M)
+        skeleton.notes[joint.name] = f"no limits in the file: {lower:g} to {upper:g} m"
+    if lower == upper:
+        skeleton.notes[joint.name] = f"cannot move: both limits are {lower:g}"
+    kind = "prismatic" if joint.kind == "prismatic" else "revolute"
+    return Joint(**given, kind=kind, lower=lower, upper=upper, home=nearest_to_zero(joint))

@@ -1,0 +1,57 @@
+"""Where meshes are: in the URDF's folder and in folders that are named, once links and `..` are resolved."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from urllib.parse import unquote
+
+from ikde.errors import FileError, quoted
+
+PACKAGE = ("package://", "model://")
+
+
+def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | None = None) -> Path:
+    """The file that a mesh's name stands for.
+
+    `package://NAME/rest` is `NAME/rest` in one of the folders, or `rest` in a folder that is itself called NAME;
+    anything else is a path beside the file.
+
+    Raises:
+        FileError: for a mesh that is missing, no regular file, or outside all folders.
+    """
+    folders = [urdf.parent, *package_paths]
+    try:
+        roots = [folder.resolve(strict=True) for folder in folders]
+        outside = False
+        for candidate in _list_candidates(name, folders):
+            path = candidate.resolve()
+            if not any(path.is_relative_to(root) for root in roots):
+                outside = True
+            elif path.is_file():
+                return path
+    except (OSError, ValueError, RuntimeError) as error:
+        reason = getattr(error, "strerror", None) or "no path"
+        raise FileError(urdf, f"the mesh {quoted(name)} cannot be looked for: {reason}", (), line) from None
+    found = "lies outside its folder" if outside and not name.startswith(PACKAGE) else "is not in its folder"
+    hint = _suggest_folder(urdf, name)
+    message = f"the mesh {quoted(name)} {found}, nor in one given (--package-path {hint}); --no-spheres does without"
+    raise FileError(urdf, message, (), line)
+
+
+def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
+    for scheme in PACKAGE:
+        if name.startswith(scheme):
+            package, _, rest = unquote(name.removeprefix(scheme)).partition("/")
+            own = [folder / rest for folder in folders if folder.resolve().name == package]
+            return [*(folder / package / rest for folder in folders), *own]
+    if name.startswith("file://"):
+        return [Path(unquote(name.removeprefix("file://")))]
+    if "://" in name:
+        return []
+    return [folder / name for folder in folders]
+
+
+def _suggest_folder(urdf: Path, name: str) -> str:
+    """The folder above the URDF that holds the package, going by names alone."""
+    package = next((name.removeprefix(s).partition("/")[0] for s in PACKAGE if name.startswith(s)), None)
+    above = urdf.absolute().parents
+    return next((str(folder.parent) for folder in above if folder.name == package), "FOLDER")

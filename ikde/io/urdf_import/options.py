@@ -1,0 +1,41 @@
+"""What is asked of an import."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal, get_args
+
+from ikde.errors import InputError, quoted
+from ikde.model.robot import MAX_MAGNITUDE
+
+Base = Literal["urdf", "fixed", "omni", "differential"]
+REACH_M = 100.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportOptions:
+    """What a URDF does not say; raises `InputError` for a wrong value."""
+
+    tool: str | None = None
+    """The link that targets are for; None: the only leaf that a joint moves."""
+    base: Base = "urdf"
+    """`urdf`: the file as it is. `fixed`: a floating or planar joint of its root is held. `omni` and `differential`:
+    x, y and a continuous yaw under the root."""
+    base_reach_m: float = REACH_M
+    """Limits of x and y of a base, either way."""
+    hold: Mapping[str, float] = field(default_factory=dict)
+    """Joints that stay where they are, at so many m or rad."""
+    srdf: Path | None = None
+    package_paths: tuple[Path, ...] = ()
+    """Folders that meshes may lie in, beside the file's own."""
+    spheres: bool = True
+    """Whether links get spheres."""
+    protrusion_m: float = 0.02
+    """How far spheres may stand out of the shapes that they cover."""
+
+    def __post_init__(self) -> None:
+        if self.base not in get_args(Base):
+            raise InputError(f"expected one of {', '.join(get_args(Base))}, got {quoted(self.base)}", ("base",))
+        for key in ("base_reach_m", "protrusion_m"):
+            if not 0.0 < getattr(self, key) <= MAX_MAGNITUDE:
+                raise InputError(f"expected a length above 0, up to {MAX_MAGNITUDE:g} m", (key,))

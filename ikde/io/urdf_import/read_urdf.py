@@ -1,0 +1,104 @@
+"""From a URDF file to a robot that has been checked, with an account of what was decided."""
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+
+from ikde.errors import FileError, InputError
+from ikde.io.srdf import Srdf, read_srdf
+from ikde.io.urdf_import.assemble import add_spheres, assemble, free_home, set_home
+from ikde.io.urdf_import.chain import choose_tool, find_tree
+from ikde.io.urdf_import.cover_links import cover_links
+from ikde.io.urdf_import.description import read_description
+from ikde.io.urdf_import.frames import build_skeleton
+from ikde.io.urdf_import.held import find_held
+from ikde.io.urdf_import.imported import ImportedUrdf
+from ikde.io.urdf_import.options import Base, ImportOptions
+from ikde.model.robot import Robot
+
+
+def import_urdf(
+    path: str | PathLike[str],
+    *,
+    tool: str | None = None,
+    base: Base = "urdf",
+    srdf: str | PathLike[str] | None = None,
+    spheres: bool = True,
+    hold: Mapping[str, float] | None = None,
+    package_paths: Sequence[str | PathLike[str]] = (),
+    protrusion_m: float = 0.02,
+) -> Robot:
+    """A robot from a URDF file: the joints that move the tool, every link as a frame, spheres and pairs.
+
+    `ikde.read_urdf` gives the same robot with an account of what was frozen, covered and left out.
+
+    Args:
+        path: the file.
+        tool: the link that targets are for; None: the only leaf that a joint moves.
+        base: `urdf` takes the file as it is; `fixed` holds a floating or planar joint of the root; `omni` and
+            `differential` put x, y (within 100 m) and a continuous yaw under the root.
+        srdf: an SRDF, for the home configuration and pairs of links that need no test.
+        spheres: whether links get spheres; without, self-collision is not checked.
+        hold: joints that stay where they are, m or rad; joints off the chain to the tool stay anyway.
+        package_paths: folders that meshes may lie in, beside the file's own.
+        protrusion_m: how far spheres may stand out of the shapes that they cover.
+
+    Raises:
+        InputError: for a value that makes no sense.
+        FileError: for a file that cannot be read or is wrong, with its line and the link or joint.
+    """
+    options = ImportOptions(
+        tool=tool,
+        base=base,
+        hold=hold or {},
+        srdf=None if srdf is None else Path(srdf),
+        package_paths=tuple(map(Path, package_paths)),
+        spheres=spheres,
+        protrusion_m=protrusion_m,
+    )
+    return read_urdf(path, options).robot
+
+
+def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -> ImportedUrdf:
+    """A robot from a URDF file, with an account of what was decided on the way.
+
+    Args:
+        path: the file.
+        options: what the file does not say, as for `import_urdf`.
+
+    Raises:
+        InputError: for a value that makes no sense.
+        FileError: for a file that cannot be read or is wrong, with its line and the link or joint.
+    """
+    options = options or ImportOptions()
+    description = read_description(Path(path))
+    tree = find_tree(description)
+    tool = choose_tool(description, tree, options.tool)
+    srdf = read_srdf(options.srdf) if options.srdf else Srdf()
+    states, values = srdf.choose_states()
+    held = find_held(description, tree, tool, options, values)
+    skeleton = build_skeleton(description, tree, tool, options, held)
+    if not skeleton.joints:
+        raise FileError(description.path, f"no joint moves the tool {tool!r}; name another link or a base", ("tool",))
+    covered = cover_links(description, tree, options) if options.spheres else {}
+    try:
+        robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
+        robot = set_home(robot, values)
+        robot, notes = add_spheres(robot, skeleton, covered, srdf)
+    except FileError:
+        raise
+    except InputError as error:
+        raise FileError(description.path, error.message, error.where) from None
+    robot, home, is_free = free_home(robot, states)
+    return ImportedUrdf(
+        robot=robot,
+        file=str(path),
+        root=tree.root,
+        tool_was_chosen=options.tool is None,
+        joint_notes=skeleton.notes,
+        held=tuple(held.values()),
+        links=tuple(covered[link].report for link in covered),
+        home=home,
+        is_home_free=is_free,
+        warnings=(*description.warnings, *skeleton.warnings, *notes),
+    )
