@@ -107,7 +107,7 @@ def _read_disabled(skeleton: Skeleton, components: set[str], srdf: Srdf) -> tupl
 
 def free_home(robot: Robot, states: tuple[str, ...]) -> tuple[Robot, str, bool | None]:
     """The robot with a home that is free if one is found, where it comes from, and whether it is free."""
-    source = f"SRDF state {', '.join(states)}" if states else "0, or the limit next to it"
+    source = f"SRDF state {', '.join(states)}" if states else "0, or mid-range"
     if not robot.detectors:
         return robot, source, None
     found = find_free_home(CollisionModel.of(robot), robot.home)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ikde.io.urdf_import.chain import LinkTree
 from ikde.io.urdf_import.description import Description, UrdfJoint
-from ikde.io.urdf_import.held import HeldJoint, nearest_to_zero
+from ikde.io.urdf_import.held import HeldJoint
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.io.xml_file import reserve_name
 from ikde.kernels.arrays import Floats
@@ -124,7 +124,7 @@ def _add_plane(
 
 
 def _to_joint(skeleton: Skeleton, joint: UrdfJoint) -> Joint:
-    """A joint of the chain, its home at 0 or the limit next to it."""
+    """A joint of the chain, its home at 0 or in mid-range."""
     given = {"name": joint.name, "max_speed": joint.max_speed, "max_effort": joint.max_effort}
     no_limits = max(-joint.lower, joint.upper) > MAX_MAGNITUDE
     if joint.kind == "continuous" or (joint.kind == "revolute" and no_limits):
@@ -138,4 +138,9 @@ def _to_joint(skeleton: Skeleton, joint: UrdfJoint) -> Joint:
     if lower == upper:
         skeleton.notes[joint.name] = f"cannot move: both limits are {lower:g}"
     kind = "prismatic" if joint.kind == "prismatic" else "revolute"
-    return Joint(**given, kind=kind, lower=lower, upper=upper, home=nearest_to_zero(joint))
+    return Joint(**given, kind=kind, lower=lower, upper=upper, home=_choose_home(lower, upper))
+
+
+def _choose_home(lower: float, upper: float) -> float:
+    """0, or the middle of a range without it."""
+    return 0.0 if lower <= 0.0 <= upper else 0.5 * (lower + upper)

@@ -95,7 +95,7 @@ def _find_value(
     elif source.name in state:
         value, how = state[source.name], "SRDF state"
     else:
-        value = nearest_to_zero(source)
+        value = _clip(source, 0.0)
         how = "0" if value == 0.0 else "the limit next to 0"
     if source is not joint:
         value, how = factor * value + offset, f"mimics {source.name}"
@@ -103,11 +103,6 @@ def _find_value(
     if not abs(value) <= MAX_MAGNITUDE:
         raise description.error(f"it cannot be held at {value:g}; expected at most {MAX_MAGNITUDE:g}", joint)
     return value, how
-
-
-def nearest_to_zero(joint: UrdfJoint) -> float:
-    """0 or the limit next to it."""
-    return _clip(joint, 0.0)
 
 
 def _clip(joint: UrdfJoint, value: float) -> float:

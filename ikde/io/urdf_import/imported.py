@@ -41,3 +41,10 @@ class ImportedUrdf:
     is_home_free: bool | None
     """None: not checked."""
     warnings: tuple[str, ...]
+
+
+def list_notes(imported: ImportedUrdf) -> list[str]:
+    """Lines for the top of the robot's file: what a reader of it cannot see in it."""
+    held = [f"frozen: {joint.name} ({joint.kind}) at {joint.value:.9g}: {joint.reason}" for joint in imported.held]
+    warnings = [f"warning: {warning}" for warning in imported.warnings]
+    return [f"Imported from {imported.file}; m and rad.", *held, f"home: {imported.home}", *warnings]

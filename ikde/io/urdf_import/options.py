@@ -1,6 +1,6 @@
 """What is asked of an import."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, get_args
@@ -39,3 +39,17 @@ class ImportOptions:
         for key in ("base_reach_m", "protrusion_m"):
             if not 0.0 < getattr(self, key) <= MAX_MAGNITUDE:
                 raise InputError(f"expected a length above 0, up to {MAX_MAGNITUDE:g} m", (key,))
+
+
+def read_holds(words: Iterable[str]) -> dict[str, float]:
+    """Joints and values out of `NAME=VALUE`; raises `InputError` for anything else."""
+    held: dict[str, float] = {}
+    for word in words:
+        name, _, value = word.rpartition("=")
+        try:
+            held[name] = float(value)
+        except ValueError:
+            name = ""
+        if not name:
+            raise InputError(f"expected JOINT=VALUE, in m or rad, got {quoted(word)}", ("hold",))
+    return held

@@ -1,0 +1,81 @@
+"""`ikde robots import`: a robot file from a URDF."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
+from ikde.cli.output import page_width, print_json, print_note, print_result, use_color
+
+
+class BaseChoice(StrEnum):
+    """What a robot stands on."""
+
+    urdf = "urdf"
+    fixed = "fixed"
+    omni = "omni"
+    differential = "differential"
+
+
+def import_robot(
+    file: Annotated[Path, typer.Argument(help="A URDF file.")],
+    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="The robot file to write.")] = None,
+    tool: Annotated[
+        str | None, typer.Option(metavar="LINK", help="The tool (default: the only end that a joint moves).")
+    ] = None,
+    base: Annotated[
+        BaseChoice, typer.Option(help="urdf: as it is. fixed: a floating root is held. omni, differential: x, y, yaw.")
+    ] = BaseChoice.urdf,
+    base_reach: Annotated[
+        float, typer.Option(metavar="M", help="Limits of the base's x and y, either way, in m.")
+    ] = 100.0,
+    srdf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="An SRDF: its states are home, its disabled pairs left out.")
+    ] = None,
+    hold: Annotated[
+        list[str] | None, typer.Option(metavar="JOINT=VALUE", help="Freeze a joint, in m or rad; as often as you like.")
+    ] = None,
+    package_path: Annotated[
+        list[Path] | None, typer.Option(metavar="FOLDER", help="A further folder with meshes; as often as you like.")
+    ] = None,
+    spheres: Annotated[bool, typer.Option(help="Cover the links with spheres, or check no collisions.")] = True,
+    protrusion: Annotated[
+        float, typer.Option(metavar="MM", help="How far spheres may stand out of shapes, in mm.")
+    ] = 20.0,
+    unit: UnitOption = LengthUnit.mm,
+    angles: AnglesOption = AngleUnit.deg,
+    as_json: JsonOption = False,
+) -> None:
+    """Read a URDF: the joints that move the tool, spheres on all links, pairs to compare. All decisions are listed.
+
+    Example: ikde robots import arm.urdf --tool gripper_link --base omni -o arm.yaml
+    """
+    from ikde.io.robot_writer import write_robot
+    from ikde.io.urdf_import.imported import list_notes
+    from ikde.io.urdf_import.options import ImportOptions, read_holds
+    from ikde.io.urdf_import.read_urdf import read_urdf
+    from ikde.report.numbers import Units
+    from ikde.report.robot_import import format_import, import_json
+
+    imported = read_urdf(
+        file,
+        ImportOptions(
+            tool=tool,
+            base=base.value,
+            base_reach_m=base_reach,
+            hold=read_holds(hold or []),
+            srdf=srdf,
+            package_paths=tuple(package_path or []),
+            spheres=spheres,
+            protrusion_m=protrusion / 1000.0,
+        ),
+    )
+    if out is not None:
+        write_robot(imported.robot, out, list_notes(imported))
+    if as_json:
+        print_json(import_json(imported))
+    else:
+        print_result(format_import(imported, Units(unit, angles), color=use_color(), width=page_width()))
+    print_note(f"ikde: {'nothing is written without -o FILE' if out is None else f'wrote {out}'}")
