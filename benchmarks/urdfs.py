@@ -3,7 +3,7 @@
 python benchmarks/urdfs.py [FOLDER]      (pip install example-robot-data pin)
 
 Each robot is imported for the tool that it has, or for every leaf that a joint moves and no mimic joint; joints off the
-chain are held at random values inside their limits. Figures are the largest differences over all frames (m, and entries
+chain are held at random values inside their limits. One in which nothing moves drives on a base, its root the tool. Figures are the largest differences over all frames (m, and entries
 of rotations) and over the tool's Jacobian, 10 random configurations for each of 10 sets of held values.
 """
 
@@ -58,8 +58,9 @@ def draw_held(description, rng):
     return held
 
 
-def compare(path, model, tool, rng):
-    """Joints, and the largest differences of frames and of the tool's Jacobian, of one robot with one tool."""
+def compare(path, base, tool, rng):
+    """Joints, frames, and the largest differences of frames and of the tool's Jacobian, of one robot with one tool."""
+    model = pin.buildModelFromUrdf(str(path), *([pin.JointModelPlanar()] if base == "omni" else []))
     description = read_description(path)
     tree = find_tree(description)
     chain = {joint.name for joint in tree.path(tool)}
@@ -67,33 +68,37 @@ def compare(path, model, tool, rng):
     for _ in range(SETS):
         values = draw_held(description, rng)
         off_chain = {name: float(value) for name, value in values.items() if name not in chain}
-        robot = read_urdf(path, ImportOptions(tool=tool, spheres=False, hold=off_chain)).robot
+        robot = read_urdf(path, ImportOptions(tool=tool, base=base, spheres=False, hold=off_chain)).robot
         q = rng.uniform(*robot.drawn, (CONFIGURATIONS, len(robot.joints)))
         frames, jacobians = forward(robot, q), arm_jacobian(robot, q)
         links = [link for link in tree.order if link in frames]
         for k in range(CONFIGURATIONS):
-            Ts_world, J = run_pinocchio(model, values | dict(zip(robot.joint_names, q[k], strict=True)), links, tool)
-            columns = [model.joints[model.getJointId(name)].idx_v for name in robot.joint_names]
+            theirs = values | dict(zip(robot.joint_names, q[k], strict=True))
+            Ts_world, J = run_pinocchio(model, theirs, (robot.joint_names, links, tool))
             frame_error = max(frame_error, *(np.abs(frames[link][k] - Ts_world[link]).max() for link in links))
-            jacobian_error = max(jacobian_error, np.abs(jacobians[k] - J[:, columns]).max())
+            jacobian_error = max(jacobian_error, np.abs(jacobians[k] - J).max())
     return len(robot.joints), len(links), frame_error, jacobian_error
 
 
-def run_pinocchio(model, values, links, tool):
-    """Its frames of links, and its Jacobian of the tool along the tool's own axes."""
-    data, q = model.createData(), to_pinocchio(model, values)
+def run_pinocchio(model, values, asked):
+    """Its frames of links, and its Jacobian of the tool along the tool's own axes, by the joints in their order."""
+    joints, links, tool = asked
+    data, q = model.createData(), pin.neutral(model)
+    for name in model.names[1:]:
+        joint = model.joints[model.getJointId(name)]
+        if name == "root_joint":  # a base: x, y, and the heading as a point on a circle
+            x, y, yaw = (values[f"base_{key}"] for key in ("x", "y", "yaw"))
+            q[:4] = [x, y, np.cos(yaw), np.sin(yaw)]
+        else:
+            value = values[name]
+            q[joint.idx_q : joint.idx_q + joint.nq] = [value] if joint.nq == 1 else [np.cos(value), np.sin(value)]
     pin.framesForwardKinematics(model, data, q)
     Ts_world = {link: data.oMf[model.getFrameId(link, pin.BODY)].homogeneous for link in links}
-    return Ts_world, pin.computeFrameJacobian(model, data, q, model.getFrameId(tool, pin.BODY), pin.LOCAL)
-
-
-def to_pinocchio(model, values):
-    """Its configuration vector, in which a continuous joint is a point on a circle."""
-    q = pin.neutral(model)
-    for name, value in values.items():
-        joint = model.joints[model.getJointId(name)]
-        q[joint.idx_q : joint.idx_q + joint.nq] = [value] if joint.nq == 1 else [np.cos(value), np.sin(value)]
-    return q
+    J = pin.computeFrameJacobian(model, data, q, model.getFrameId(tool, pin.BODY), pin.LOCAL)
+    if "base_x" in joints:  # its speeds are along the base's own axes
+        J[:, :2] = J[:, :2] @ np.array([[q[2], q[3]], [-q[3], q[2]]])
+        return Ts_world, J[:, : len(joints)]
+    return Ts_world, J[:, [model.joints[model.getJointId(name)].idx_v for name in joints]]
 
 
 def try_robot(path, rng):
@@ -102,12 +107,13 @@ def try_robot(path, rng):
     row = {"file": path.name}
     try:
         tools = list_tools(path)
-        read_urdf(path, ImportOptions(tool=tools[0] if tools else None, spheres=False))
+        base = "urdf" if tools else "omni"
+        tools = tools or [find_tree(read_description(path)).root]
+        read_urdf(path, ImportOptions(tool=tools[0], base=base, spheres=False))
     except FileError as error:
         return row | {"refused": error.message}
-    row |= {"ends": len(tools), "import_s": round(time.process_time() - started, 3)}
-    model = pin.buildModelFromUrdf(str(path))
-    compared = [compare(path, model, tool, rng) for tool in tools[:MOST_TOOLS]]
+    row |= {"ends": len(tools), "base": base, "import_s": round(time.process_time() - started, 3)}
+    compared = [compare(path, base, tool, rng) for tool in tools[:MOST_TOOLS]]
     joints, frames, frame_errors, jacobian_errors = zip(*compared, strict=True)
     return row | {
         "joints": max(joints),

@@ -54,8 +54,11 @@ def find_tree(description: Description) -> LinkTree:
     return LinkTree(root=roots[0], order=tuple(order), joint_of=joint_of)
 
 
-def choose_tool(description: Description, tree: LinkTree, tool: str | None) -> str:
-    """The link that is asked for, or the only leaf that a joint moves; raises `FileError` for anything else."""
+def choose_tool(description: Description, tree: LinkTree, tool: str | None, base_moves: bool = False) -> str:
+    """The link that is asked for, or the only leaf that a joint moves; raises `FileError` for anything else.
+
+    If none is moved by a joint of the file but its base is, all leaves are.
+    """
     if tool is not None:
         if tool not in description.links:
             known = nearest(tool, description.links) or f"; it has {list_names(tree.order)}"
@@ -64,6 +67,7 @@ def choose_tool(description: Description, tree: LinkTree, tool: str | None) -> s
     parents = {joint.parent for joint in tree.joint_of.values()}
     leaves = [link for link in tree.order if link not in parents]
     moved = [leaf for leaf in leaves if any(joint.kind != "fixed" for joint in tree.path(leaf))]
+    moved = leaves if base_moves and not moved else moved
     if len(moved) != 1:
         found = f"it has {len(moved)} ends: {list_names(moved)}" if moved else "no joint of it moves"
         raise FileError(description.path, f"which link is the tool? {found}; name one (--tool NAME)", ("tool",))

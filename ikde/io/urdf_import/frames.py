@@ -86,7 +86,7 @@ def _name_frame(skeleton: Skeleton, link: str, tool: str) -> str:
 
 def _add_root(skeleton: Skeleton, root: str, tool: str, options: ImportOptions) -> None:
     """The root link: in the world, or on a base."""
-    if options.base not in ("omni", "differential"):
+    if not options.drives:
         if root == WORLD:
             skeleton.frame_of[root] = WORLD
         else:

@@ -33,6 +33,11 @@ class ImportOptions:
     protrusion_m: float = 0.02
     """How far spheres may stand out of the shapes that they cover."""
 
+    @property
+    def drives(self) -> bool:
+        """Whether a base that drives is put under the root."""
+        return self.base in ("omni", "differential")
+
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):
             raise InputError(f"expected one of {', '.join(get_args(Base))}, got {quoted(self.base)}", ("base",))

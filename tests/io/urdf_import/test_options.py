@@ -1,0 +1,32 @@
+"""What an import is asked for."""
+
+import pytest
+
+from ikde.errors import InputError
+from ikde.io.urdf_import.options import ImportOptions, read_holds
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"base": "legs"}, "base: expected one of urdf, fixed, omni, differential, got 'legs'"),
+        ({"base_reach_m": 0.0}, "base_reach_m: expected a length above 0, up to 100000 m"),
+        ({"protrusion_m": -0.1}, "protrusion_m: expected a length above 0"),
+        ({"protrusion_m": float("nan")}, "protrusion_m: expected a length above 0"),
+    ],
+)
+def test_wrong_values_are_refused_by_name(options, message):
+    with pytest.raises(InputError) as caught:
+        ImportOptions(**options)
+    assert message in str(caught.value)
+
+
+def test_held_joints_are_names_with_values():
+    assert read_holds(["lift=0.3", "a=b=-1e-3"]) == {"lift": 0.3, "a=b": -0.001}
+    assert read_holds([]) == {}
+
+
+@pytest.mark.parametrize("word", ["lift", "=1", "lift=", "lift=high"])
+def test_anything_else_is_refused(word):
+    with pytest.raises(InputError, match="hold: expected JOINT=VALUE, in m or rad, got"):
+        read_holds([word])
