@@ -3,8 +3,9 @@
 python benchmarks/urdfs.py [FOLDER]      (pip install example-robot-data pin)
 
 Each robot is imported for the tool that it has, or for every leaf that a joint moves and no mimic joint; joints off the
-chain are held at random values inside their limits. One in which nothing moves drives on a base, its root the tool. Figures are the largest differences over all frames (m, and entries
-of rotations) and over the tool's Jacobian, 10 random configurations for each of 10 sets of held values.
+chain are held at random values inside their limits. One in which nothing moves drives on a base, its root the tool.
+Figures are the largest differences over all frames (m, and entries of rotations) and over the tool's Jacobian, of 10
+random configurations for each of 10 sets of held values.
 """
 
 import json

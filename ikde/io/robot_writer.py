@@ -89,8 +89,9 @@ def _frame_entry(frame: Frame) -> Entry:
 
 
 def _row_entry(row: SphereRow) -> Entry:
-    line = {} if row.end == row.start else {"to": row.end}
-    many = {} if row.count == 1 else {"count": row.count, "spacing": row.spacing}
+    line: Entry = {} if row.end == row.start else {"to": row.end}
+    many: Entry = {"count": row.count} if row.count != 1 else {}
+    many |= {"spacing": row.spacing} if row.spacing != "touching" else {}
     return {"component": row.component, "from": row.start, **line, "radius": row.radius_m, **many}
 
 

@@ -18,7 +18,8 @@ from ikde.spheres.shapes import ShapeKind
 
 UrdfKind = Literal["revolute", "continuous", "prismatic", "fixed", "planar", "floating"]
 Part = TypeVar("Part", "UrdfLink", "UrdfJoint")
-MAX_LINKS = 2000
+MAX_LINKS = 1000
+MAX_NUMBER = 1e9  # of masses, speeds, efforts and axes, as in a robot file
 SIZES = {"sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 
 
@@ -190,10 +191,12 @@ def _read_inertia(file: XmlFile, inertial: Element, link: str) -> Inertia | None
         return None
     p, R = _read_origin(file, inertial, *where)
     mass_kg = file.read_numbers(mass, "value", (0.0,), *where)[0]
-    if mass_kg < 0.0:
+    if not 0.0 <= mass_kg <= MAX_NUMBER:
         raise file.error(f"expected a mass of at least 0 kg, got {mass_kg:g}", mass, *where)
     keys = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     read = [file.read_numbers(moments, key, (0.0,), *where)[0] if moments else 0.0 for key in keys]
+    if max(map(abs, read)) > MAX_NUMBER:
+        raise file.error(f"expected moments within {MAX_NUMBER:g} of 0", inertial, *where)
     xx, yy, zz, xy, xz, yz = read
     I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     I_com_frame = R @ I_own @ R.T
@@ -240,11 +243,11 @@ def _read_axis(file: XmlFile, joint: Element, kind: str, *where: str) -> Floats:
     element = joint.find("axis")
     along_x = (1.0, 0.0, 0.0)
     axis = np.array(along_x if element is None else file.read_numbers(element, "xyz", along_x, *where, "axis"))
-    norm = float(np.linalg.norm(axis))
-    if not 1e-9 < norm < inf:
+    norm = float(np.linalg.norm(axis)) if np.abs(axis).max() <= MAX_NUMBER else 0.0
+    if norm <= 1e-9:
         if kind in ("fixed", "floating"):
             return np.array(along_x)
-        raise file.error("expected an axis that is not zero", element or joint, *where, "axis")
+        raise file.error("expected an axis that is neither zero nor huge", element or joint, *where, "axis")
     return axis / norm
 
 
@@ -261,7 +264,12 @@ def _read_limits(
     if lower > upper:
         raise file.error(f"limits are upside down: upper {upper:g} is below lower {lower:g}", limit, *where)
     speed, effort = (file.read_number(limit, key, 0.0, *where) for key in ("velocity", "effort"))
-    return lower, upper, speed if 0.0 < speed < inf else None, effort if 0.0 < effort < inf else None
+    return lower, upper, _keep(speed), _keep(effort)
+
+
+def _keep(value: float) -> float | None:
+    """A speed or an effort; 0, and what has no end, say nothing."""
+    return value if 0.0 < value <= MAX_NUMBER else None
 
 
 def _read_mimic(file: XmlFile, joint: Element, *where: str) -> Mimic | None:
