@@ -26,6 +26,7 @@ NO_TEST_OF_ITS_OWN = {
     "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",
     "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
+    "spheres/shapes.py": "a dataclass; tests/io/urdf_import/test_cover_links.py",
 }
 
 

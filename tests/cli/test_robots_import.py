@@ -1,0 +1,62 @@
+"""`ikde robots import`: a file that all commands take, or one line and nothing written."""
+
+import ikde
+from tests.urdf_texts import ARM, FINGERS, change, extend, write
+
+
+def test_a_urdf_becomes_a_robot_file(cli, tmp_path):
+    path, out = write(tmp_path, extend(FINGERS)), tmp_path / "arm.yaml"
+    outcome = cli("robots", "import", path, "--tool", "tip", "--base", "omni", "--hold", "grip=0.02", "-o", out)
+    assert (outcome.code, outcome.err) == (0, f"ikde: wrote {out}\n")
+    assert "joints that move the tool" in outcome.out
+    robot = ikde.load_robot(out)
+    same = ikde.import_urdf(path, tool="tip", base="omni", hold={"grip": 0.02})
+    assert robot.joints == same.joints
+    assert (robot.drive, robot.default_detector) == ("omnidirectional", "spheres")
+    assert "# frozen: grip (prismatic) at 0.02: asked for, --hold" in out.read_text()
+    assert cli("robots", "validate", out).code == 0
+
+
+def test_without_a_file_nothing_is_written(cli, tmp_path):
+    outcome = cli("robots", "import", write(tmp_path, ARM), "--json")
+    assert outcome.err == "ikde: nothing is written without -o FILE\n"
+    assert outcome.data["tool"] == "tip"
+    assert [path.name for path in tmp_path.iterdir()] == ["arm.urdf"]
+
+
+def test_all_that_is_asked_for_arrives(cli, tmp_path):
+    mesh = change('<sphere radius="0.05"/>', '<mesh filename="package://arm/a.stl"/>')
+    path = write(tmp_path, mesh)
+    state = '<group_state name="home" group="g"><joint name="shoulder" value="0.5"/></group_state>'
+    srdf = write(tmp_path, f'<robot name="arm">{state}</robot>', "arm.srdf")
+    asked = ("--base", "differential", "--base-reach", "7", "--srdf", srdf, "--no-spheres", "--protrusion", "5")
+    joints = cli("robots", "import", path, *asked, "--json").data["joints"]
+    assert [joint["name"] for joint in joints] == ["base_x", "base_y", "base_yaw", "shoulder", "slide"]
+    assert (joints[0]["upper"], joints[3]["home"]) == (7.0, 0.5)
+    refused = cli("robots", "import", path, "--package-path", tmp_path)
+    assert refused.code == 2
+    assert "the mesh 'package://arm/a.stl' is not in its folder" in refused.err
+
+
+def test_what_is_wrong_is_one_line_and_nothing_is_written(refuse, tmp_path):
+    out = tmp_path / "out.yaml"
+    for text, asked, message in (
+        (extend(FINGERS), (), "which link is the tool? it has 3 ends: tip, left, right"),
+        (ARM, ("--tool", "tipp"), "did you mean 'tip'?"),
+        (ARM, ("--hold", "slide"), "hold: expected JOINT=VALUE"),
+        (ARM, ("--base-reach", "-1"), "base_reach_m: expected a length above 0"),
+        ("<!DOCTYPE r><robot/>", (), "a DOCTYPE is not read here"),
+    ):
+        said = refuse("robots", "import", write(tmp_path, text), "-o", out, *asked)
+        assert message in said
+    assert not out.exists()
+
+
+def test_every_command_takes_a_urdf(cli, tmp_path):
+    path = write(tmp_path, ARM)
+    assert cli("robots", "show", path).code == 0
+    assert cli("robots", "validate", path).code == 0
+    assert cli("fk", "--robot", path, "--json").data
+    solved = cli("solve", "--robot", path, "--position", "0.3", "0.1", "0.9", "--json")
+    assert solved.code in (0, 1)
+    assert "Traceback" not in solved.err
