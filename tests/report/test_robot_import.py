@@ -29,7 +29,7 @@ def rows(text, title):
 
 
 def test_every_decision_is_listed(imported):
-    text = format_import(imported, Units("mm", "deg"))
+    text = format_import(imported, Units("mm", "deg"), width=140)
     assert text.splitlines()[0] == f"arm from {imported.file}: tool tip"
     listed = rows(text, "joints that move the tool")
     assert listed[0] == ["base_x", "prismatic", "-100000", "0", "100000", "mm"]
@@ -39,7 +39,9 @@ def test_every_decision_is_listed(imported):
     assert listed[4] == ["slide", "prismatic", "100", "250", "400", "mm"]
     assert rows(text, "frozen: 2 joints")[1][:4] == ["grip_mimic", "prismatic", "-17", "mm"]
     assert rows(text, "spheres: 4 on 4 links")[0] == ["base_link", "1", "sphere", "1", "0", "as", "they", "are"]
-    assert rows(text, "pairs left out, but for neighbours") == [["base_link", "-", "fore", "SRDF:", "Never"]]
+    assert rows(text, "pairs left out, but for neighbours") == [
+        ["base_link", "-", "fore", "adjacent:", "SRDF:", "Never"]
+    ]
     assert "pairs: 1 compared, 5 left out, 4 of them neighbours" in text
     assert "home: 0, or mid-range; free" in text
 
@@ -68,7 +70,7 @@ def test_json_holds_the_same_in_metres_and_radians(imported):
 def test_what_is_not_there_has_no_table(tmp_path):
     text = format_import(read_urdf(write(tmp_path, ARM), ImportOptions(spheres=False)), Units(), width=200)
     assert "tool tip, the only end that a joint moves" in text
-    for title in ("frozen", "spheres:", "pairs left out"):
+    for title in ("frozen", "stand out", "pairs left out"):
         assert title not in text
     assert "pairs: none, self-collision is not checked" in text
     assert "home: 0, or mid-range; not checked" in text
