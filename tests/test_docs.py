@@ -109,6 +109,17 @@ def test_a_python_example_of_a_track_follows_its_path(text, tmp_path, monkeypatc
     assert names["motion"].reached
 
 
+def test_the_example_of_a_urdf_is_imported_solved_and_saved(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (urdf,), (text,) = find_blocks("your_robot.md", "xml"), PYTHON["your_robot.md"]
+    Path("arm.urdf").write_text(urdf.values[0], encoding="utf-8")
+    names = {"ikde": ikde}
+    exec(compile(text.values[0], "example", "exec"), names)
+    assert names["result"].reached
+    assert names["result"].collision is False
+    assert ikde.load_robot("arm.yaml").joints == names["robot"].joints
+
+
 def test_every_defence_names_tests_that_are_there():
     defences = PAGES["security.md"].partition("## Defences")[2]
     rows = [line for line in defences.splitlines() if re.match(r"\| (?!against)\w", line)]

@@ -36,7 +36,8 @@ class Srdf:
             if known is None or _rank(name) < _rank(known[0]):
                 chosen[group] = (name, values)
         values = {joint: value for _, state in chosen.values() for joint, value in state.items()}
-        return tuple(f"{name} of {group}" for group, (name, _) in chosen.items()), values
+        names = tuple(f"{name} of {group}" if group else name for group, (name, _) in chosen.items())
+        return names, values
 
 
 def _rank(name: str) -> int:
@@ -50,7 +51,7 @@ def read_srdf(path: Path) -> Srdf:
         raise file.error(f"expected <robot>, got <{file.root.tag}>", file.root)
     states = []
     for state in file.root.find_all("group_state"):
-        group, name = (file.read_name(state, key, "group_state") for key in ("group", "name"))
+        group, name = state.attributes.get("group", ""), file.read_name(state, "name", "group_state")
         joints = [joint for joint in state.find_all("joint") if len(joint.attributes.get("value", "").split()) == 1]
         values = {
             file.read_name(joint, "name", "group_state", name): file.read_number(joint, "value", None, name)

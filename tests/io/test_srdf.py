@@ -33,6 +33,8 @@ def test_of_each_group_home_is_chosen_else_its_first_state(tmp_path):
     others = read_srdf(write(tmp_path, TEXT.replace("Home", "so").replace('"up"', '"default"')))
     assert others.choose_states()[0] == ("default of arm", "open of hand")
     assert Srdf().choose_states() == ((), {})
+    nameless = read_srdf(write(tmp_path, TEXT.replace(' group="hand"', "")))
+    assert nameless.choose_states()[0] == ("Home of arm", "open")
 
 
 @pytest.mark.parametrize(
@@ -41,7 +43,7 @@ def test_of_each_group_home_is_chosen_else_its_first_state(tmp_path):
         ("robot", "model", ":1: expected <robot>, got <model>"),
         ('value="0.5"', 'value="half"', ":3 → Home.value: expected a number, got 'half'"),
         ('link1="l" link2="r"', 'link1="l"', ":7 → disable_collisions: expected an attribute 'link2'"),
-        (' group="hand"', "", ":5 → group_state: expected an attribute 'group'"),
+        (' name="open"', "", ":5 → group_state: expected an attribute 'name'"),
     ],
 )
 def test_what_is_wrong_is_one_line_with_its_place(tmp_path, old, new, message):
