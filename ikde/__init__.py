@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.urdf_import.read_urdf import read_urdf as read_urdf
     from ikde.kernels.jit import compile_clock as compile_clock
     from ikde.model.collision_model import CollisionModel as CollisionModel
+    from ikde.model.compose import compose as compose
     from ikde.model.convention import from_convention as from_convention
     from ikde.model.convention import to_convention as to_convention
     from ikde.model.robot import Detector as Detector
@@ -104,6 +105,7 @@ _HOME = {
     "CheckResult": "ikde.solver.check",
     "verify": "ikde.solver.verify",
     "Grade": "ikde.solver.verify",
+    "compose": "ikde.model.compose",
     "from_convention": "ikde.model.convention",
     "to_convention": "ikde.model.convention",
     "compile_clock": "ikde.kernels.jit",

@@ -1,4 +1,4 @@
-"""`ikde robots`: list, show, validate, export; import has a file of its own."""
+"""`ikde robots`: list, show, validate, export; import and compose have files of their own."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -7,6 +7,7 @@ import typer
 
 from ikde.cli.options import AnglesOption, AngleUnit, Command, DetectorOption, JsonOption, LengthUnit, UnitOption
 from ikde.cli.output import page_width, print_json, print_line, print_result, use_color
+from ikde.cli.robots_compose import compose_robot
 from ikde.cli.robots_import import import_robot
 
 if TYPE_CHECKING:
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 robots.command("import", cls=Command)(import_robot)
+robots.command("compose", cls=Command)(compose_robot)
 
 
 @robots.callback(invoke_without_command=True)

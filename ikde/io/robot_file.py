@@ -1,5 +1,7 @@
 """The robot file: its schema, and how it becomes a `Robot`."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -16,6 +18,7 @@ from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
 from ikde.model.robot import (
     NO_DETECTOR,
+    WORLD,
     AdjacentPair,
     Drive,
     Frame,
@@ -163,14 +166,33 @@ class RobotFile(Entry):
 
 def parse_robot(document: Document) -> Robot:
     """Turn a YAML document into a checked `Robot`, SI inside; raises `FileError` with line and key."""
+    return _parse(document, check_robot)
+
+
+def parse_part(document: Document) -> Robot:
+    """A robot that may have no joints; then nothing is known of its pairs."""
+    return _parse(document, _check_part)
+
+
+def _parse(document: Document, check: Callable[[Robot], Robot]) -> Robot:
     try:
         file = RobotFile.model_validate(document.data)
     except ValidationError as error:
         raise as_file_error(document, error, RobotFile) from None
     try:
-        return check_robot(_to_robot(file))
+        return check(_to_robot(file))
     except InputError as error:
         raise document.error(error.message, error.where) from None
+
+
+def _check_part(draft: Robot) -> Robot:
+    """What can be wrong with a rigid part is found with a joint beside it."""
+    if draft.joints:
+        return check_robot(draft)
+    joint = Joint(name="beside", kind="continuous", home=0.0)
+    frame = _to_frame("beside the part", FrameEntry(parent=WORLD, joint=joint.name, axis=[0.0, 0.0, 1.0]), 1.0, 1.0)
+    check_robot(replace(draft, joints=(joint,), frames=(*draft.frames, frame)))
+    return draft
 
 
 def _to_robot(file: RobotFile) -> Robot:

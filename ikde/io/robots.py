@@ -67,3 +67,13 @@ def parse_file(path: Path) -> Robot:
     from ikde.io.yaml_file import read_yaml
 
     return parse_robot(read_yaml(path))
+
+
+def load_part(path: Path) -> Robot:
+    """A robot for `compose`, from a file: unlike others it may have no joints at all, as a rigid tool."""
+    if is_urdf(path):
+        return parse_file(path)
+    from ikde.io.robot_file import parse_part
+    from ikde.io.yaml_file import read_yaml
+
+    return parse_part(read_yaml(path))
