@@ -23,7 +23,7 @@ def random_urdf(seed):
 def _inside(rng):
     xyz, rpy, axis = (" ".join(map(repr, rng.normal(size=3).tolist())) for _ in range(3))
     lower, upper = np.sort(rng.uniform(-2, 2, 2)).tolist()
-    limit = f'<limit lower="{lower!r}" upper="{upper!r}" velocity="1"/>'
+    limit = f'<limit lower="{lower!r}" upper="{upper!r}" velocity="1" effort="1"/>'
     return f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>{limit}'
 
 

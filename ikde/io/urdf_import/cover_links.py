@@ -12,6 +12,7 @@ from ikde.io.urdf_import.imported import CoveredLink
 from ikde.io.urdf_import.meshes import find_mesh
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.kernels.arrays import Floats
+from ikde.spheres import cover_shapes
 from ikde.spheres.shapes import Shape
 
 
@@ -54,5 +55,16 @@ def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
     own = [shape for shape in shapes if shape.kind == "sphere"]
     centres = np.array([shape.T_link_shape[:3, 3] for shape in own]).reshape(-1, 3)
     radii = np.array([shape.size[0] for shape in own])
-    done = CoveredLink(link=link, shapes=words, spheres=len(radii), covered=None, protrusion_m=0.0, how="as they are")
-    return LinkSpheres(centres=centres, radii=radii, report=done)
+    others = [shape for shape in shapes if shape.kind != "sphere"]
+    covered, protrusion, how = None, 0.0, "as they are"
+    if others:
+        cover = cover_shapes(others, protrusion_m)
+        centres, radii = np.vstack([centres, cover.centres]), np.concatenate([radii, cover.radii])
+        covered, protrusion, how = cover.covered, cover.protrusion_m, cover.how
+    return LinkSpheres(
+        centres=centres,
+        radii=radii,
+        report=CoveredLink(
+            link=link, shapes=words, spheres=len(radii), covered=covered, protrusion_m=protrusion, how=how
+        ),
+    )
