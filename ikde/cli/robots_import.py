@@ -44,6 +44,7 @@ def import_robot(
     protrusion: Annotated[
         float, typer.Option(metavar="MM", help="How far spheres may stand out of shapes, in mm.")
     ] = 20.0,
+    mesh_scale: Annotated[float, typer.Option(metavar="X", help="What meshes are scaled by: 0.001 if in mm.")] = 1.0,
     unit: UnitOption = LengthUnit.mm,
     angles: AnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
@@ -70,6 +71,7 @@ def import_robot(
             package_paths=tuple(package_path or []),
             spheres=spheres,
             protrusion_m=protrusion / 1000.0,
+            mesh_scale=mesh_scale,
         ),
     )
     if out is not None:

@@ -44,7 +44,7 @@ def test_what_is_wrong_is_one_line_and_nothing_is_written(refuse, tmp_path):
         (extend(FINGERS), (), "which link is the tool? it has 3 ends: tip, left, right"),
         (ARM, ("--tool", "tipp"), "did you mean 'tip'?"),
         (ARM, ("--hold", "slide"), "hold: expected JOINT=VALUE"),
-        (ARM, ("--base-reach", "-1"), "base_reach_m: expected a length above 0"),
+        (ARM, ("--base-reach", "-1"), "base_reach_m: expected a number above 0"),
         ("<!DOCTYPE r><robot/>", (), "a DOCTYPE is not read here"),
     ):
         said = refuse("robots", "import", write(tmp_path, text), "-o", out, *asked)

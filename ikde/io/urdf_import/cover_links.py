@@ -37,13 +37,14 @@ def cover_links(description: Description, tree: LinkTree, options: ImportOptions
 
 
 def _find_shapes(description: Description, shapes: Iterable[UrdfShape], options: ImportOptions) -> list[Shape]:
+    factor = options.mesh_scale
     return [
         Shape(
             kind=shape.kind,
             size=shape.size,
             T_link_shape=shape.T_link_shape,
             mesh=find_mesh(description.path, shape.mesh, options.package_paths, shape.line) if shape.mesh else None,
-            scale=shape.scale,
+            scale=(factor * shape.scale[0], factor * shape.scale[1], factor * shape.scale[2]),
         )
         for shape in shapes
     ]

@@ -28,6 +28,8 @@ class ImportOptions:
     srdf: Path | None = None
     package_paths: tuple[Path, ...] = ()
     """Folders that meshes may lie in, beside the file's own."""
+    mesh_scale: float = 1.0
+    """What all meshes are scaled by beside what the file says: 0.001 for meshes in mm."""
     spheres: bool = True
     """Whether links get spheres."""
     protrusion_m: float = 0.02
@@ -41,9 +43,9 @@ class ImportOptions:
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):
             raise InputError(f"expected one of {', '.join(get_args(Base))}, got {quoted(self.base)}", ("base",))
-        for key in ("base_reach_m", "protrusion_m"):
+        for key, unit in (("base_reach_m", " m"), ("protrusion_m", " m"), ("mesh_scale", "")):
             if not 0.0 < getattr(self, key) <= MAX_MAGNITUDE:
-                raise InputError(f"expected a length above 0, up to {MAX_MAGNITUDE:g} m", (key,))
+                raise InputError(f"expected a number above 0, up to {MAX_MAGNITUDE:g}{unit}", (key,))
 
 
 def read_holds(words: Iterable[str]) -> dict[str, float]:

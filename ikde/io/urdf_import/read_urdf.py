@@ -27,6 +27,7 @@ def import_urdf(
     hold: Mapping[str, float] | None = None,
     package_paths: Sequence[str | PathLike[str]] = (),
     protrusion_m: float = 0.02,
+    mesh_scale: float = 1.0,
 ) -> Robot:
     """A robot from a URDF file: the joints that move the tool, every link as a frame, spheres and pairs.
 
@@ -42,6 +43,7 @@ def import_urdf(
         hold: joints that stay where they are, m or rad; joints off the chain to the tool stay anyway.
         package_paths: folders that meshes may lie in, beside the file's own.
         protrusion_m: how far spheres may stand out of the shapes that they cover.
+        mesh_scale: what meshes are scaled by beside what the file says: 0.001 for meshes in mm.
 
     Raises:
         InputError: for a value that makes no sense.
@@ -55,6 +57,7 @@ def import_urdf(
         package_paths=tuple(map(Path, package_paths)),
         spheres=spheres,
         protrusion_m=protrusion_m,
+        mesh_scale=mesh_scale,
     )
     return read_urdf(path, options).robot
 

@@ -58,7 +58,10 @@ def test_of_several_ends_one_must_be_named_and_all_are_listed(tmp_path):
     found = read(tmp_path, extend(FINGERS))
     with pytest.raises(FileError) as caught:
         choose_tool(*found, None)
-    assert "tool: which link is the tool? it has 3 ends: tip, left, right; name one (--tool NAME)" in str(caught.value)
+    assert (
+        "tool: which link is the tool? it has 3 ends: tip, left, right; name one: ikde robots import --tool NAME"
+        in str(caught.value)
+    )
     assert choose_tool(*found, "left") == "left"
     assert choose_tool(*found, "upper") == "upper"
 

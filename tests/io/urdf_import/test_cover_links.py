@@ -13,9 +13,9 @@ from ikde.io.urdf_import.options import ImportOptions
 from tests.urdf_texts import change, write
 
 
-def cover_file(folder, text):
+def cover_file(folder, text, **options):
     description = read_description(write(folder, text))
-    return cover_links.cover_links(description, find_tree(description), ImportOptions())
+    return cover_links.cover_links(description, find_tree(description), ImportOptions(**options))
 
 
 def test_spheres_are_taken_as_they_are(tmp_path):
@@ -58,5 +58,5 @@ def test_a_mesh_is_handed_on_with_its_file_and_scale(tmp_path, monkeypatch):
     asked = []
     cover = SimpleNamespace(centres=np.zeros((0, 3)), radii=np.zeros(0), covered=1.0, protrusion_m=0.0, how="")
     monkeypatch.setattr(cover_links, "cover_shapes", lambda shapes, most: (asked.extend(shapes), cover)[1])
-    cover_file(tmp_path, change('<sphere radius="0.05"/>', '<mesh filename="a.stl" scale="1 -1 1"/>'))
-    assert [(shape.mesh, shape.scale) for shape in asked] == [(tmp_path / "a.stl", (1.0, -1.0, 1.0))]
+    cover_file(tmp_path, change('<sphere radius="0.05"/>', '<mesh filename="a.stl" scale="1 -1 2"/>'), mesh_scale=0.5)
+    assert [(shape.mesh, shape.scale) for shape in asked] == [(tmp_path / "a.stl", (0.5, -0.5, 1.0))]

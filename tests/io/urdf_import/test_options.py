@@ -10,9 +10,10 @@ from ikde.io.urdf_import.options import ImportOptions, read_holds
     ("options", "message"),
     [
         ({"base": "legs"}, "base: expected one of urdf, fixed, omni, differential, got 'legs'"),
-        ({"base_reach_m": 0.0}, "base_reach_m: expected a length above 0, up to 100000 m"),
-        ({"protrusion_m": -0.1}, "protrusion_m: expected a length above 0"),
-        ({"protrusion_m": float("nan")}, "protrusion_m: expected a length above 0"),
+        ({"base_reach_m": 0.0}, "base_reach_m: expected a number above 0, up to 100000 m"),
+        ({"mesh_scale": 0.0}, "mesh_scale: expected a number above 0, up to 100000"),
+        ({"protrusion_m": -0.1}, "protrusion_m: expected a number above 0"),
+        ({"protrusion_m": float("nan")}, "protrusion_m: expected a number above 0"),
     ],
 )
 def test_wrong_values_are_refused_by_name(options, message):
