@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ikde.errors import InputError
+from ikde.io.robot_file import MAX_ENTRIES, MAX_JOINTS
 from ikde.io.srdf import Srdf
 from ikde.io.urdf_import.cover_links import LinkSpheres
 from ikde.io.urdf_import.description import Description
@@ -70,6 +72,13 @@ def add_spheres(
                 point = reserve_name(f"{frame}/sphere_{index}", skeleton.frame_names)
                 frames.append(Frame(name=point, parent=frame, p_parent_frame=centre, R_parent_frame=np.eye(3)))
             rows.append(SphereRow(component=frame, start=point, end=point, radius_m=float(radius)))
+    for what, number, most in (
+        ("joints", len(draft.joints), MAX_JOINTS),
+        ("frames", len(frames), MAX_ENTRIES),
+        ("spheres", len(rows), MAX_ENTRIES),
+    ):
+        if number > most:
+            raise InputError(f"a robot has at most {most:,} {what}, and this one {number:,}", (what,))
     if not rows:
         return check_robot(draft), ["no link has spheres: self-collision is not checked"]
     draft = replace(draft, frames=tuple(frames), approximations={SPHERES: tuple(rows)})

@@ -1,7 +1,9 @@
 """The robot out of its parts: spheres, pairs that are left out, home."""
 
 import numpy as np
+import pytest
 
+from ikde.errors import FileError
 from ikde.io.urdf_import import assemble
 from ikde.io.urdf_import.assemble import ALWAYS
 from ikde.io.urdf_import.options import ImportOptions
@@ -82,3 +84,19 @@ def test_a_home_that_cannot_be_moved_stays_and_that_is_said(tmp_path, monkeypatc
     assert imported.is_home_free is False
     assert imported.home == "0, or mid-range; it collides, and no free one was found near it"
     assert imported.robot.home.tolist() == [0.0, 0.25]
+
+
+@pytest.mark.parametrize(("limit", "what", "number"), [("MAX_JOINTS", "joints", 2), ("MAX_ENTRIES", "frames", 5)])
+def test_what_no_robot_file_could_hold_is_refused(tmp_path, monkeypatch, limit, what, number):
+    monkeypatch.setattr(assemble, limit, number)
+    assert load(tmp_path, ARM).robot
+    monkeypatch.setattr(assemble, limit, number - 1)
+    with pytest.raises(FileError, match=f"{what}: a robot has at most {number - 1} {what}, and this one {number}"):
+        load(tmp_path, ARM)
+
+
+def test_so_are_more_spheres(tmp_path, monkeypatch):
+    monkeypatch.setattr(assemble, "MAX_ENTRIES", 6)
+    more = '<collision><geometry><sphere radius="0.05"/></geometry></collision>' * 4
+    with pytest.raises(FileError, match="spheres: a robot has at most 6 spheres, and this one 7"):
+        load(tmp_path, change('<link name="fore">', f'<link name="fore">{more}'))
