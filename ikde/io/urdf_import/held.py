@@ -38,7 +38,9 @@ def find_held(
         reason = _find_reason(description, tree, joint, options, name in on_chain)
         if reason:
             value, how = _find_value(description, joint, options.hold, state)
-            held[name] = HeldJoint(name=name, kind=joint.kind, value=value, reason=f"{reason}, {how}")
+            held[name] = HeldJoint(
+                name=name, kind=joint.kind, value=value, reason=f"{reason}, {how}" if how else reason
+            )
     return held
 
 
@@ -96,7 +98,7 @@ def _find_value(
         value, how = state[source.name], "SRDF state"
     else:
         value = _clip(source, 0.0)
-        how = "0" if value == 0.0 else "the limit next to 0"
+        how = "" if value == 0.0 else "the limit next to 0"
     if source is not joint:
         value, how = factor * value + offset, f"mimics {source.name}"
     value = _clip(joint, value)
