@@ -33,6 +33,8 @@ def test_of_each_group_home_is_chosen_else_its_first_state(tmp_path):
     others = read_srdf(write(tmp_path, TEXT.replace("Home", "so").replace('"up"', '"default"')))
     assert others.choose_states()[0] == ("default of arm", "open of hand")
     assert Srdf().choose_states() == ((), {})
+    none = read_srdf(write(tmp_path, TEXT.replace("Home", "so")))
+    assert none.choose_states()[0] == ("folded of arm", "open of hand")
     nameless = read_srdf(write(tmp_path, TEXT.replace(' group="hand"', "")))
     assert nameless.choose_states()[0] == ("Home of arm", "open")
 

@@ -93,6 +93,7 @@ def test_what_an_arm_leaves_out_stays_left_out_with_its_reason(platform, qiao):
     arms_own = CollisionModel.of(qiao)
     for pair in arms_own.left_out_pairs:
         assert left_out[pair.a, pair.b] in (pair.reason, f"adjacent: {pair.reason}")
+    assert not [pair for pair in robot.adjacent if pair.reason.startswith(("one body", "joined", "adjacent"))]
     assert {frozenset(pair) for pair in arms_own.pairs} <= {frozenset(p) for p in CollisionModel.of(robot).pairs}
     assert CollisionModel.of(robot).limit_m == arms_own.limit_m
 

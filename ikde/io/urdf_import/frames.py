@@ -53,7 +53,7 @@ def build_skeleton(
     description: Description, tree: LinkTree, tool: str, options: ImportOptions, held: Mapping[str, HeldJoint]
 ) -> Skeleton:
     """Every link as a frame of its name; joints of the chain move, all others are part of what they connect."""
-    skeleton = Skeleton(joint_names=set(description.joints), frame_names={WORLD, TOOL, *description.links})
+    skeleton = Skeleton(joint_names=set(description.joints), frame_names=set(description.links))
     _add_root(skeleton, tree.root, tool, options)
     for link in tree.order[1:]:
         joint = tree.joint_of[link]

@@ -65,6 +65,8 @@ def test_a_robot_without_shapes_is_not_checked_and_that_is_said(tmp_path):
 def test_masses_stand_at_the_frames_of_their_links(tmp_path):
     robot = load(tmp_path, ARM.replace('"upper"', '"tool"')).robot
     assert {name: inertia.mass_kg for name, inertia in robot.inertias.items()} == {"tool_link": 2.0}
+    heavy = ARM.replace('name="base_link">', 'name="world"><inertial><mass value="5"/></inertial>')
+    assert list(load(tmp_path, heavy.replace("base_link", "world")).robot.inertias) == ["upper"]
 
 
 def test_a_home_that_collides_is_moved_and_that_is_said(tmp_path):

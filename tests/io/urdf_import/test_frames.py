@@ -73,6 +73,12 @@ def test_a_joint_without_limits_turns_without_end_or_slides_far_and_that_is_said
     }
 
 
+def test_a_slide_with_one_limit_keeps_it(tmp_path):
+    imported = load(tmp_path, change('lower="0.1" upper="0.4"', 'lower="-1e16" upper="0.4"'))
+    assert (imported.robot.lower[1], imported.robot.upper[1]) == (-100.0, 0.4)
+    assert imported.joint_notes == {"slide": "no limits in the file: -100 to 0.4 m"}
+
+
 def test_a_joint_that_cannot_move_is_kept_and_that_is_said(tmp_path):
     imported = load(tmp_path, change('lower="0.1" upper="0.4"', ""))
     assert (imported.robot.lower[1], imported.robot.upper[1]) == (0.0, 0.0)

@@ -28,8 +28,9 @@ def test_one_that_collides_moves_until_it_is_free_and_no_farther(elbow):
     found = find_free_home(collision, home)
     assert not check(robot, found).collision
     assert find_free_home(collision, home).tolist() == found.tolist()
-    inside = home + 0.99 * (found - home)
-    assert check(robot, inside).collision or np.abs(found - home).max() < 0.05
+    assert np.flatnonzero(found != home).tolist() == [2]  # the elbow alone
+    assert np.abs(found - home).max() < 0.5
+    assert check(robot, found).clearance_m == pytest.approx(1e-3, abs=1e-4)
     assert np.all((found >= robot.lower) & (found <= robot.upper))
 
 

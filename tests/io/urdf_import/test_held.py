@@ -43,6 +43,14 @@ def test_a_mimic_off_the_chain_follows_its_master_within_its_own_limits(tmp_path
     assert hold(tmp_path, text, hold={"grip_mimic": 0.1})["grip_mimic"] == (0.1, "asked for, --hold")
 
 
+def test_a_mimic_of_a_mimic_follows_both(tmp_path):
+    third = '<link name="third"/>' + joint(
+        "third", "continuous", "fore", "third", '<mimic joint="grip_mimic" multiplier="3" offset="1"/>'
+    )
+    held = hold(tmp_path, extend(FINGERS + third), hold={"grip": 0.02})
+    assert held["third"] == (3 * (-2 * 0.02 + 0.003) + 1, f"{OFF}, mimics grip")
+
+
 @pytest.mark.parametrize("master", ["grip_mimic", "nobody", "shoulder"])
 def test_a_mimic_of_itself_of_nobody_or_of_a_joint_that_moves_stays_somewhere(tmp_path, master):
     text = extend(FINGERS.replace('mimic joint="grip"', f'mimic joint="{master}"'))
@@ -67,6 +75,7 @@ def test_a_floating_joint_moves_no_tool_but_may_be_the_base(tmp_path):
     planar = text.replace("floating", "planar")
     assert hold(tmp_path, planar) == {}
     assert hold(tmp_path, planar, base="fixed") == {"root": (0.0, "the base is another one")}
+    assert hold(tmp_path, ARM.replace('"prismatic"', '"planar"'), base="fixed") == {}  # not of the root
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ def test_a_missing_mesh_names_the_folder_to_give(robot):
     top = robot.parents[2]
     reject(robot, "package://arm/meshes/a.stl", f"is not in its folder, nor in one given (--package-path {top})")
     reject(robot, "package://other/a.stl", "(--package-path FOLDER)")
+    reject(robot, "package://other/meshes/a.stl", "is not in its folder", robot.parents[1])
     reject(robot, "package://arm/meshes/none.stl", "is not in its folder", top)
     reject(robot, "meshes", "is not in its folder", robot.parents[1])  # a folder is no mesh
 

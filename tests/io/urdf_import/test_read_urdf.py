@@ -110,6 +110,9 @@ def test_states_and_pairs_come_from_the_srdf(tmp_path):
         '<disable_collisions link1="base_link" link2="hand"/></robot>',
         "arm.srdf",
     )
+    text = srdf.read_text(encoding="utf-8")
+    beyond = write(tmp_path, text.replace('"0.4"', '"9"'), "beyond.srdf")
+    assert read_urdf(write(tmp_path, ARM), ImportOptions(srdf=beyond)).robot.home.tolist() == [2.0, 0.25]
     imported = read_urdf(write(tmp_path, ARM), ImportOptions(srdf=srdf))
     assert imported.robot.home.tolist() == [0.4, 0.25]
     assert imported.home == "SRDF state home of g"
