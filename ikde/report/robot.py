@@ -57,6 +57,7 @@ def robot_json(collision: CollisionModel) -> dict[str, Any]:
         "adjacent": [asdict(pair) for pair in robot.adjacent],
         "collision": pairs_json(collision),
         "wheels": None if robot.wheels is None else asdict(robot.wheels),
+        "drive": robot.drive,
         "provenance": dict(Counter(p.kind for p in robot.provenance.values())),
     }
 
