@@ -20,7 +20,10 @@ class BaseChoice(StrEnum):
 
 
 def import_robot(
-    file: Annotated[Path, typer.Argument(help="A URDF file.")],
+    file: Annotated[
+        str,
+        typer.Argument(metavar="FILE|NAME", help="A URDF file, or one of installed example-robot-data or rtb-data."),
+    ],
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="The robot file to write.")] = None,
     tool: Annotated[
         str | None, typer.Option(metavar="LINK", help="The tool (default: the only end that a joint moves).")
@@ -54,21 +57,25 @@ def import_robot(
     Example: ikde robots import arm.urdf --tool gripper_link --base omni -o arm.yaml
     """
     from ikde.io.robot_writer import write_robot
+    from ikde.io.robots import is_file_name
     from ikde.io.urdf_import.imported import list_notes
+    from ikde.io.urdf_import.installed import find_installed
     from ikde.io.urdf_import.options import ImportOptions, read_holds
     from ikde.io.urdf_import.read_urdf import read_urdf
     from ikde.report.numbers import Units
     from ikde.report.robot_import import format_import, import_json
 
+    is_name = not is_file_name(file) and not Path(file).exists()
+    path, folders = find_installed(file) if is_name else (Path(file), ())
     imported = read_urdf(
-        file,
+        path,
         ImportOptions(
             tool=tool,
             base=base.value,
             base_reach_m=base_reach,
             hold=read_holds(hold or []),
             srdf=srdf,
-            package_paths=tuple(package_path or []),
+            package_paths=(*(package_path or []), *folders),
             spheres=spheres,
             protrusion_m=protrusion / 1000.0,
             mesh_scale=mesh_scale,

@@ -35,7 +35,7 @@ def test_all_that_is_asked_for_arrives(cli, tmp_path):
     assert (joints[0]["upper"], joints[3]["home"]) == (7.0, 0.5)
     refused = cli("robots", "import", path, "--package-path", tmp_path)
     assert refused.code == 2
-    assert "the mesh 'package://arm/a.stl' is not in its folder" in refused.err
+    assert "the mesh 'package://arm/a.stl' is not in this folder" in refused.err
 
 
 def test_what_is_wrong_is_one_line_and_nothing_is_written(refuse, tmp_path):
@@ -60,3 +60,9 @@ def test_every_command_takes_a_urdf(cli, tmp_path):
     solved = cli("solve", "--robot", path, "--position", "0.3", "0.1", "0.9", "--json")
     assert solved.code in (0, 1)
     assert "Traceback" not in solved.err
+
+
+def test_a_name_is_looked_for_in_installed_packages(cli, tmp_path, monkeypatch):
+    path = write(tmp_path, ARM)
+    monkeypatch.setattr("ikde.io.urdf_import.installed.find_installed", lambda name: (path, (tmp_path,)))
+    assert cli("robots", "import", "arm", "--json").data["file"] == str(path)

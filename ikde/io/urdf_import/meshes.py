@@ -1,12 +1,14 @@
 """Where meshes are: in the URDF's folder and in folders that are named, once links and `..` are resolved."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import unquote
 
-from ikde.errors import FileError, quoted
+from ikde.errors import FileError, quoted, shorten
 
 PACKAGE = ("package://", "model://")
+MAX_SHOWN = 50  # characters of a mesh's name, the last ones
 
 
 def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | None = None) -> Path:
@@ -31,9 +33,9 @@ def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | 
     except (OSError, ValueError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or "no path"
         raise FileError(urdf, f"the mesh {quoted(name)} cannot be looked for: {reason}", (), line) from None
-    found = "lies outside its folder" if outside and not name.startswith(PACKAGE) else "is not in its folder"
-    hint = _suggest_folder(urdf, name)
-    message = f"the mesh {quoted(name)} {found}, nor in one given (--package-path {hint}); --no-spheres does without"
+    found = "lies outside this folder" if outside and not name.startswith(PACKAGE) else "is not in this folder"
+    shown = quoted(shorten(name, MAX_SHOWN, keep_end=True))
+    message = f"the mesh {shown} {found}; try --package-path {_suggest_folder(urdf, name)}, or --no-spheres"
     raise FileError(urdf, message, (), line)
 
 
@@ -51,7 +53,8 @@ def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
 
 
 def _suggest_folder(urdf: Path, name: str) -> str:
-    """The folder above the URDF that holds the package, going by names alone."""
+    """The folder above the URDF that holds the package, going by names alone, as short as it can be written."""
     package = next((name.removeprefix(s).partition("/")[0] for s in PACKAGE if name.startswith(s)), None)
     above = urdf.absolute().parents
-    return next((str(folder.parent) for folder in above if folder.name == package), "FOLDER")
+    holder = next((str(folder.parent) for folder in above if folder.name == package), None)
+    return "FOLDER" if holder is None else min(holder, os.path.relpath(holder), key=len)

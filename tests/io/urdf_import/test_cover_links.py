@@ -32,7 +32,7 @@ def test_spheres_are_taken_as_they_are(tmp_path):
 
 def test_a_mesh_that_is_missing_is_refused_with_its_line(tmp_path):
     text = change('<sphere radius="0.05"/>', '<mesh filename="package://arm/a.stl"/>')
-    with pytest.raises(FileError, match=r"arm\.urdf:9: the mesh 'package://arm/a.stl' is not in its folder"):
+    with pytest.raises(FileError, match=r"arm\.urdf:9: the mesh 'package://arm/a.stl' is not in this folder"):
         cover_file(tmp_path, text)
 
 

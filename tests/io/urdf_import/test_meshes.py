@@ -1,5 +1,7 @@
 """Meshes are found in the URDF's folder and in folders that are named, and nowhere else."""
 
+import os
+
 import pytest
 
 from ikde.errors import FileError
@@ -38,28 +40,32 @@ def test_a_package_is_a_folder_in_one_that_is_named_or_that_folder(robot):
 
 def test_a_missing_mesh_names_the_folder_to_give(robot):
     top = robot.parents[2]
-    reject(robot, "package://arm/meshes/a.stl", f"is not in its folder, nor in one given (--package-path {top})")
-    reject(robot, "package://other/a.stl", "(--package-path FOLDER)")
-    reject(robot, "package://other/meshes/a.stl", "is not in its folder", robot.parents[1])
-    reject(robot, "package://arm/meshes/none.stl", "is not in its folder", top)
-    reject(robot, "meshes", "is not in its folder", robot.parents[1])  # a folder is no mesh
+    reject(
+        robot,
+        "package://arm/meshes/a.stl",
+        f"is not in this folder; try --package-path {min(str(top), os.path.relpath(top), key=len)}, or --no-spheres",
+    )
+    reject(robot, "package://other/a.stl", "try --package-path FOLDER, or")
+    reject(robot, "package://other/meshes/a.stl", "is not in this folder", robot.parents[1])
+    reject(robot, "package://arm/meshes/none.stl", "is not in this folder", top)
+    reject(robot, "meshes", "is not in this folder", robot.parents[1])  # a folder is no mesh
 
 
 @pytest.mark.parametrize("name", ["../meshes/a.stl", "../../secret.stl", "/etc/hostname", "file:///etc/hostname"])
 def test_nothing_outside_is_read(robot, name):
-    reject(robot, name, "lies outside its folder")
+    reject(robot, name, "lies outside this folder")
 
 
 def test_dots_in_a_package_lead_nowhere(robot):
-    reject(robot, "package://arm/../../secret.stl", "is not in its folder", robot.parents[1])
-    reject(robot, "package://../secret.stl", "is not in its folder", robot.parents[1])
+    reject(robot, "package://arm/../../secret.stl", "is not in this folder", robot.parents[1])
+    reject(robot, "package://../secret.stl", "is not in this folder", robot.parents[1])
 
 
 def test_a_link_that_leads_out_is_followed_before_it_is_judged(robot):
     (robot.parent / "link.stl").symlink_to(robot.parents[2] / "secret.stl")
     (robot.parent / "folder").symlink_to(robot.parents[2])
-    reject(robot, "link.stl", "lies outside its folder")
-    reject(robot, "folder/secret.stl", "lies outside its folder")
+    reject(robot, "link.stl", "lies outside this folder")
+    reject(robot, "folder/secret.stl", "lies outside this folder")
     assert find_mesh(robot, "link.stl", (robot.parents[2],)) == robot.parents[2] / "secret.stl"
 
 
@@ -71,7 +77,7 @@ def test_a_link_in_a_circle_and_a_name_that_is_no_path_are_one_line(robot):
 
 
 def test_no_mesh_comes_from_the_network(robot):
-    reject(robot, "http://example.com/a.stl", "is not in its folder")
+    reject(robot, "http://example.com/a.stl", "is not in this folder")
 
 
 def test_a_package_path_that_is_not_there_is_one_line(robot):
