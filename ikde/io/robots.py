@@ -18,12 +18,12 @@ def robot_names() -> tuple[str, ...]:
 
 def is_file_name(text: str) -> bool:
     """True for what names a file rather than a robot that ships with ikde."""
-    return "/" in text or "\\" in text or text.endswith((".yaml", ".yml", *OF_URDF))
+    return "/" in text or "\\" in text or text.lower().endswith((".yaml", ".yml", *OF_URDF))
 
 
 def is_urdf(path: Path) -> bool:
     """True for the name of a URDF, or of what becomes one."""
-    return path.suffix in OF_URDF
+    return path.suffix.lower() in OF_URDF
 
 
 def robot_path(name_or_path: str | Path) -> Path:

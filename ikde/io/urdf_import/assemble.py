@@ -63,15 +63,8 @@ def add_spheres(
     Returns:
         The robot, checked, and what is worth a warning.
     """
-    frames, rows = list(draft.frames), []
-    for link, own in covered.items():
-        frame = skeleton.frame_of[link]
-        for index, (centre, radius) in enumerate(zip(own.centres, own.radii, strict=True)):
-            point = frame
-            if centre.any():
-                point = reserve_name(f"{frame}/sphere_{index}", skeleton.frame_names)
-                frames.append(Frame(name=point, parent=frame, p_parent_frame=centre, R_parent_frame=np.eye(3)))
-            rows.append(SphereRow(component=frame, start=point, end=point, radius_m=float(radius)))
+    points, rows = _make_rows(skeleton, covered)
+    frames = (*draft.frames, *points)
     for what, number, most in (
         ("joints", len(draft.joints), MAX_JOINTS),
         ("frames", len(frames), MAX_ENTRIES),
@@ -81,22 +74,39 @@ def add_spheres(
             raise InputError(f"a robot has at most {most:,} {what}, and this one {number:,}", (what,))
     if not rows:
         return check_robot(draft), ["no link has spheres: self-collision is not checked"]
-    draft = replace(draft, frames=tuple(frames), approximations={SPHERES: tuple(rows)})
     adjacent, notes = _read_disabled(skeleton, {row.component for row in rows}, srdf)
-    draft = replace(draft, adjacent=adjacent)
-    robot = check_robot(draft)
-    while pairs := robot.pair_lists[NON_ADJACENT]:
+    draft = replace(draft, frames=frames, approximations={SPHERES: tuple(rows)}, adjacent=adjacent)
+    robot, more = _leave_out_touching(draft)
+    return robot, notes + more
+
+
+def _make_rows(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tuple[list[Frame], list[SphereRow]]:
+    """A sphere a row, and key points for those that do not stand at the origin of their link."""
+    points, rows = [], []
+    for link, own in covered.items():
+        frame = skeleton.frame_of[link]
+        for index, (centre, radius) in enumerate(zip(own.centres, own.radii, strict=True)):
+            point = frame
+            if centre.any():
+                point = reserve_name(f"{frame}/sphere_{index}", skeleton.frame_names)
+                points.append(Frame(name=point, parent=frame, p_parent_frame=centre, R_parent_frame=np.eye(3)))
+            rows.append(SphereRow(component=frame, start=point, end=point, radius_m=float(radius)))
+    return points, rows
+
+
+def _leave_out_touching(draft: Robot) -> tuple[Robot, list[str]]:
+    """The robot, checked, with a detector of all pairs that do not always touch; and what is worth a warning."""
+    notes: list[str] = []
+    while pairs := check_robot(draft).pair_lists[NON_ADJACENT]:
         detector = Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT)
-        draft = replace(draft, detectors={SPHERES: detector}, default_detector=SPHERES)
-        robot = check_robot(draft)
+        robot = check_robot(replace(draft, detectors={SPHERES: detector}, default_detector=SPHERES))
         touching = find_always_touching(CollisionModel.of(robot))
         if touching is None:
             return robot, notes
+        notes.append(f"{len(touching.pairs)} of {len(pairs)} pairs always touch and are left out")
         found = tuple(AdjacentPair(a=a, b=b, reason=ALWAYS) for a, b in touching.pairs)
-        notes.append(f"{len(found)} of {len(pairs)} pairs always touch and are left out")
-        draft = replace(draft, adjacent=draft.adjacent + found, detectors={}, default_detector=NO_DETECTOR)
-        robot = check_robot(draft)
-    return robot, [*notes, "no two links are left that could collide: self-collision is not checked"]
+        draft = replace(draft, adjacent=draft.adjacent + found)
+    return check_robot(draft), [*notes, "no two links are left that could collide: self-collision is not checked"]
 
 
 def _read_disabled(skeleton: Skeleton, components: set[str], srdf: Srdf) -> tuple[tuple[AdjacentPair, ...], list[str]]:

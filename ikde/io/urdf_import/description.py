@@ -94,7 +94,7 @@ def read_description(path: Path) -> Description:
     """Read a URDF file; raises `FileError` with line and name for the first thing that is wrong."""
     file = XmlFile(path)
     root = file.root
-    if path.suffix == ".xacro" or any(element.tag.startswith("xacro:") for element in root.children):
+    if path.suffix.lower() == ".xacro" or any(element.tag.startswith("xacro:") for element in root.children):
         expanded = path.name.removesuffix(".xacro").removesuffix(".urdf")
         raise FileError(path, f"this is xacro, not URDF; expand it first: xacro {path.name} > {expanded}.urdf")
     if root.tag != "robot":

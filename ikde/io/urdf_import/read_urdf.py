@@ -9,9 +9,9 @@ from ikde.io.srdf import Srdf, read_srdf
 from ikde.io.urdf_import.assemble import add_spheres, assemble, free_home, set_home
 from ikde.io.urdf_import.chain import choose_tool, find_tree
 from ikde.io.urdf_import.cover_links import cover_links
-from ikde.io.urdf_import.description import read_description
+from ikde.io.urdf_import.description import Description, read_description
 from ikde.io.urdf_import.frames import build_skeleton
-from ikde.io.urdf_import.held import find_held
+from ikde.io.urdf_import.held import HeldJoint, find_held
 from ikde.io.urdf_import.imported import ImportedUrdf
 from ikde.io.urdf_import.options import Base, ImportOptions
 from ikde.model.robot import Robot
@@ -103,5 +103,15 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         links=tuple(covered[link].report for link in covered),
         home=home,
         is_home_free=is_free,
-        warnings=(*description.warnings, *skeleton.warnings, *notes),
+        warnings=(*description.warnings, *skeleton.warnings, *_list_followers(description, held), *notes),
     )
+
+
+def _list_followers(description: Description, held: Mapping[str, HeldJoint]) -> list[str]:
+    """Frozen joints that would move with one of the chain."""
+    mimics = {name: joint.mimic.joint for name in held if (joint := description.joints[name]).mimic}
+    return [
+        f"{name} mimics {master}, which moves: what it carries is checked where it is frozen"
+        for name, master in mimics.items()
+        if master in description.joints and master not in held
+    ]

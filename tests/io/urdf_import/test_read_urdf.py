@@ -91,6 +91,15 @@ def test_the_account_says_what_was_decided(tmp_path):
     assert read_urdf(write(tmp_path, ARM)).tool_was_chosen
 
 
+def test_a_frozen_joint_that_would_move_with_the_chain_is_a_warning(tmp_path):
+    text = extend(FINGERS.replace('mimic joint="grip"', 'mimic joint="shoulder"'))
+    assert read_urdf(write(tmp_path, text), ImportOptions(tool="tip")).warnings == (
+        "grip_mimic mimics shoulder, which moves: what it carries is checked where it is frozen",
+    )
+    both = read_urdf(write(tmp_path, text), ImportOptions(tool="tip", hold={"shoulder": 0.1}))
+    assert not [warning for warning in both.warnings if "mimics" in warning]
+
+
 def test_the_short_call_gives_the_same_robot(tmp_path):
     path = write(tmp_path, extend(FINGERS))
     robot = import_urdf(path, tool="tip", base="omni", hold={"grip": 0.02}, protrusion_m=0.01)
@@ -129,6 +138,8 @@ def test_a_tool_that_nothing_moves_is_refused(tmp_path):
 def test_a_urdf_is_a_robot_wherever_one_is_named(tmp_path):
     path = write(tmp_path, ARM)
     assert ikde.load_robot(path).joint_names == ikde.load_robot(str(path)).joint_names == ("shoulder", "slide")
+    assert ikde.load_robot(path.rename(tmp_path / "ARM.URDF")).joint_names == ("shoulder", "slide")
+    path = write(tmp_path, ARM)
     with pytest.raises(IkdeError, match="no such file"):
         ikde.load_robot("nowhere.urdf")
     run = {"robot": str(path), "targets": {"inline": [{"position": [0.3, 0.1, 0.8]}]}}
