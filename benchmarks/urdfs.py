@@ -87,8 +87,9 @@ def run_pinocchio(model, values, asked):
     data, q = model.createData(), pin.neutral(model)
     for name in model.names[1:]:
         joint = model.joints[model.getJointId(name)]
-        if name == "root_joint":  # a base: x, y, and the heading as a point on a circle
-            x, y, yaw = (values[f"base_{key}"] for key in ("x", "y", "yaw"))
+        if joint.nq == 4:  # a base: x, y, and the heading as a point on a circle
+            base = "base" if name == "root_joint" else name
+            x, y, yaw = (values[f"{base}_{key}"] for key in ("x", "y", "yaw"))
             q[:4] = [x, y, np.cos(yaw), np.sin(yaw)]
         else:
             value = values[name]
@@ -96,10 +97,11 @@ def run_pinocchio(model, values, asked):
     pin.framesForwardKinematics(model, data, q)
     Ts_world = {link: data.oMf[model.getFrameId(link, pin.BODY)].homogeneous for link in links}
     J = pin.computeFrameJacobian(model, data, q, model.getFrameId(tool, pin.BODY), pin.LOCAL)
-    if "base_x" in joints:  # its speeds are along the base's own axes
+    if joints[0].endswith("_x"):  # its speeds are along the base's own axes
         J[:, :2] = J[:, :2] @ np.array([[q[2], q[3]], [-q[3], q[2]]])
-        return Ts_world, J[:, : len(joints)]
-    return Ts_world, J[:, [model.joints[model.getJointId(name)].idx_v for name in joints]]
+    columns = [0, 1, 2] if joints[0].endswith("_x") else []
+    columns += [model.joints[model.getJointId(name)].idx_v for name in joints[len(columns) :]]
+    return Ts_world, J[:, columns]
 
 
 def try_robot(path, rng):

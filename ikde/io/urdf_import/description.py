@@ -95,8 +95,9 @@ def read_description(path: Path) -> Description:
     file = XmlFile(path)
     root = file.root
     if path.suffix.lower() == ".xacro" or any(element.tag.startswith("xacro:") for element in root.children):
-        expanded = path.name.removesuffix(".xacro").removesuffix(".urdf")
-        raise FileError(path, f"this is xacro, not URDF; expand it first: xacro {path.name} > {expanded}.urdf")
+        stem = path.name.removesuffix(".xacro").removesuffix(".urdf")
+        target = f"{stem}{'_expanded' if path.suffix.lower() == '.urdf' else ''}.urdf"
+        raise FileError(path, f"this is xacro, not URDF; expand it first: xacro {path.name} > {target}")
     if root.tag != "robot":
         raise file.error(f"expected <robot>, got <{root.tag}>", root)
     warnings: list[str] = []
@@ -254,12 +255,14 @@ def _read_axis(file: XmlFile, joint: Element, kind: str, *where: str) -> Floats:
 def _read_limits(
     file: XmlFile, joint: Element, kind: str, name: str
 ) -> tuple[float, float, float | None, float | None]:
-    """Lower, upper, speed and effort. In a <limit>, ends that are not given are 0, as URDF says."""
+    """Lower, upper, speed and effort. In a <limit>, ends that are not given are 0, as URDF says; a plane has both."""
     limit, where = joint.find("limit"), ("joint", name, "limit")
     if limit is None:
         return -inf, inf, None, None
     lower, upper = -inf, inf
     if kind in ("revolute", "prismatic"):
+        lower, upper = (file.read_number(limit, key, 0.0, *where) for key in ("lower", "upper"))
+    if kind == "planar" and {"lower", "upper"} <= set(limit.attributes):
         lower, upper = (file.read_number(limit, key, 0.0, *where) for key in ("lower", "upper"))
     if lower > upper:
         raise file.error(f"limits are upside down: upper {upper:g} is below lower {lower:g}", limit, *where)

@@ -92,16 +92,19 @@ def _add_root(skeleton: Skeleton, root: str, tool: str, options: ImportOptions) 
         else:
             skeleton.add(_name_frame(skeleton, root, tool), WORLD, np.zeros(3), np.eye(3))
         return
-    name = _name_frame(skeleton, root, tool)
+    name, reach_m = _name_frame(skeleton, root, tool), options.base_reach_m
     x, y, yaw = (reserve_name(f"base_{key}", skeleton.joint_names) for key in ("x", "y", "yaw"))
-    _add_plane(skeleton, (x, y, yaw), name, (WORLD, np.zeros(3), np.eye(3)), (np.eye(3), options.base_reach_m))
+    _add_plane(skeleton, (x, y, yaw), name, (WORLD, np.zeros(3), np.eye(3)), (np.eye(3), (-reach_m, reach_m)))
 
 
 def _add_planar(skeleton: Skeleton, name: str, parent: str, joint: UrdfJoint, options: ImportOptions) -> None:
     """A planar joint: two slides in the plane, and a turn about its normal."""
     x, y, yaw = (reserve_name(f"{joint.name}_{key}", skeleton.joint_names) for key in ("x", "y", "yaw"))
     place = (parent, joint.p_parent_child, joint.R_parent_child)
-    _add_plane(skeleton, (x, y, yaw), name, place, (rotation_with_z(joint.axis), options.base_reach_m))
+    reach_m = options.base_reach_m
+    is_given = joint.lower < joint.upper and max(-joint.lower, joint.upper) <= MAX_MAGNITUDE
+    limits = (joint.lower, joint.upper) if is_given else (-reach_m, reach_m)
+    _add_plane(skeleton, (x, y, yaw), name, place, (rotation_with_z(joint.axis), limits))
     for part in (x, y, yaw):
         skeleton.notes[part] = f"of the planar joint {joint.name}"
 
@@ -111,12 +114,13 @@ def _add_plane(
     names: tuple[str, str, str],
     frame: str,
     place: tuple[str, Floats, Floats],
-    plane: tuple[Floats, float],
+    plane: tuple[Floats, tuple[float, float]],
 ) -> None:
     """Joints `names` that move `frame` in a plane: x, y [m] and the turn about its normal, the columns of a matrix."""
-    (x, y, yaw), (parent, p, R), (axes, reach_m) = names, place, plane
+    (x, y, yaw), (parent, p, R), (axes, (lower, upper)) = names, place, plane
     first, second = (reserve_name(name, skeleton.frame_names) for name in (x, y))
-    slides = [Joint(name=name, kind="prismatic", lower=-reach_m, upper=reach_m, home=0.0) for name in (x, y)]
+    home = _choose_home(lower, upper)
+    slides = [Joint(name=name, kind="prismatic", lower=lower, upper=upper, home=home) for name in (x, y)]
     skeleton.add(first, parent, p, R, (slides[0], axes[:, 0]))
     skeleton.add(second, first, np.zeros(3), np.eye(3), (slides[1], axes[:, 1]))
     turn = Joint(name=yaw, kind="continuous", home=0.0)

@@ -122,6 +122,15 @@ def test_a_planar_joint_is_two_slides_and_a_turn(tmp_path):
     np.testing.assert_allclose(np.cross(sideways[1] - sideways[0], sideways[2] - sideways[0]), [0, 1, 0], atol=1e-15)
 
 
+def test_a_planar_joint_with_limits_keeps_them(tmp_path):
+    plane = joint("root", "planar", "ground", "base_link", '<limit lower="1" upper="2"/>')
+    robot = load(tmp_path, extend('<link name="ground"/>' + plane)).robot
+    assert (robot.lower[:2].tolist(), robot.upper[:2].tolist()) == ([1, 1], [2, 2])
+    assert robot.home[:3].tolist() == [1.5, 1.5, 0]
+    zero = load(tmp_path, extend('<link name="ground"/>' + plane.replace('"1"', '"0"').replace('"2"', '"0"'))).robot
+    assert zero.upper[:2].tolist() == [100, 100]
+
+
 def test_frozen_joints_are_part_of_what_they_connect(tmp_path):
     text = extend(FINGERS)
     imported = load(tmp_path, text, tool="tip", hold={"shoulder": 0.7, "grip": 0.04})
