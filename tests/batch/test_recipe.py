@@ -7,6 +7,7 @@ import numpy as np
 
 import ikde
 from ikde.batch.recipe import array_digest, as_plain, digest, ikde_version, robot_digest
+from ikde.model.robot import Inertia
 from ikde.solver.settings import SolveSettings
 from tests.endless_robot import ENDLESS
 from tests.robot_files import load_text
@@ -27,8 +28,11 @@ def test_the_order_of_keys_does_not_matter_and_the_last_bit_does():
 def test_a_robot_is_its_numbers_and_not_its_title(qiao):
     assert robot_digest(qiao) == robot_digest(replace(qiao, title="another", provenance={}, wheels=None))
     assert robot_digest(qiao) == robot_digest(replace(qiao, adjacent=(), neighbours=()))
-    fast = tuple(replace(joint, max_speed=1.0, max_acceleration=2.0) for joint in qiao.joints)
+    fast = tuple(replace(joint, max_speed=1.0, max_acceleration=2.0, max_effort=3.0) for joint in qiao.joints)
     assert robot_digest(qiao) == robot_digest(replace(qiao, joints=fast))
+    inertia = Inertia(mass_kg=1.0, p_frame_com=np.zeros(3), I_com_frame=np.eye(3))
+    heavy = replace(qiao, inertias={qiao.frames[0].name: inertia}, drive="omnidirectional")
+    assert robot_digest(qiao) == robot_digest(heavy)
     wider = (replace(qiao.joints[0], upper=np.nextafter(qiao.joints[0].upper, np.inf)), *qiao.joints[1:])
     assert robot_digest(qiao) != robot_digest(replace(qiao, joints=wider))
     moved = replace(qiao.frames[5], p_parent_frame=np.nextafter(qiao.frames[5].p_parent_frame, np.inf))

@@ -14,6 +14,7 @@ from ikde.model.base_motion import (
     find_planar_base,
     find_wheels,
     step_base,
+    usual_drive,
     wheel_speeds,
 )
 from ikde.model.robot import SphereRow, Wheels
@@ -110,3 +111,9 @@ def test_wheels():
     left, right = wheel_speeds(wheels, np.array(0.3), np.array(0.5))
     assert left == pytest.approx((0.3 - 0.3 * 0.5) / 0.08)
     assert right == pytest.approx((0.3 + 0.3 * 0.5) / 0.08)
+
+
+def test_a_robot_says_itself_how_its_base_drives(qiao):
+    assert usual_drive(qiao) == "differential"
+    assert usual_drive(replace(qiao, drive="omnidirectional")) == "omnidirectional"
+    assert usual_drive(replace(ikde.load_robot("ur5"), drive="differential")) == "omnidirectional"  # it has no base

@@ -8,7 +8,7 @@ import pytest
 
 import ikde
 from ikde.model.plain_data import decode, encode
-from ikde.model.robot import Detector, Robot
+from ikde.model.robot import Detector, Inertia, Robot
 
 
 def through_json(kind, value):
@@ -45,3 +45,14 @@ def test_what_may_be_missing_comes_back_missing():
 def test_anything_else_is_an_error():
     with pytest.raises((KeyError, TypeError)):
         decode(Robot, {"name": "ur5"})
+
+
+def test_masses_efforts_and_drives_come_back():
+    inertia = Inertia(mass_kg=2.0, p_frame_com=np.array([0.1, 0.2, 0.3]), I_com_frame=np.diag([1.0, 2.0, 3.0]))
+    robot = ikde.load_robot("ur5")
+    joint = replace(robot.joints[0], max_effort=150.0)
+    heavy = replace(robot, joints=(joint, *robot.joints[1:]), inertias={"forearm": inertia}, drive="omnidirectional")
+    again = through_json(Robot, heavy)
+    assert (again.drive, again.joints[0].max_effort) == ("omnidirectional", 150.0)
+    assert encode(again.inertias["forearm"]) == encode(inertia)
+    assert again.inertias["forearm"].I_com_frame.shape == (3, 3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
-from ikde.model.robot import AdjacentPair, Wheels
+from ikde.model.robot import AdjacentPair, Inertia, Wheels
 from ikde.model.validate import NON_ADJACENT, check_robot
 from tests.model.drafts import make_draft, make_joint, make_row, reject
 from tests.random_robots import make_frame
@@ -138,7 +138,7 @@ def test_home_outside_the_limits():
     reject("home is outside the limits", "joints", "turn", "home", joints=joints)
 
 
-@pytest.mark.parametrize("key", ["max_speed", "max_acceleration"])
+@pytest.mark.parametrize("key", ["max_speed", "max_acceleration", "max_effort"])
 @pytest.mark.parametrize("value", [0.0, -1.0, np.inf, np.nan])
 def test_a_joint_that_may_not_move_at_all_or_at_any_pace(key, value):
     joints = (make_joint("slide", kind="prismatic"), make_joint("turn", **{key: value}))
@@ -358,3 +358,30 @@ def unchecked(robot):
 def test_a_base_may_have_wheels_or_not(qiao, unwheeled):
     assert check_robot(unchecked(qiao)).wheels == Wheels(radius_m=0.1, half_track_m=0.259)
     assert check_robot(unchecked(unwheeled)).wheels is None
+
+
+def test_a_drive_needs_a_base_and_is_one_of_two(qiao):
+    reject("a drive needs a base that slides along x", "drive", drive="omnidirectional")
+    with pytest.raises(InputError, match="drive: expected one of differential, omnidirectional"):
+        check_robot(unchecked(replace(qiao, drive="legs")))
+    assert check_robot(unchecked(replace(qiao, drive="omnidirectional"))).drive == "omnidirectional"
+
+
+@pytest.mark.parametrize(
+    ("changes", "where", "message"),
+    [
+        ({"mass_kg": -1.0}, "mass", "expected a finite mass of at least 0 kg"),
+        ({"mass_kg": np.nan}, "mass", "expected a finite mass of at least 0 kg"),
+        ({"p_frame_com": np.array([0.0, np.nan, 0.0])}, "com", "expected finite numbers, at most 100000 m from 0"),
+        ({"I_com_frame": np.full((3, 3), np.inf)}, "inertia", "expected finite numbers"),
+    ],
+)
+def test_masses_are_finite(changes, where, message):
+    good = {"mass_kg": 1.0, "p_frame_com": np.zeros(3), "I_com_frame": np.eye(3)}
+    assert check_robot(make_draft(inertias={"a": Inertia(**good)})).inertias["a"].mass_kg == 1.0
+    reject(message, "inertias", "a", where, inertias={"a": Inertia(**{**good, **changes})})
+
+
+def test_masses_stand_at_frames():
+    inertia = Inertia(mass_kg=1.0, p_frame_com=np.zeros(3), I_com_frame=np.eye(3))
+    reject("no frame is called 'toool' (did you mean 'tool'?)", "inertias", "toool", inertias={"toool": inertia})
