@@ -142,7 +142,7 @@ def main():
                 continue
             rows.append(try_arm(path, tool, options, asked.poses))
         except IkdeError as error:
-            rows.append({"file": path.name, "refused": str(error)})
+            rows.append({"file": path.name, "refused": getattr(error, "message", str(error))})
         print(" ".join(f"{key}={value}" for key, value in rows[-1].items()), flush=True)
     OUT.write_text(json.dumps(rows, indent=1) + "\n")
 
