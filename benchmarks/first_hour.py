@@ -2,9 +2,9 @@
 
     python benchmarks/first_hour.py
 
-Clones this checkout as it is committed and runs what docs/first_hour.md shows, word for word and in order; then, but for
-the installation, once more, with what the first time has compiled. Wall and process (user + system) seconds of each command. A
-child that still compiles in the background when its parent has ended is not waited for. Writes
+Clones this checkout as it is committed and runs what docs/first_hour.md shows, word for word and in order; then, but
+for the installation, once more, with what the first time has compiled. Wall and process (user + system) seconds of each
+command. A child that still compiles in the background when its parent has ended is not waited for. Writes
 benchmarks/results/first_hour.json.
 """
 
@@ -84,7 +84,7 @@ def main() -> None:
         clone = Path(scratch) / "ikde"
         subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
         rows = measure(clone)
-    table = Table("command", ">first wall s", ">process s", ">again wall s", ">process s")
+    table = Table("command", "wall s", "process s", "again, wall s", "process s")
     for row in rows:
         times = [row.get(when, {}).get(key) for when in ("first", "again") for key in ("wall_s", "process_s")]
         table.add_row(row["command"], *("" if t is None else f"{t:.1f}" for t in times))
