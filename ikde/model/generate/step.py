@@ -44,7 +44,7 @@ def write_step(writer: Writer, robot: RobotArrays, kind: str) -> Step:
 
 
 def _write_turn(writer: Writer, tool: Pose) -> tuple[Value, list[Value]]:
-    """Axis * 2 sin(angle / 2) of S = R_target R_tool^T, as in `damped.compute_turn`, and its size."""
+    """Axis * 2 sin(angle / 2) of S = R_target R_tool^T, as in `damped.compute_rotation`, and its size."""
     columns = [(tool.column(j), (f"m0{j}", f"m1{j}", f"m2{j}")) for j in range(3)]
     products = [product for a, b in columns for product in zip((0.25,) * 3, a, b, strict=True)]
     quarter = text(writer.sum("quarter", *products, (0.25,)))
