@@ -169,7 +169,7 @@ def _widen(problem: Problem) -> tuple[Floats, Floats]:
 
 def _name_cone(problem: Problem, target: Target) -> str:
     """What the joints keep, however they turn, and the target asks for otherwise."""
-    cone = find_bounds(problem.robot, problem.lower, problem.upper).turning.find_worst(target)
+    cone = find_bounds(problem.robot, problem.lower, problem.upper).orientation.find_worst(target)
     direction = TOOL_AXES.get(cone.tool, f"direction {_numbers(cone.tool)}")
     angles = " to ".join(dict.fromkeys(f"{angle:.3f}" for angle in (cone.low, cone.high)))
     return f"the tool's {direction} stays {angles} rad from {_numbers(cone.world)} of the world"
