@@ -95,7 +95,7 @@ def _note_compile(plan: "Batch") -> AbstractContextManager[Any]:
 
 
 def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
-    """Run with a progress bar; Ctrl-C says how to go on."""
+    """Run with a progress bar; Ctrl-C says how to resume."""
     from ikde.batch.parts import GO_ON
     from ikde.batch.run import run_batch
 

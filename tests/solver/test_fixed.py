@@ -157,7 +157,7 @@ def test_machine_code_and_python_see_the_same_bits(qiao, rng, monkeypatch):
     targets = targets_near(qiao, np.array([q, free_q(qiao, rng), free_q(qiao, rng)]), rng)
     asked = {"freeze": hold(qiao, q), "bulk": BulkOptions(explain=False, verify="none")}
     plain = ikde.solve_many(qiao, targets, **asked)
-    monkeypatch.setattr("ikde.solver.fixed.FEW", 0)
+    monkeypatch.setattr("ikde.solver.fixed.MAX_PLAIN", 0)
     compiled = ikde.solve_many(qiao, targets, **asked)
     for name in (
         "q",

@@ -287,7 +287,7 @@ def test_pieces_and_their_parts_do_not_change_the_bits(qiao, rng, monkeypatch, p
     whole = search(problem, targets, seed=3, streams=range(9, 35), threads=1)
     assert whole.counts[:, COLLIDING].any()
     monkeypatch.setattr(module, "PIECE", piece)
-    monkeypatch.setattr(module, "FEWEST", fewest)
+    monkeypatch.setattr(module, "MIN_TARGETS", fewest)
     found = search(problem, targets, seed=3, streams=range(9, 35), threads=threads)
     assert bits(found) == bits(whole)
     assert found.metrics.clearance_m.tobytes() == whole.metrics.clearance_m.tobytes()
