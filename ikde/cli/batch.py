@@ -78,7 +78,7 @@ def _preview(
     if out is not None:
         check_folder(out, plan, overwrite=overwrite)
     if cluster["dask"] is not None:
-        print_note("a dry run solves its sample on this machine: the cluster is left alone")
+        print_note("a dry run solves its sample on this machine: the cluster is not used")
     with working("solving a sample ..."), _note_compile(plan):
         preview = preview_batch(plan, threads=threads)
     if as_json:

@@ -131,7 +131,7 @@ def test_a_dry_run_leaves_the_cluster_alone_and_says_so(cli, spec, monkeypatch):
     outcome = cli("batch", spec, "--dry-run", "--dask", "local", "--workers", "2")
     assert (outcome.code, outcome.err) == (
         0,
-        "a dry run solves its sample on this machine: the cluster is left alone\n",
+        "a dry run solves its sample on this machine: the cluster is not used\n",
     )
 
 

@@ -382,7 +382,7 @@ def test_weights_decide_what_moves_and_the_motion_is_stated(cli, qiao):
     light = cli(*SOLVE, "--near", text, "--json").data
     assert abs(moved[0]) < abs(light["q"]["d_x"] - near["d_x"])
     assert f"{light['motion']:.6g} from near" in cli(*SOLVE, "--near", text).out
-    assert "from home, as weighed" in cli(*SOLVE).out
+    assert "from home, weighted" in cli(*SOLVE).out
 
 
 def test_an_order_that_is_none_is_refused_also_of_one_solution(refuse):
