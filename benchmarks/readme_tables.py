@@ -1,4 +1,4 @@
-"""Write the tables of README.md and of docs/ from what was recorded: nobody types a figure.
+"""Write the tables of README.md and of docs/ from what was recorded: no figure is typed.
 
 python benchmarks/readme_tables.py
 """

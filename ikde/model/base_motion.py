@@ -1,7 +1,7 @@
 """Bases that drive in the plane: which joints drive one, how it moves between samples, its twist and its wheels.
 
 `differential`: two driven wheels, whether the robot's file describes them or not. Between samples the speeds v and
-omega stay, so the base runs along an exact arc and never slides sideways [Qiao2022, eq. 5]. `omnidirectional`: x, y and
+omega stay, so the base runs along an exact arc and never slips sideways [Qiao2022, eq. 5]. `omnidirectional`: x, y and
 heading run linearly. So does every joint of an arm.
 """
 

@@ -201,7 +201,7 @@ def _make_closest(data: Sensitivity) -> Table:
         ours("largest distance of four rates from the print", "points", _format_distance),
         caption="The settings that come closest to the print",
         note=f"A rate's interval is up to ±{fixed(widest, 1)} points wide, and all rows share their random "
-        "streams: settings that differ by less cannot be told apart.",
+        "streams: settings that differ by less cannot be distinguished.",
     )
 
 

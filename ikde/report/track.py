@@ -107,8 +107,8 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
     yield "largest error in total", f"{_mm(graded.total_error_m)} mm", ""
     if trajectory.path.orientation != "free":
-        turn = graded.largest_orientation_error_rad
-        yield "largest orientation error", f"{_tiny(turn)} rad", f"{limits.orientation_error_rad:g} rad"
+        angle = graded.largest_orientation_error_rad
+        yield "largest orientation error", f"{_tiny(angle)} rad", f"{limits.orientation_error_rad:g} rad"
     yield from _list_limits(motion)
     yield from _list_clearance(motion)
     if len(trajectory.deviation_m):

@@ -185,9 +185,9 @@ def _numbers(vector: Sequence[float]) -> str:
 
 def _leave_ranges(problem: Problem, q: Floats) -> Bools:
     """Which joints of `q` [N] stand outside their ranges, whatever whole turns are taken [N]."""
-    lower, upper, turn = problem.lower, problem.upper, np.where(problem.robot.is_prismatic, 0.0, 2.0 * np.pi)
-    turned = q + turn * np.ceil((lower - q) / (2.0 * np.pi))
-    return ~((lower <= q) & (q <= upper)) & ~((lower <= turned) & (turned <= upper))
+    lower, upper, period = problem.lower, problem.upper, np.where(problem.robot.is_prismatic, 0.0, 2.0 * np.pi)
+    shifted = q + period * np.ceil((lower - q) / (2.0 * np.pi))
+    return ~((lower <= q) & (q <= upper)) & ~((lower <= shifted) & (shifted <= upper))
 
 
 def _find_fewest(names: Names, helps: Callable[[Names], bool]) -> list[Names]:

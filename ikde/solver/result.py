@@ -207,7 +207,7 @@ class SolveResult:
     @cached_property
     def solve_seconds(self) -> float:
         """Wall time of this search, without compilation; in bulk, very short searches share a call and its time
-        evenly."""
+        in equal parts."""
         return self._parts[5]
 
     @cached_property
