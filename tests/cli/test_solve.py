@@ -283,7 +283,7 @@ def test_a_robot_without_a_detector_is_told_once(cli, options):
     assert (outcome.code, outcome.err) == (0, "ikde: self-collision is not checked: qiao2021_dh has no spheres\n")
 
 
-def test_who_asks_for_no_detector_is_not_told(cli):
+def test_a_detector_that_is_switched_off_is_not_missed(cli):
     assert cli(*SOLVE, "--detector", "none").err == ""
     assert cli(*SOLVE, "--robot", "qiao2021_dh", "--detector", "none").err == ""
 

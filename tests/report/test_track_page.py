@@ -75,7 +75,7 @@ def test_without_a_detector_the_page_says_not_checked(qiao):
     assert "certified" not in text
 
 
-def test_it_says_who_measured(page):
+def test_it_says_what_measured(page):
     assert page.sections[0].blocks[0].caption == "Measured by plain numpy, not by the kernels that search"
     assert "differential drive" in page.subtitle
 

@@ -126,7 +126,7 @@ def test_many_are_told_what_each_is_told_alone(qiao, rng, explain):
     assert rows.reached.tolist() == [True, False, False]
 
 
-def test_a_colliding_row_that_nobody_looked_into_names_its_pair_whatever_the_time(qiao, rng):
+def test_a_colliding_row_that_was_not_diagnosed_names_its_pair_whatever_the_time(qiao, rng):
     q = colliding_q(qiao, rng)
     timed = ikde.SolveSettings(timeout_s=1e-9)
     asked = {"freeze": hold(qiao, q), "bulk": BulkOptions(explain=False, verify="none")}
