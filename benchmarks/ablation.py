@@ -121,7 +121,7 @@ def list_variants() -> list[Variant]:
         Variant("tables instead of generated code", seeds="tables"),
         Variant("every test: nothing implied or proved", every_test=True),
         Variant("seeds: from around the tool pose, base not set", seeds="pool"),
-        Variant("seeds: drawn evenly, not from every cell alike", seeds="even"),
+        Variant("seeds: drawn uniformly from the pool, not from every cell alike", seeds="even"),
         Variant("seeds: uniform", seeds="uniform"),
         Variant("limits by clipping, no active set", lambda text: FREE.sub(r"\1 = 1.0", text)),
         Variant("sine and cosine of libm", lambda text: text.replace(TRIG, LIBM)),

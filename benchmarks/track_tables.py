@@ -8,6 +8,7 @@ from ikde.report.numbers import significant
 from ikde.report.track_comparison import FIGURES, list_cells
 
 Record = dict[str, Any]
+FAULTS = ("ended early", "off the path", "collided", "beyond a limit")
 
 
 def format_methods(record: Record, drives: Sequence[str]) -> str:
@@ -15,7 +16,8 @@ def format_methods(record: Record, drives: Sequence[str]) -> str:
     tracks = [one for one in record["tracks"] if one["drive"] in drives]
     seeds = len({run["seed"] for run in tracks[0]["runs"]})
     base = ["base"] if len(drives) > 1 else []
-    heads = ["path", *base, "method", *(column.head for column in FIGURES), "dead ends"]
+    starts = tracks[0]["dead_ends"]["starts"]
+    heads = ["path", *base, "method", *(column.head for column in FIGURES), f"dead ends of {starts}"]
     lines = [
         "The paper's tool paths, 500 samples of 20 ms, by its two methods and by `continuation`: counts and extremes "
         f"over {seeds} seeds, from where `continuation` begins, graded by plain numpy; times are of the first seed, "
@@ -31,7 +33,7 @@ def format_methods(record: Record, drives: Sequence[str]) -> str:
         ends = one["dead_ends"]
         for method in dict.fromkeys(run["method"] for run in one["runs"]):
             runs = [run for run in one["runs"] if run["method"] == method]
-            last = f"{ends[method]} of {ends['starts']}" if method in ends else "–"
+            last = f"{ends[method]}" if method in ends else "–"
             lines.append(
                 make_row(name_task(one["name"]), *([one["drive"]] if base else []), method, *list_cells(runs), last)
             )
@@ -80,12 +82,15 @@ def format_stops(record: Record) -> str:
 
 def format_peers_along(record: Record) -> str:
     """The same paths followed by ikde, Pink and mink, a row a path and way."""
-    heads = ("path", "way", "reached", "within 1 mm", "largest error, RMS [mm]", "[rad]", "limits broken", "colliding")
+    heads = ("path", "way", "reached", "within 1 mm", "limits broken", "colliding")
+    errors = ("largest error [mm]", "RMS [mm]", "largest error [rad]")
+    steps = ("clearance at samples [mm]", "between [mm]", "largest step [mm]", "[deg]")
+    times = ("a sample, median [ms]", "p99 [ms]", "max [ms]")
     lines = [
         "*Reached*: within 0.001 mm along each axis and 1e-4 rad; errors are of the worst axis. Times are of one "
-        f"sample, its median over {record['options']['rounds']} rounds: median / p99 / max over the samples.",
+        f"sample, its median over {record['options']['rounds']} rounds, over the samples.",
         "",
-        *make_head([*heads, "clearance at samples, between [mm]", "largest step [mm], [deg]", "a sample [ms]"]),
+        *make_head((*heads, *errors, *steps, *times)),
     ]
     for task in record["tasks"].values():
         lines += (make_row(name_task(task["name"]), name, *list_way(way)) for name, way in task["ways"].items())
@@ -98,34 +103,34 @@ def list_way(way: Record) -> tuple[str, ...]:
     return (
         f"{way['reached_points']}",
         f"{way['points_within_1_mm']}",
-        ", ".join(write_small(max(way[f"{kind}_axis_errors_mm"])) for kind in ("largest", "rms")),
-        write_small(way["largest_rotation_error_rad"]) if way["largest_rotation_error_rad"] else "–",
         f"{way['limit_violations']}",
         f"{way['colliding_samples']}",
-        f"{way['smallest_clearance_mm']:.1f}, {'–' if certified is None else f'{certified:.1f}'}",
-        f"{1e3 * way['largest_jump_m']:.1f}, {degrees:.1f}",
-        " / ".join(significant(way["ms"][key]) for key in ("median", "p99", "max")),
+        *(write_small(max(way[f"{kind}_axis_errors_mm"])) for kind in ("largest", "rms")),
+        write_small(way["largest_rotation_error_rad"]) if way["largest_rotation_error_rad"] else "–",
+        f"{way['smallest_clearance_mm']:.1f}",
+        "–" if certified is None else f"{certified:.1f}",
+        f"{1e3 * way['largest_jump_m']:.1f}",
+        f"{degrees:.1f}",
+        *(significant(way["ms"][key]) for key in ("median", "p99", "max")),
     )
 
 
 def format_starts(record: Record) -> str:
-    """From how many random starts each way gets to the end; and why not from the others."""
+    """From how many random starts each way gets to the end, and what the others run into."""
     tasks = record["starts"]
+    names = [name_task(record["tasks"][task]["name"]) for task in tasks]
+    starts = next(iter(tasks.values()))["starts"]
     lines = [
-        "From random free configurations at the first pose: how many are followed to the end within 1 mm and 0.01 rad, "
-        "without a collision or a broken limit.",
+        f"From {starts} random free configurations at the first pose: how many are followed to the end within 1 mm and "
+        "0.01 rad, without a collision or a broken limit, and what the others of all tasks run into.",
         "",
-        *make_head(["way", *(name_task(record["tasks"][task]["name"]) for task in tasks)]),
+        *make_head(["way", *names, *FAULTS]),
     ]
     for name in next(iter(tasks.values()))["ways"]:
-        lines.append(make_row(name, *(write_ends(row["starts"], row["ways"][name]) for row in tasks.values())))
+        ways = [row["ways"][name] for row in tasks.values()]
+        faults = (sum(way.get(fault, 0) for way in ways) for fault in FAULTS)
+        lines.append(make_row(name, *(f"{way.get('followed', 0)}" for way in ways), *(f"{count}" for count in faults)))
     return "\n".join(lines)
-
-
-def write_ends(starts: int, ends: Record) -> str:
-    """How many were followed, and what became of the others."""
-    why = ", ".join(f"{count} {fault}" for fault, count in ends.items() if fault not in ("followed", "seconds"))
-    return f"{ends.get('followed', 0)} of {starts}{f': {why}' if why else ''}"
 
 
 def write_small(value: float) -> str:

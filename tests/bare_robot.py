@@ -1,4 +1,4 @@
-"""An arm on a base that drives in the plane, whose shoulder carries no spheres; and what its spheres do, by hand."""
+"""An arm on a planar base, whose shoulder carries no spheres; and what its spheres do, by hand."""
 
 import numpy as np
 

@@ -42,7 +42,7 @@ def qiao():
 
 @pytest.fixture(scope="session")
 def unwheeled(qiao):
-    """The same robot, but nobody told of its wheels."""
+    """The same robot, but without the geometry of its wheels."""
     return replace(qiao, wheels=None)
 
 

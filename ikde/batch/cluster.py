@@ -21,7 +21,7 @@ SolveTasks = Callable[[Iterable[Task]], Generator[Answer]]
 SILENT = logging.CRITICAL + 1
 DEAF_TO_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"  # for workers that start later
 TASKS_A_THREAD = 3  # in flight: enough that no worker waits, few enough that memory stays flat
-TASKS_AT_LEAST = 8  # so that a cluster that grows with its work sees some
+MIN_TASKS = 8  # so that a cluster that grows with its work sees some
 TRIES = 5  # times the failures that the scheduler allows by itself
 PATIENCE = "10s"  # for a scheduler to answer
 SETTINGS = {
@@ -155,7 +155,7 @@ def _exchange(distributed: Any, client: Any, tasks: Iterator[Task]) -> Generator
 
 def _capacity(client: Any) -> int:
     """Tasks that may be in flight now: workers come and go."""
-    return max(TASKS_AT_LEAST, TASKS_A_THREAD * sum(client.nthreads().values()))
+    return max(MIN_TASKS, TASKS_A_THREAD * sum(client.nthreads().values()))
 
 
 def _take(distributed: Any, future: Any, task: Task) -> Answer:

@@ -137,13 +137,13 @@ def _words_and_codes(words: Sequence[str | None]) -> tuple[list[str], list[int]]
 def _target(rows: SolveResults) -> Columns:
     """What was asked for. Of an axis target only the quaternion's z axis counts; a position target has none."""
     targets, quats = rows.targets, np.zeros((len(rows), 4))
-    turned = targets.kind != POSITION
-    if turned.any():
-        quats[turned] = quat_wxyz_from_rotation(targets.R_world_tool[turned])
+    oriented = targets.kind != POSITION
+    if oriented.any():
+        quats[oriented] = quat_wxyz_from_rotation(targets.R_world_tool[oriented])
     return (
         {"target_kind": _coded(targets.kind, KINDS)}
         | {f"target_{axis}_m": pa.array(targets.p_world_tool[:, k]) for k, axis in enumerate("xyz")}
-        | {f"target_q{axis}": pa.array(quats[:, k], mask=~turned) for k, axis in enumerate("wxyz")}
+        | {f"target_q{axis}": pa.array(quats[:, k], mask=~oriented) for k, axis in enumerate("wxyz")}
     )
 
 

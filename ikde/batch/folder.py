@@ -142,7 +142,7 @@ def _lock(folder: Path) -> Iterator[None]:
         except BlockingIOError:
             raise FileError(folder, f"process {file.read(20) or 'another'} is writing this run") from None
         if not re.fullmatch(r"\d*", file.read(20)):
-            raise FileError(folder / LOCK, "is none of ours; expected the number of a process")
+            raise FileError(folder / LOCK, "was not written by ikde; expected the number of a process")
         file.seek(0)
         file.truncate()
         file.write(str(os.getpid()))

@@ -57,7 +57,7 @@ class Spans:
 
     @property
     def left(self) -> int:
-        """Parts that nobody has taken."""
+        """Parts that no thread has taken."""
         return len(self._left)
 
     def take(self) -> list[Part]:

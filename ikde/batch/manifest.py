@@ -124,7 +124,7 @@ def refuse_links(folder: Path, *names: str) -> None:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run; raises `FileError` for a folder that holds none of ours, or links."""
+    """Read the manifest of a run; raises `FileError` for a folder without one, or with links."""
     refuse_links(folder, MANIFEST, SOLUTIONS, TIMING)
     try:
         data = read_json(folder / MANIFEST, follow=False)
@@ -138,7 +138,7 @@ def read_manifest(folder: Path) -> Manifest:
         manifest = TypeAdapter(Manifest).validate_python(data)
     except ValidationError as error:
         where = format_path(error.errors()[0]["loc"]) or "all of it"
-        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours ({where})") from None
+        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} was not written by ikde ({where})") from None
     names = [arm.name for arm in manifest.arms]
     parts = len(names) * -(-manifest.solves // manifest.chunk)
     if (
@@ -146,7 +146,7 @@ def read_manifest(folder: Path) -> Manifest:
         or (manifest.solves, manifest.parts) != (manifest.targets * manifest.repeats, parts)
         or len(set(names)) < len(names)
     ):
-        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} is none of ours, or contradicts itself")
+        raise FileError(folder, f"holds no run of ikde: its {MANIFEST} was not written by ikde, or contradicts itself")
     return manifest
 
 

@@ -16,9 +16,9 @@ def check_options(threads: int | None, dask: str | None, workers: int | None) ->
     if dask is not None:
         check_address(dask)
     if workers is not None and dask != LOCAL:
-        raise InputError("only a local cluster is told how many workers it has (dask local)", ("workers",))
+        raise InputError("the number of workers can be set for a local cluster only (dask local)", ("workers",))
     if threads is not None and dask is not None:
-        raise InputError("workers of a cluster use one thread each; say workers instead", ("threads",))
+        raise InputError("workers of a cluster use one thread each; set workers instead", ("threads",))
 
 
 def check_address(dask: str) -> None:

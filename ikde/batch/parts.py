@@ -18,7 +18,7 @@ PLAIN_NAME = re.compile(r"[A-Za-z0-9_.-]{1,100}")  # arms name files, graders na
 SOLUTIONS, TIMING = "solutions", "timing"
 RECIPE, SEAL = b"ikde_recipe", b"ikde_seal"  # keys in the metadata of a file
 MAX_PARTS = 10**6  # of a run
-GO_ON = "finished parts are intact; run the same command again to go on"
+GO_ON = "finished parts are intact; run the same command again to resume"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ def serialize(table: pa.Table) -> pa.Buffer:
         row_group_size=2**20,
         write_page_checksum=True,
         use_dictionary=words,  # type: ignore[arg-type]
-        write_statistics=False,  # a third of the time, and nobody skips a part by its digits
+        write_statistics=False,  # a third of the time, and no reader skips a part by its digits
     )
     return sink.getvalue()
 

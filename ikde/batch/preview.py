@@ -1,6 +1,6 @@
 """What a batch would do, and how long it would take: measured by solving a sample of each arm, writing nothing.
 
-Compiling is no part of that time: it is done first, told apart, and on the same machine need not be done again.
+Compiling is no part of that time: it is done first, measured apart, and on the same machine need not be done again.
 """
 
 from dataclasses import dataclass, replace
@@ -126,7 +126,7 @@ def _time_arm(batch: Batch, arm: Arm, threads: int, budget: float) -> tuple[ArmP
 
 
 def _take_sample(batch: Batch, arm: Arm, size: int) -> Task:
-    """A task of solves that are spread evenly over all targets."""
+    """A task of solves that are evenly spread over all targets."""
     chosen = [index * batch.source.count // size for index in range(size)]
     names = batch.source.names
     sample = ListSource(

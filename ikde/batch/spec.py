@@ -49,7 +49,7 @@ class GridEntry(Entry):
     counts: GridCounts
     """Points along x, y, z; a single one stands at `from`."""
     orientation: OrientationEntry | None = None
-    """How the tool is turned at every point."""
+    """The orientation of the tool at every point."""
 
 
 class BoxEntry(Entry):
@@ -62,7 +62,7 @@ class BoxEntry(Entry):
     count: Count
     """How many targets."""
     orientation: OrientationEntry | None = None
-    """How the tool is turned at every point."""
+    """The orientation of the tool at every point."""
 
 
 class BallEntry(Entry):
@@ -77,7 +77,7 @@ class BallEntry(Entry):
     filled: bool = True
     """Whether points lie inside (true) or on the surface (false)."""
     orientation: OrientationEntry | None = None
-    """How the tool is turned at every point."""
+    """The orientation of the tool at every point."""
 
 
 class TargetsEntry(Entry):

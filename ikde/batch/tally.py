@@ -84,7 +84,7 @@ class Counting:
             seconds=seconds,
             missed=missed,
             misses=misses,
-            first_missed=solutions.select(_told(solutions)).take(pa.array(first[:MAX_LISTED])),
+            first_missed=solutions.select(_list_shown(solutions)).take(pa.array(first[:MAX_LISTED])),
         )
 
     def _count_solves(self, solutions: pa.Table, reached: Bools, name: str | None = None) -> Counts:
@@ -108,7 +108,7 @@ def _find_missed(solutions: pa.Table, reached: Bools) -> tuple[Ints, Ints, Ints]
     return targets, rows[first], counts
 
 
-def _told(solutions: pa.Table) -> list[str]:
+def _list_shown(solutions: pa.Table) -> list[str]:
     """The columns that a list of what was not reached shows."""
-    told = ("arm", "target", "target_name", "repeat", "stop_reason", "reason")
-    return [name for name in told if name in solutions.column_names]
+    columns = ("arm", "target", "target_name", "repeat", "stop_reason", "reason")
+    return [name for name in columns if name in solutions.column_names]

@@ -50,7 +50,7 @@ def root(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    """Collision-aware inverse kinematics: a search proposes, sphere checks reject, a grader computes everything again.
+    """Collision-aware inverse kinematics for mobile manipulators and arms, in microseconds on one CPU core.
 
     Exit codes: 0 all reached, 1 some not reached or a collision found, 2 bad usage or file, 3 a bug, 130 interrupted.
     """

@@ -78,7 +78,7 @@ def _preview(
     if out is not None:
         check_folder(out, plan, overwrite=overwrite)
     if cluster["dask"] is not None:
-        print_note("a dry run solves its sample on this machine: the cluster is left alone")
+        print_note("a dry run solves its sample on this machine: the cluster is not used")
     with working("solving a sample ..."), _note_compile(plan):
         preview = preview_batch(plan, threads=threads)
     if as_json:
@@ -95,7 +95,7 @@ def _note_compile(plan: "Batch") -> AbstractContextManager[Any]:
 
 
 def _run(plan: "Batch", out: Path, **solving: Any) -> "RunSummary":
-    """Run with a progress bar; Ctrl-C says how to go on."""
+    """Run with a progress bar; Ctrl-C says how to resume."""
     from ikde.batch.parts import GO_ON
     from ikde.batch.run import run_batch
 

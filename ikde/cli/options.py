@@ -59,7 +59,7 @@ SafeDistanceOption = Annotated[float | None, of_collision(help="Clearance at whi
 UnitOption = Annotated[LengthUnit, of_output(help="Unit of lengths, in and out.")]
 AnglesOption = Annotated[AngleUnit, of_output(help="Unit of angles, in and out.")]
 ConventionOption = Annotated[
-    str | None, of_output(metavar="NAME", help="How joints are counted, in and out (default: the robot's own).")
+    str | None, of_output(metavar="NAME", help="Convention of joint values, in and out (default: the robot's own).")
 ]
 JsonOption = Annotated[bool, of_output("--json", help="Print JSON, always in m, rad and s.")]
 PlotOption = Annotated[Path | None, of_output(metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")]

@@ -31,7 +31,7 @@ RpyOption = Annotated[
     Vector | None,
     of_target(metavar="R P Y", help="Tool orientation as rotations about the fixed x, y, z axes, as in URDF."),
 ]
-AxisOption = Annotated[Vector | None, of_target(metavar="X Y Z", help="Direction of the tool's z axis, nothing more.")]
+AxisOption = Annotated[Vector | None, of_target(metavar="X Y Z", help="Direction of the tool's z axis; free about it.")]
 ToleranceOption = Annotated[
     float | None, of_target(help="Position tolerance, in --unit (default: 1e-5 m; 5e-5 m with --method de).")
 ]

@@ -38,7 +38,7 @@ def track(
     unit: Annotated[LengthUnit, instead("--unit", help="Unit of lengths in --start.")] = LengthUnit.m,
     angles: Annotated[AngleUnit, instead("--angles", help="Unit of angles in --start.")] = AngleUnit.rad,
     convention: Annotated[
-        str | None, instead(help="How joints are counted in --start (default: the robot's own).")
+        str | None, instead(help="Convention of joint values in --start (default: the robot's own).")
     ] = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Make the page with figures: report.html.")] = True,
     as_json: JsonOption = False,

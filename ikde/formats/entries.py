@@ -63,10 +63,10 @@ class UnitsEntry(Entry):
 
 
 class OrientationEntry(Entry):
-    """How the tool is turned; at most one key."""
+    """The orientation of the tool; at most one key."""
 
     axis: Vector | None = None
-    """Direction of the tool's z axis, any length; the turn about it stays free."""
+    """Direction of the tool's z axis, any length; the rotation about it is free."""
     rpy: Vector | None = None
     """Roll, pitch, yaw about the fixed axes x, y, z of the world, as in URDF."""
     quat_wxyz: Quaternion | None = None

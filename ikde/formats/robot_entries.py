@@ -30,7 +30,7 @@ def with_ranges(robot: Robot, ranges: Mapping[str, list[float]], units: UnitsEnt
     upper = to_si(robot, "ranges", {name: interval[1] for name, interval in ranges.items()}, units)
     for name in ranges:
         if not lower[name] <= upper[name]:
-            raise InputError("this range is upside down: upper is below lower", ("ranges", name))
+            raise InputError("the upper end of this range is below the lower one", ("ranges", name))
     if not ranges:
         return robot
 

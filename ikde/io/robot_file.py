@@ -64,7 +64,7 @@ class JointEntry(SourcedEntry):
     model_config = ConfigDict(json_schema_extra=LIMITS_BY_KIND)
 
     kind: Literal["revolute", "prismatic", "continuous"]
-    """What it does: a continuous joint turns without end, and has no limits."""
+    """What it does: a continuous joint rotates without end, and has no limits."""
     lower: Number | None = None
     upper: Number | None = None
     home: Number = 0.0

@@ -68,7 +68,7 @@ def as_file_error(document: Document | Given, error: ValidationError, model: typ
         words, key = LIMITS[kind]
         limit = context[key]
         message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {quoted(first['input'])}"
-    elif kind in EXPECTED:  # a whole file that is something else is none of ours to quote
+    elif kind in EXPECTED:  # a whole file that is something else is not quoted
         got = "" if kind == "missing" or not where else f", got {quoted(first['input'])}"
         message = f"{EXPECTED[kind]}{got}"
     else:

@@ -121,7 +121,7 @@ def trajectory_table(trajectory: Trajectory) -> pa.Table:
 def joint_trajectory(trajectory: Trajectory, *, velocities: bool = False) -> dict[str, Any]:
     """The arm's motion as a `trajectory_msgs/JointTrajectory`, plain data.
 
-    Without velocities ROS's joint_trajectory_controller runs evenly between the points: that is the motion of a
+    Without velocities ROS's joint_trajectory_controller interpolates linearly between points: that is the motion of a
     `Trajectory`. With them, each the even speed to the next point, it bends a cubic through the points.
     """
     arm = [index for index, name in enumerate(trajectory.joint_names) if name not in trajectory.base_joints]

@@ -97,7 +97,7 @@ def _add_origin(parent: ET.Element, p: Floats, R: Floats) -> None:
 def rpy_from_rotation(R: Floats) -> Floats:
     """Roll, pitch, yaw [3] in rad about the fixed x, y, z axes, so that Rz(yaw) Ry(pitch) Rx(roll) = R [3, 3].
 
-    Yaw is read off after roll is taken back, so that R comes back to rounding even where roll and yaw turn about one
+    Yaw is read off after roll is taken back, so that R comes back to rounding even where roll and yaw rotate about one
     axis, at a pitch of +-90 degrees.
     """
     roll = np.arctan2(R[2, 1], R[2, 2])

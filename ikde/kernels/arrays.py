@@ -6,7 +6,7 @@ transform is its upper three rows, [3, 4]: rotation and translation. Points stan
 so that the compiler can vectorise.
 
 A *body* is what one joint moves. Body 0 is the world; body b > 0 is moved by one coordinate of q about or along the z
-axis of its own frame (`pack` turns every joint axis to z, so that one formula serves all). Parents come first.
+axis of its own frame (`pack` aligns every joint axis with z, so that one formula serves all). Parents come first.
 """
 
 from typing import NamedTuple
@@ -105,7 +105,7 @@ class SeedArrays(NamedTuple):
     T_world_tool: (
         Floats  # [K, 3, 6 or 12 columns] what its kind of target asks of the tool, side by side (`kernels/seeds.py`)
     )
-    base: Ints  # [3] coordinates of a base that drives in the plane and turns, at zero in the pool; -1: there is none
+    base: Ints  # [3] coordinates of a planar base (x, y, yaw), at zero in the pool; -1: there is none
     grid: Ints  # [G, 2] a grid over tool poses: which entry of the transform each direction divides, into how many bins
     grid_scale: Floats  # [G, 2] lowest value, bins per unit
     cell_start: Ints  # [cells + 1] the first configuration of each cell: the pool is sorted by cell
@@ -144,7 +144,7 @@ class MemeticArrays(NamedTuple):
 class DriveArrays(NamedTuple):
     """How a robot moves from sample to sample: a step [D], each entry a share of the largest, -1 to 1.
 
-    A base with wheels takes the first two entries, along its heading and turning; the rest move one coordinate each.
+    A base with wheels takes the first two entries, along its heading and its yaw; the rest move one coordinate each.
     """
 
     base: Ints  # [3] coordinates of x, y and heading of a base with wheels; -1: every coordinate moves by itself

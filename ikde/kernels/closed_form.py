@@ -76,10 +76,10 @@ def find_shoulder(px, py, radius, d4, square, fallback):
 
 @inline_kernel
 def find_wrist(rows, s1, c1, s_free, c_free):
-    """Sides of theta5 >= 0, theta6 and the turn theta2 + theta3 + theta4.
+    """Sides of theta5 >= 0, theta6 and the angle theta2 + theta3 + theta4.
 
-    Where axes 4 and 6 are parallel, the turn is free, and (s_free, c_free), of any length, are its sides. `rows`: those
-    of T_base_wrist.
+    Where axes 4 and 6 are parallel, that angle is free: (s_free, c_free), of any length, are its sides. `rows`: of
+    T_base_wrist.
     """
     (xx, yx, zx, _), (xy, yy, zy, _), (xz, yz, _, _) = rows
     # Components of the wrist's axes along x1 and, out of the arm's plane, along z1.
@@ -92,7 +92,7 @@ def find_wrist(rows, s1, c1, s_free, c_free):
         s6, c6 = (s6 / length, c6 / length) if length > 0.0 else (0.0, 1.0)
     else:
         s6, c6 = -y_out / s5, x_out / s5
-    # Axis 5 is -y5 = -(s6 x6 + c6 y6) = (sin turn, -cos turn), however uncertain theta6 was.
+    # Axis 5 is -y5 = -(s6 x6 + c6 y6) = (sin, -cos of the angle), however uncertain theta6 was.
     return s5, z_out, s6, c6, -(s6 * x + c6 * y), s6 * xz + c6 * yz
 
 
@@ -128,15 +128,15 @@ def write_shoulder(arm, ranges, rows, square, right, radius, out_sides):
     px, py, height = rows[0][3], rows[1][3], rows[2][3]
     s1, c1 = find_shoulder(px, py, radius, d4, square, find_centre(arm, ranges))
     ahead = radius - arm.lengths[A1]
-    # A free turn puts the wrist centre in line with axes 2 and 4: as near and as far as the links can be asked to go.
+    # A free angle puts the wrist centre in line with axes 2 and 4: as near and as far as the links can be asked to go.
     s_free, c_free = height * a4 + ahead * d5, ahead * a4 - height * d5
-    s5, c5, s6, c6, s_turn, c_turn = find_wrist(rows, s1, c1, s_free, c_free)
+    s5, c5, s6, c6, s_234, c_234 = find_wrist(rows, s1, c1, s_free, c_free)
     k, links = 4 * right, 8 + 6 * right
     write_sides(k, s1, c1, out_sides)
     write_sides(k + 1, s5, c5, out_sides)
     write_sides(k + 2, s6, c6, out_sides)
-    write_sides(k + 3, s_turn, c_turn, out_sides)
-    x, y = a4 * c_turn + d5 * s_turn, a4 * s_turn - d5 * c_turn  # from axis 4 to the wrist centre, without a flip
+    write_sides(k + 3, s_234, c_234, out_sides)
+    x, y = a4 * c_234 + d5 * s_234, a4 * s_234 - d5 * c_234  # from axis 4 to the wrist centre, without a flip
     write_links(arm, links, ahead - x, height - y, out_sides)
     write_links(arm, links + 3, ahead + x, height + y, out_sides)
 
@@ -186,7 +186,7 @@ def solve_ur_arm(arm, ranges, T_carrier_tool, work, out_q, out_branch):
     count = 0
     for right in range(first, 2):
         q1, fits_1 = fit_joint(arm, ranges, Q1, work[0, 4 * right])
-        angle_5, angle_6, turn = work[0, 4 * right + 1], work[0, 4 * right + 2], work[0, 4 * right + 3]
+        angle_5, angle_6, angle_234 = work[0, 4 * right + 1], work[0, 4 * right + 2], work[0, 4 * right + 3]
         for flip in range(2):
             half_turn = math.pi * flip
             q5, fits_5 = fit_joint(arm, ranges, Q5, (1.0 - 2.0 * flip) * angle_5)
@@ -201,7 +201,7 @@ def solve_ur_arm(arm, ranges, T_carrier_tool, work, out_q, out_branch):
                 angle_2, angle_3 = direction - side * ahead, side * bend
                 q2, fits_2 = fit_joint(arm, ranges, Q2, angle_2)
                 q3, fits_3 = fit_joint(arm, ranges, Q3, angle_3)
-                q4, fits_4 = fit_joint(arm, ranges, Q4, turn + half_turn - angle_2 - angle_3)
+                q4, fits_4 = fit_joint(arm, ranges, Q4, angle_234 + half_turn - angle_2 - angle_3)
                 if fits_2 & fits_3 & fits_4:
                     out_q[count, 0], out_q[count, 1], out_q[count, 2] = q1, q2, q3
                     out_q[count, 3], out_q[count, 4], out_q[count, 5] = q4, q5, q6

@@ -45,12 +45,12 @@ def make_descent_workspace(robot, joints, rows):
 
 
 @inline_kernel
-def compute_turn(target, index, T_world_tool, out_v):
+def compute_rotation(target, index, T_world_tool, out_v):
     """Rotation from tool to target as axis * 2 sin(angle / 2) in the world, [3]; returns the size of the error.
 
     For a pose from S = R_target R_tool^T: (S - S^T) / 2 is axis * sin(angle), (trace S + 1) / 4 is cos(angle / 2)^2.
     For an axis it is z_tool x z_target, axis * sin(angle). Both fade near half a turn; the size returned grows
-    with the angle from 0 to 2 (`engine.measure_turn` is its twin).
+    with the angle from 0 to 2 (`engine.measure_rotation` is its twin).
     """
     kind, R, T = target.kind[index], target.T_world_tool[index], T_world_tool
     out_v[0], out_v[1], out_v[2] = 0.0, 0.0, 0.0
@@ -79,12 +79,12 @@ def compute_turn(target, index, T_world_tool, out_v):
 
 @inline_kernel
 def compute_error(target, index, length, T_world_tool, out_error):
-    """Error [6] from tool to target: metres, then the turn times `length` in m. Returns both sizes, m and rad."""
+    """Error [6] from tool to target: metres, then the rotation times `length` in m. Returns both sizes, m and rad."""
     square = 0.0
     for i in range(3):
         out_error[i] = target.T_world_tool[index, i, 3] - T_world_tool[i, 3]
         square += out_error[i] * out_error[i]
-    orientation = compute_turn(target, index, T_world_tool, out_error[3:])
+    orientation = compute_rotation(target, index, T_world_tool, out_error[3:])
     for i in range(3, 6):
         out_error[i] *= length
     return math.sqrt(square), orientation
@@ -92,7 +92,7 @@ def compute_error(target, index, length, T_world_tool, out_error):
 
 @inline_kernel
 def scale_rotation(target, index, length, T_world_tool, out_jacobian):
-    """Rotation rows of the Jacobian [6, N] times `length`; for an axis target without what turns about the tool's z."""
+    """Rotation rows of the Jacobian [6, N] times `length`; for an axis target without rotations about the tool's z."""
     for k in range(out_jacobian.shape[1]):
         along = 0.0
         if target.kind[index] == AXIS:

@@ -1,6 +1,6 @@
 """One step of a robot from sample to sample, and how the end of the step hangs on it.
 
-A base with wheels drives the exact arc of a constant speed v along its heading and a constant turn omega: with the
+A base with wheels drives the exact arc of a constant speed v along its heading and a constant yaw rate omega: with the
 distance d and the angle a of one sample, its chord is d sin(a / 2) / (a / 2) at the heading in the middle. So it never
 slips sideways [Qiao2022, eq. 5].
 """
@@ -50,13 +50,13 @@ def arc_is_inside(drive, ranges, q, step):
     distance, angle = drive.largest[0] * step[0], drive.largest[1] * step[1]
     for k in range(2):
         quarter = 0.5 if k == 0 else 0.0
-        turn = (math.ceil(heading / math.pi - quarter) + quarter) * math.pi - heading
+        rotation = (math.ceil(heading / math.pi - quarter) + quarter) * math.pi - heading
         if angle < 0.0:
-            turn -= math.pi
-        if abs(turn) >= abs(angle):
+            rotation -= math.pi
+        if abs(rotation) >= abs(angle):
             continue
-        chord = distance * (turn / angle) * chord_share(0.5 * turn)[0]
-        s, c = sin_cos(heading + 0.5 * turn)
+        chord = distance * (rotation / angle) * chord_share(0.5 * rotation)[0]
+        s, c = sin_cos(heading + 0.5 * rotation)
         place = q[x] + chord * c if k == 0 else q[y] + chord * s
         if not ranges[0, drive.base[k]] <= place <= ranges[1, drive.base[k]]:
             return False
@@ -65,7 +65,7 @@ def arc_is_inside(drive, ranges, q, step):
 
 @inline_kernel
 def fold_row(drive, q, step, row, out):
-    """Turn d/dq at the end of a step, `row` [N], into d/dstep, `out` [D]."""
+    """Convert d/dq at the end of a step, `row` [N], into d/dstep, `out` [D]."""
     first = step.size - drive.others.size
     for k in range(drive.others.size):
         out[first + k] = drive.largest[first + k] * row[drive.others[k]]

@@ -24,7 +24,7 @@ from ikde.kernels.jit import inline_view_kernel, kernel
 
 Value = Floats | Ints | Indices | float
 Turns = tuple[Floats, Floats, Any, Floats]
-"""Lower, upper, turning and centre, each [N], as `kernels.turns.unwind` takes them."""
+"""Lower, upper, is_revolute and centre, each [N], as `kernels.turns.unwind` takes them."""
 
 
 class Terms(NamedTuple):
@@ -72,10 +72,10 @@ def flatten_answer(search: Sequence[Any], grader: tuple[Floats, Ints], kind: int
 
     Writable: numba takes twice as long to see the type of an array that is read-only.
     """
-    *bounds, turning, centre = (np.asarray(part) for part in turns)
+    *bounds, is_revolute, centre = (np.asarray(part) for part in turns)
     where = [kind, len(search[0]), len(search[1])]
     numbers = np.concatenate([search[0], grader[0], *bounds, centre])
-    return numbers, np.concatenate([search[1], grader[1], turning.astype(np.int64), where])
+    return numbers, np.concatenate([search[1], grader[1], is_revolute.astype(np.int64), where])
 
 
 def set_ranges(block: Floats, ranges: Floats, turns: Turns) -> Floats:

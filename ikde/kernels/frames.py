@@ -20,9 +20,9 @@ def compute_bodies(robot, q, out_T):
     for body in range(1, bodies.shape[0]):
         parent = np.uint64(bodies[body, PARENT])  # an index without a sign
         value = q[bodies[body, COORDINATE]]
-        slides = bodies[body, PRISMATIC] == 1
-        s, c = (0.0, 1.0) if slides else sin_cos(value)
-        along = value if slides else 0.0
+        is_prismatic = bodies[body, PRISMATIC] == 1
+        s, c = (0.0, 1.0) if is_prismatic else sin_cos(value)
+        along = value if is_prismatic else 0.0
         for i in range(3):
             a, b, d = out_T[parent, i, 0], out_T[parent, i, 1], out_T[parent, i, 2]
             x = a * T_local[body, 0, 0] + b * T_local[body, 1, 0] + d * T_local[body, 2, 0]

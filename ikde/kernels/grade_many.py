@@ -25,7 +25,7 @@ class Lanes(NamedTuple):
     """Buffers, a column a lane. A transform is twelve rows: 4 i + j for entry (i, j) of its upper three rows."""
 
     q: Floats  # [N, L] m or rad
-    turn: Floats  # [3, L] sine, cosine and travel of one joint
+    motion: Floats  # [3, L] sine, cosine and travel of one joint
     product: Floats  # [4, L] one row of a transform, before the joint moves
     bodies: Floats  # [12 B, L] T_world_body
     tool: Floats  # [12, L] T_world_tool
@@ -47,19 +47,19 @@ def load(q, first, count, out_q):
 @inline_kernel
 def place_body(robot, body, count, lanes):
     """T_world_body = T_world_parent @ T_parent_body @ (Rz(q) or Tz(q)) of one body, by its parent's."""
-    T, product, turn, L = lanes.bodies, lanes.product, lanes.turn, robot.T_parent_body[body]
-    joint, slides = np.uint64(robot.bodies[body, COORDINATE]), robot.bodies[body, PRISMATIC] == 1
+    T, product, motion, L = lanes.bodies, lanes.product, lanes.motion, robot.T_parent_body[body]
+    joint, is_prismatic = np.uint64(robot.bodies[body, COORDINATE]), robot.bodies[body, PRISMATIC] == 1
     for lane in range(count):
         s, c = sin_cos(lanes.q[joint, lane])
-        turn[0, lane], turn[1, lane], turn[2, lane] = s, c, 0.0
-    if slides:
+        motion[0, lane], motion[1, lane], motion[2, lane] = s, c, 0.0
+    if is_prismatic:
         for lane in range(count):
-            turn[0, lane], turn[1, lane], turn[2, lane] = 0.0, 1.0, lanes.q[joint, lane]
+            motion[0, lane], motion[1, lane], motion[2, lane] = 0.0, 1.0, lanes.q[joint, lane]
     for i in range(3):
         parent, own = np.uint64(12 * robot.bodies[body, PARENT] + 4 * i), np.uint64(12 * body + 4 * i)
         multiply_row(L, T, parent, count, product)
         for lane in range(count):
-            s, c, along = turn[0, lane], turn[1, lane], turn[2, lane]
+            s, c, along = motion[0, lane], motion[1, lane], motion[2, lane]
             x, y, z = product[0, lane], product[1, lane], product[2, lane]
             T[own, lane] = x * c + y * s
             T[own + np.uint64(1), lane] = y * c - x * s

@@ -58,14 +58,14 @@ from ikde.kernels.turns import unwind
 MAX_STEPS = 40
 MAX_SLIDES = 32  # 24 lose 2 of 18 long walks
 RETURNING = 4  # last steps, which do nothing but bring the tool back to its target
-MOST_TURNS = 4  # walks, each from where a full turn brings a joint nearer
+MAX_WALKS = 4  # walks, each from where a full turn brings a joint nearer
 TRIALS = 10  # of one step: halved, or turned away from a contact
 CORRECTIONS = 2  # of one step that goes into a contact
 DONE = 1e-6  # square of the last step, as a share of |y|^2: a next one would be as its square
 DONE_SLIDING = 1e-8  # where each step is a share of the last one
 SHORTER, SHORTEST = 0.2, 0.05  # steps after a walk that got lost; m or rad
 TAKEN, LAST, LOST, CORRECTED = range(4)  # what comes of a step; one that goes into a contact is chosen anew
-ALMOST = 0.5  # how much of a step's length taking away the error behind it may take
+MAX_ERROR_SHARE = 0.5  # how much of a step's length taking away the error behind it may take
 
 
 @inline_kernel
@@ -191,7 +191,7 @@ def try_step(robot, collision, target, index, ranges, descent, weight, largest, 
         position, orientation = place_tool(robot, target, index, length, tables.vectors[TRIAL], tables)
         square_there = square_motion(weight, ranges[2], tables.vectors[TRIAL], count, tables)
         after, behind = judge_place(tables, rank, used, square_there, doubt)
-        if behind <= max(ALMOST * ALMOST * moved, error) and after < before:
+        if behind <= max(MAX_ERROR_SHARE * MAX_ERROR_SHARE * moved, error) and after < before:
             if not slides or is_free(collision, work):
                 copy(tables.vectors[TRIAL], tables.vectors[HERE])
                 return (LAST if moved <= enough * square else TAKEN), meets(descent, position, orientation)
@@ -249,7 +249,7 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
         target: `TargetArrays`.
         index: which target.
         ranges: [3, N] lower, upper, near; m or rad.
-        descent: `DescentArrays`: tolerances, as `damped.compute_turn` measures them, rotation length and largest step.
+        descent: `DescentArrays`: tolerances as `damped.compute_rotation` measures them, rotation length, largest step.
         weight: [N] above 0, per m or per rad.
         q: [N] within tolerance, in the ranges and free.
     """
@@ -259,7 +259,7 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
     if is_answer(robot, collision, target, index, ranges, descent, work):
         copy(best, q)
         return
-    walks, slides = MOST_TURNS, size[0] < 0
+    walks, slides = MAX_WALKS, size[0] < 0
     while walks > 0:
         largest, is_better = descent.largest_step, False
         is_first = is_met = size[0] > 0  # true, and no constant: that would be compiled into a step of its own

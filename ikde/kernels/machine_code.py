@@ -29,7 +29,7 @@ VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version_
 
 
 class Clock(Protocol):
-    """What is told of each compilation."""
+    """What is reported of each compilation."""
 
     def start(self) -> None:
         """One begins, perhaps inside another."""

@@ -49,7 +49,7 @@ from ikde.kernels.success_history import (
 
 NO_MEMBER = np.int64(-1)
 RANDOM_MEMBER = 1  # a number that `fill_start` draws at random
-FIRST_TURNS, LATER_TURNS = np.int64(1), np.int64(2)  # 2: the random member that replaces one is polished, too
+FIRST_PASSES, LATER_PASSES = np.int64(1), np.int64(2)  # 2: the random member that replaces one is polished, too
 PROGRESS = 0.9  # a damped step must bring the squared error below this share of the smallest so far
 
 
@@ -161,18 +161,18 @@ def polish(robot, collision, target, index, search, memetic, descent, box, reach
 
 @kernel
 def polish_best(
-    robot, collision, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
+    robot, collision, target, index, search, memetic, descent, box, state, work, count, passes, spent, polished
 ):
     """Polish the best members that have changed, up to the share of the evaluations that polishing may take.
 
     One that meets the target stays as it then is; one that does not converge is replaced by a random one, which with 2
-    `turns` is polished at once. Returns (member that meets the target, evaluations, those of polishing).
+    `passes` is polished at once. Returns (member that meets the target, evaluations, those of polishing).
     """
     members, q, before = work.members, work.members.trial, spent - polished
     reach = collision.safe_distance + memetic.margin if search.collision_rule == FEASIBILITY else -math.inf
-    for n in range(turns * count):
-        i, turn = work.order[n // turns], n % turns
-        if spent >= memetic.evaluations or (turn == 0 and spent - before >= memetic.polish_share * spent):
+    for n in range(passes * count):
+        i, again = work.order[n // passes], n % passes
+        if spent >= memetic.evaluations or (again == 0 and spent - before >= memetic.polish_share * spent):
             break
         if work.fresh[i] == 0:
             continue
@@ -222,13 +222,13 @@ def evolve_memetic(robot, collision, target, index, search, memetic, descent, bo
     The best member is `work.members.x[best]`; under `FEASIBILITY` meeting the target includes being free. At most
     `memetic.evaluations` are made.
     """
-    turns, polished = FIRST_TURNS, np.int64(0)
+    passes, polished = FIRST_PASSES, np.int64(0)
     reset_history(work.history, memetic.first_weight, memetic.first_crossover, memetic.is_weighted)
     work.champion_cost[0] = np.inf
     found, count, spent = fill_population(robot, collision, target, index, search, memetic, box, state, work)
     while found == NO_MEMBER and spent < memetic.evaluations:
         found, spent, polished = polish_best(
-            robot, collision, target, index, search, memetic, descent, box, state, work, count, turns, spent, polished
+            robot, collision, target, index, search, memetic, descent, box, state, work, count, passes, spent, polished
         )
         if found != NO_MEMBER or spent >= memetic.evaluations:
             break
@@ -239,7 +239,7 @@ def evolve_memetic(robot, collision, target, index, search, memetic, descent, bo
             drop_worst(work.members, work.order, work.fresh, count, planned)
             count = planned
             trim_archive(state, work.history, np.int64(memetic.archive_share * count))
-        turns = LATER_TURNS
+        passes = LATER_PASSES
     if found != NO_MEMBER:
         return found, True, spent
     return work.order[0], False, spent

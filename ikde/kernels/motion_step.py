@@ -48,7 +48,7 @@ MIN_PIVOT = 0.1  # of the reduced Hessian, which is 1 where the tool moves strai
 REACH = 0.1  # m beyond the safe distance: nearer pairs are constrained
 INSIDE = 2e-9  # m beyond the safe distance: where contacts are set, so that rounding and bend leave them free
 FIRST_SHIFT = 0.125  # of its diagonal, where it is less
-DOUBT, MOST_DOUBT = 2.0, 100.0
+DOUBT, MAX_DOUBT = 2.0, 100.0
 DOWNHILL = 0.05  # how much of the square of a step it shall win at least
 MIN_SLOPE = 1e-9  # below it no step along the null space changes a constraint
 
@@ -116,7 +116,7 @@ def choose_doubt(tables, used, count):
     for i in range(used):
         slope -= tables.numbers[MULTIPLIER, i] * tables.numbers[ERROR, i]
     lacking = slope + DOWNHILL * square
-    return min(DOUBT + lacking / behind, MOST_DOUBT) if lacking > 0.0 and behind > 0.0 else DOUBT
+    return min(DOUBT + lacking / behind, MAX_DOUBT) if lacking > 0.0 and behind > 0.0 else DOUBT
 
 
 @inline_kernel

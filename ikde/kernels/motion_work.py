@@ -22,7 +22,7 @@ Y, SPLIT, STEP, ALONG, BEHIND = range(3, 8)
 # minima without and with constraints, in coordinates in which the Hessian is 1; a product; a row
 FREE_POINT, POINT, PRODUCT, ROW = range(8, 12)
 # the Jacobian [6], m/rad or 1 and rad/rad or 0; weighed, then L and the reflections [6]; of the bend [3]; of gaps
-JACOBIAN, ROWS, TURNED, SLOPE = 12, 18, 24, 27
+JACOBIAN, ROWS, ROTATED, SLOPE = 12, 18, 24, 27
 
 NULL, BEND, HESSIAN = range(3)  # of `matrices`: motions that leave the tool, a row each; reduced, then its factor
 # rows of `numbers`: of the target's rows, of L, of gaps in m, the tool's error where the step begins

@@ -1,9 +1,9 @@
 """Where a descent starts: the one of a few collision-free configurations whose tool is nearest to the target.
 
 The pool holds configurations that are free of collision, with their tool poses, sorted by the cells of a grid over
-those poses: what is near the target is found at once. Where the robot drives on a plane that it may turn on
-(`SeedArrays.base`), the base does the rest: whatever the arm does, the base can bring the tool over the target and turn
-it to the target's heading. Then only height and tilt count, and the base is set afterwards.
+those poses: what is near the target is found at once. Where the robot has a planar base (`SeedArrays.base`), the base
+does the rest: whatever the arm does, the base can bring the tool over the target and to the target's heading. Then only
+height and tilt count, and the base is set afterwards.
 """
 
 import math
@@ -126,11 +126,11 @@ def find_pose(seeds, target, index, first, count):
 
 @inline_kernel
 def set_base(seeds, target, index, ranges, best, angle, q):
-    """Drive the base, turned by `angle`, so that the tool stands over the target: the pool's own base is at zero."""
+    """Drive the base, rotated by `angle`, so that the tool stands over the target: the pool's own base is at zero."""
     T, P = target.T_world_tool[index], seeds.T_world_tool
-    x, y, turn = seeds.base[0], seeds.base[1], seeds.base[2]
+    x, y, yaw = seeds.base[0], seeds.base[1], seeds.base[2]
     s, c = sin_cos(angle)
-    q[turn] = angle
+    q[yaw] = angle
     q[x] = min(max(T[0, 3] - c * P[best, X] + s * P[best, Y], ranges[0, x]), ranges[1, x])
     q[y] = min(max(T[1, 3] - s * P[best, X] - c * P[best, Y], ranges[0, y]), ranges[1, y])
 
@@ -138,17 +138,17 @@ def set_base(seeds, target, index, ranges, best, angle, q):
 @inline_kernel
 def find_angle(seeds, target, index, ranges, state, best):
     """The angle of the base at which the tool heads as the target does; any one if the target has no heading."""
-    turn = seeds.base[2]
+    yaw = seeds.base[2]
     across, along = find_heading(target.T_world_tool[index], seeds.T_world_tool, target.kind[index], best)
     if across == 0.0 and along == 0.0:
-        return ranges[0, turn] + next_uniform(state) * (ranges[1, turn] - ranges[0, turn])
+        return ranges[0, yaw] + next_uniform(state) * (ranges[1, yaw] - ranges[0, yaw])
     angle = math.copysign(angle_from_sides(abs(across), along), across)
-    return min(max(angle, ranges[0, turn]), ranges[1, turn])
+    return min(max(angle, ranges[0, yaw]), ranges[1, yaw])
 
 
 @inline_kernel
 def find_heading(T, P, kind, i):
-    """Sine and cosine, times a length, of the heading that turns the tool of configuration `i` to the target's."""
+    """Sine and cosine, times a length, of the heading that rotates the tool of configuration `i` to the target's."""
     across, along = 0.0, 0.0
     if kind == AXIS:
         across, along = P[i, Z_X] * T[1, 2] - P[i, Z_Y] * T[0, 2], P[i, Z_X] * T[0, 2] + P[i, Z_Y] * T[1, 2]
@@ -165,8 +165,8 @@ def find_heading(T, P, kind, i):
 @inline_kernel
 def holds_base(seeds, ranges):
     """True if a joint of the base that is set for each target cannot move."""
-    x, y, turn = seeds.base[0], seeds.base[1], seeds.base[2]
-    return ranges[0, x] == ranges[1, x] or ranges[0, y] == ranges[1, y] or ranges[0, turn] == ranges[1, turn]
+    x, y, yaw = seeds.base[0], seeds.base[1], seeds.base[2]
+    return ranges[0, x] == ranges[1, x] or ranges[0, y] == ranges[1, y] or ranges[0, yaw] == ranges[1, yaw]
 
 
 @inline_kernel
@@ -176,16 +176,16 @@ def find_held(seeds, target, index, ranges, state, first, count):
     Returns the angle of the base, too.
     """
     T, P, kind = target.T_world_tool[index], seeds.T_world_tool, target.kind[index]
-    x, y, turn = seeds.base[0], seeds.base[1], seeds.base[2]
-    is_fixed = ranges[0, turn] == ranges[1, turn]
+    x, y, yaw = seeds.base[0], seeds.base[1], seeds.base[2]
+    is_fixed = ranges[0, yaw] == ranges[1, yaw]
     side = 1.0 if next_uniform(state) < 0.5 else -1.0
-    s, c = sin_cos(ranges[0, turn])
+    s, c = sin_cos(ranges[0, yaw])
     length = 2.0 * seeds.rotation_length * seeds.rotation_length
     best, smallest, best_s, best_c = first, np.inf, s, c
     for i in range(first, first + count):
         across, along = find_heading(T, P, kind, i)
         if not is_fixed:
-            s, c = turn_held_base(T, P, ranges, x, y, i, 0.5 * length, across, along, side)
+            s, c = rotate_held_base(T, P, ranges, x, y, i, 0.5 * length, across, along, side)
         dx, dy = T[0, 3] - c * P[i, X] + s * P[i, Y], T[1, 3] - s * P[i, X] - c * P[i, Y]
         dx -= min(max(dx, ranges[0, x]), ranges[1, x])
         dy -= min(max(dy, ranges[0, y]), ranges[1, y])
@@ -197,12 +197,12 @@ def find_held(seeds, target, index, ranges, state, first, count):
         distance = dx * dx + dy * dy + dz * dz - length * likeness
         if distance < smallest:
             best, smallest, best_s, best_c = i, distance, s, c
-    angle = ranges[0, turn] if is_fixed else math.copysign(angle_from_sides(abs(best_s), best_c), best_s)
-    return best, min(max(angle, ranges[0, turn]), ranges[1, turn])
+    angle = ranges[0, yaw] if is_fixed else math.copysign(angle_from_sides(abs(best_s), best_c), best_s)
+    return best, min(max(angle, ranges[0, yaw]), ranges[1, yaw])
 
 
 @inline_kernel
-def turn_held_base(T, P, ranges, x, y, i, weight, across, along, side):
+def rotate_held_base(T, P, ranges, x, y, i, weight, across, along, side):
     """Sine and cosine of a base's heading whose x or y is frozen.
 
     Both frozen: the best for place and heading, a radian counting as the root of `weight`. One: the target's heading,

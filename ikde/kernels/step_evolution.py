@@ -76,8 +76,8 @@ def compute_fitness(robot, drive, target, index, search, q, step, work):
     for k in range(q.size):
         change = work.q[k] - q[k]
         motion += search.motion[k] * change * change
-    turn = compute_orientation_error(target, index, work.T_world_tool)
-    return motion + search.position_weight * error + search.orientation_weight * turn
+    angle = compute_orientation_error(target, index, work.T_world_tool)
+    return motion + search.position_weight * error + search.orientation_weight * angle
 
 
 @inline_kernel

@@ -19,9 +19,9 @@ from ikde.kernels.motion_work import (
     MULTIPLIER,
     NULL,
     ORDER,
+    ROTATED,
     ROWS,
     SCALE,
-    TURNED,
 )
 
 MIN_RANK = 1e-7  # share of the largest row that a row must keep to count: below, the target is singular there
@@ -72,8 +72,8 @@ def fill_rows(robot, kind, length, weight, count, tables):
             rows[i, k] = share * J[i, joint]
         if kind == AXIS:
             for i in range(2):
-                turn = J[3, joint] * T[0, i] + J[4, joint] * T[1, i] + J[5, joint] * T[2, i]
-                rows[3 + i, k] = share * length * turn
+                rotation = J[3, joint] * T[0, i] + J[4, joint] * T[1, i] + J[5, joint] * T[2, i]
+                rows[3 + i, k] = share * length * rotation
         elif kind == POSE:
             for i in range(3, 6):
                 rows[i, k] = share * length * J[i, joint]
@@ -180,10 +180,10 @@ def fill_null(tables, rank, count):
 def fill_bend(kind, length, weight, carrying, tables):
     """Second derivative of the target's rows times their multipliers, over the joints that carry the tool.
 
-    A joint that turns about z_j moves what a joint k behind it does to the tool: d J_k / d q_j = z_j x J_k. For the
+    A joint that rotates about z_j moves what a joint k behind it does to the tool: d J_k / d q_j = z_j x J_k. For the
     rotation vector of a pose half of that counts; for an axis z_j x (z_k x axis).
     """
-    J, turned = tables.vectors[JACOBIAN : JACOBIAN + 6], tables.vectors[TURNED : TURNED + 3]
+    J, rotated = tables.vectors[JACOBIAN : JACOBIAN + 6], tables.vectors[ROTATED : ROTATED + 3]
     T, m = tables.T_world_tool, tables.numbers[MULTIPLIER]
     mx, my, mz = 0.0, 0.0, 0.0
     if kind == POSE:
@@ -197,7 +197,7 @@ def fill_bend(kind, length, weight, carrying, tables):
         x, y, z = J[3, joint], J[4, joint], J[5, joint]
         if kind == AXIS:
             x, y, z = y * T[2, 2] - z * T[1, 2], z * T[0, 2] - x * T[2, 2], x * T[1, 2] - y * T[0, 2]
-        turned[0, k], turned[1, k], turned[2, k] = x, y, z
+        rotated[0, k], rotated[1, k], rotated[2, k] = x, y, z
     for j in range(carrying):
         first = tables.whole[MOVING, j]
         x, y, z = J[3, first], J[4, first], J[5, first]
@@ -206,5 +206,5 @@ def fill_bend(kind, length, weight, carrying, tables):
         for k in range(j, carrying):
             joint = tables.whole[MOVING, k]
             total = ax * J[0, joint] + ay * J[1, joint] + az * J[2, joint]
-            total += bx * turned[0, k] + by * turned[1, k] + bz * turned[2, k]
+            total += bx * rotated[0, k] + by * rotated[1, k] + bz * rotated[2, k]
             tables.matrices[BEND, j, k] = tables.matrices[BEND, k, j] = total / (weight[first] * weight[joint])

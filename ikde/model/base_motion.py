@@ -1,7 +1,7 @@
 """Bases that drive in the plane: which joints drive one, how it moves between samples, its twist and its wheels.
 
 `differential`: two driven wheels, whether the robot's file describes them or not. Between samples the speeds v and
-omega stay, so the base runs along an exact arc and never slides sideways [Qiao2022, eq. 5]. `omnidirectional`: x, y and
+omega stay, so the base runs along an exact arc and never slips sideways [Qiao2022, eq. 5]. `omnidirectional`: x, y and
 heading run linearly. So does every joint of an arm.
 """
 
@@ -19,12 +19,12 @@ from ikde.model.tree import build_tree
 
 NO_BASE = np.array([-1, -1, -1])
 NO_BASE.setflags(write=False)
-HEADING = 3  # the body that a base's third joint turns
+HEADING = 3  # the body that a base's third joint rotates
 
 
 @lru_cache(maxsize=64)
 def find_planar_base(robot: Robot) -> Ints:
-    """Coordinates [3] of x, y and heading of a base that drives in the plane and carries all that can collide.
+    """Coordinates [3] of x, y and heading of a planar base and carries all that can collide.
 
     -1 thrice for any other robot; read-only.
     """
@@ -50,7 +50,7 @@ def find_planar_base(robot: Robot) -> Ints:
 
 
 def base_joints(robot: Robot) -> tuple[str, ...]:
-    """Names of x, y and heading of a base that drives in the plane; none for a robot without."""
+    """Names of x, y and heading of a planar base; none for a robot without."""
     return tuple(robot.joint_names[k] for k in find_planar_base(robot) if k >= 0)
 
 
@@ -76,7 +76,7 @@ def find_wheels(robot: Robot, drive: str) -> Ints:
         return np.full(3, -1)
     base = find_planar_base(robot).copy()
     if base[0] < 0:
-        raise InputError(f"{robot.name} has no base that drives in the plane and turns", ("drive",))
+        raise InputError(f"{robot.name} has no planar base (x, y, yaw)", ("drive",))
     return base
 
 

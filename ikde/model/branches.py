@@ -1,11 +1,11 @@
 """All branches of a UR-type arm in plain numpy, and how far they move while the tool stays within tolerances.
 
 The formulas are those of `kernels/closed_form.py` [Hawkins2013], with which nothing is shared. A *slack* bounds how
-much a number can change while the tool moves by at most `position_m` and turns by at most `orientation_rad`: what is
+much a number can change while the tool moves by at most `position_m` and rotates by at most `orientation_rad`: what is
 true of a branch and of all within its slack is true of every pose that the tolerances accept. Slacks may be too large,
-never too small. A sum moves by what its parts move by; a direction of length l whose end moves by e turns by at most
-asin(e / l); the common perpendicular of two axes at an angle b turns by at most asin(sin(e) / sin(b)) when one of them
-turns by e (law of sines on the sphere). Where a bound does not hold, at a singularity or near one, the slack is NaN.
+never too small. A sum moves by what its parts move by; a direction of length l whose end moves by e rotates by at most
+asin(e / l); the common perpendicular of two axes at an angle b rotates by at most asin(sin(e) / sin(b)) when one
+of them rotates by e (law of sines on the sphere). Where no bound holds, at a singularity or near one, the slack is NaN.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ikde.kernels.arrays import Floats
 from ikde.model.closed_form import URArm
 
-LARGEST_SLACK = 0.5  # rad: for larger ones the sines above would not grow with their angles
+MAX_SLACK = 0.5  # rad: for larger ones the sines above would not grow with their angles
 SIDES = np.array([-1.0, 1.0])  # of the shoulder: left, right
 
 
@@ -52,10 +52,10 @@ def find_branches(arm: URArm, T_carrier_tool: Floats, position_m: float, orienta
         wrist = _find_wrist(arm, T, moves, orientation_rad)
         elbow, slack, missing = _find_links(arm, wrist, T[:, 2, 3, None, None], moves)
     flip, shape = np.pi * np.array([0.0, 1.0])[:, None], (len(T), 2, 2, 2)
-    one, five, six, turn = (angle[:, :, None, None] for angle in wrist.angles)
+    one, five, six, sum_234 = (angle[:, :, None, None] for angle in wrist.angles)
     one_slack, five_slack, six_slack, _ = (np.broadcast_to(own[:, :, None, None], shape) for own in wrist.slack)
     two, three = elbow
-    four = turn + flip - two - three
+    four = sum_234 + flip - two - three
     angles = (one, two, three, four, five * np.array([1.0, -1.0])[:, None], six + flip)
     slacks = (one_slack, *slack, five_slack, six_slack)
     return Branches(
@@ -65,7 +65,7 @@ def find_branches(arm: URArm, T_carrier_tool: Floats, position_m: float, orienta
     )
 
 
-def _find_wrist(arm: URArm, T: Floats, moves: float, turns: float) -> _Wrist:
+def _find_wrist(arm: URArm, T: Floats, moves: float, rotates: float) -> _Wrist:
     x, y = T[:, 0, 3, None], T[:, 1, 3, None]
     across = np.hypot(x, y)
     near, far = across - moves, across + moves
@@ -77,16 +77,16 @@ def _find_wrist(arm: URArm, T: Floats, moves: float, turns: float) -> _Wrist:
     sine, five = np.hypot(out[..., 0], out[..., 1]), np.arctan2(np.hypot(out[..., 0], out[..., 1]), out[..., 2])
     six = np.arctan2(-out[..., 1], out[..., 0])
     s6, c6 = -out[..., 1] / sine, out[..., 0] / sine
-    turn = np.arctan2(-(s6 * along[..., 0] + c6 * along[..., 1]), s6 * T[:, None, 2, 0] + c6 * T[:, None, 2, 1])
-    five_slack = one_slack + turns
+    sum_234 = np.arctan2(-(s6 * along[..., 0] + c6 * along[..., 1]), s6 * T[:, None, 2, 0] + c6 * T[:, None, 2, 1])
+    five_slack = one_slack + rotates
     least = np.minimum(np.sin(five - five_slack), np.sin(five + five_slack))
-    least = np.where((least > 0.0) & (five_slack < LARGEST_SLACK), least, np.nan)
-    axis_slack = np.arcsin(np.sin(one_slack) / least) + np.arcsin(np.sin(turns) / least)  # of axis 5
-    slacks = np.broadcast_arrays(one_slack, five_slack, axis_slack + turns, axis_slack + one_slack)
+    least = np.where((least > 0.0) & (five_slack < MAX_SLACK), least, np.nan)
+    axis_slack = np.arcsin(np.sin(one_slack) / least) + np.arcsin(np.sin(rotates) / least)  # of axis 5
+    slacks = np.broadcast_arrays(one_slack, five_slack, axis_slack + rotates, axis_slack + one_slack)
     return _Wrist(
         radius=radius,
         radius_slack=np.sqrt(far**2 - arm.d4**2) - np.sqrt(near**2 - arm.d4**2),
-        angles=np.array([one, five, six, turn]),
+        angles=np.array([one, five, six, sum_234]),
         slack=np.array(slacks),
         missing=np.broadcast_to(far < arm.d4, radius.shape),
     )
@@ -97,11 +97,11 @@ Links = tuple[tuple[Floats, Floats], tuple[Floats, Floats, Floats], NDArray[np.b
 
 
 def _find_links(arm: URArm, wrist: _Wrist, height: Floats, moves: float) -> Links:
-    """The links between axes 2 and 4, which the wrist centre's place and the turn settle."""
-    turn, turn_slack = wrist.angles[3][:, :, None] + np.array([0.0, np.pi]), wrist.slack[3][:, :, None]
-    x = wrist.radius[:, :, None] - arm.a1 - arm.a4 * np.cos(turn) - arm.d5 * np.sin(turn)
-    y = height - arm.a4 * np.sin(turn) + arm.d5 * np.cos(turn)
-    slack = np.hypot(wrist.radius_slack[:, :, None], moves) + np.hypot(arm.a4, arm.d5) * turn_slack
+    """The links between axes 2 and 4, which the wrist centre's place and theta2 + theta3 + theta4 settle."""
+    sum_234, sum_slack = wrist.angles[3][:, :, None] + np.array([0.0, np.pi]), wrist.slack[3][:, :, None]
+    x = wrist.radius[:, :, None] - arm.a1 - arm.a4 * np.cos(sum_234) - arm.d5 * np.sin(sum_234)
+    y = height - arm.a4 * np.sin(sum_234) + arm.d5 * np.cos(sum_234)
+    slack = np.hypot(wrist.radius_slack[:, :, None], moves) + np.hypot(arm.a4, arm.d5) * sum_slack
     span = np.hypot(x, y)
     bend, most, least = (_bend(arm, length) for length in (span, span - slack, span + slack))
     bend_slack = np.maximum(most - bend, bend - least)
@@ -109,7 +109,7 @@ def _find_links(arm: URArm, wrist: _Wrist, height: Floats, moves: float) -> Link
     two_slack = np.arcsin(slack / span) + arm.a3 / (span - slack) * bend_slack
     side = np.where(np.eye(2, dtype=bool), 1.0, -1.0)[:, None, :]  # [shoulder, flip, elbow]: left/up and right/down
     two, three = np.arctan2(y, x)[..., None] - side * lean[..., None], side * bend[..., None]
-    slacks = (two_slack[..., None], bend_slack[..., None], (turn_slack + two_slack + bend_slack)[..., None])
+    slacks = (two_slack[..., None], bend_slack[..., None], (sum_slack + two_slack + bend_slack)[..., None])
     missing = (span - slack > arm.a2 + arm.a3) | (span + slack < abs(arm.a2 - arm.a3))
     return (two, three), slacks, missing
 

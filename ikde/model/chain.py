@@ -38,7 +38,7 @@ class Chain:
     skew: float
     """What they lack of rotations, summed up."""
     length_m: float
-    """All that can add up in a coordinate: offsets, and slides at their ends."""
+    """All that can add up in a coordinate: offsets, and prismatic joints at their limits."""
 
 
 def find_chain(robot: Robot, lower: Floats, upper: Floats) -> Chain:
@@ -50,12 +50,12 @@ def find_chain(robot: Robot, lower: Floats, upper: Floats) -> Chain:
         p = p + R @ body.T_parent_body[:3, 3]
         R = R @ body.T_parent_body[:3, :3]
         low, high = float(lower[body.joint]), float(upper[body.joint])
-        is_revolute = turns(robot, body)
-        length += 0.0 if is_revolute else max(abs(low), abs(high))
+        rotates = is_revolute(robot, body)
+        length += 0.0 if rotates else max(abs(low), abs(high))
         if low != high:
-            links.append(Link(R, p, body.axis, is_revolute, low, high))
+            links.append(Link(R, p, body.axis, rotates, low, high))
             R, p = np.eye(3), np.zeros(3)
-        elif is_revolute:
+        elif rotates:
             R = R @ rotation_about(body.axis, low)
         else:
             p = p + R @ (low * body.axis)
@@ -81,8 +81,8 @@ def path_to_tool(robot: Robot) -> tuple[list[Body], Floats, Floats]:
     return path[::-1], T_body_tool[:3, 3], T_body_tool[:3, :3]
 
 
-def turns(robot: Robot, body: Body) -> bool:
-    """Whether a body's joint is one that turns it."""
+def is_revolute(robot: Robot, body: Body) -> bool:
+    """Whether a body's joint is revolute."""
     return body.joint is not None and robot.joints[body.joint].kind != "prismatic"
 
 

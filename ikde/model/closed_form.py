@@ -1,6 +1,6 @@
-"""UR-type arms, found by their geometry: six turns whose inverse kinematics has a closed form.
+"""UR-type arms, found by their geometry: six revolute joints whose inverse kinematics has a closed form.
 
-The last six joints towards the tool turn about axes of which the second, third and fourth are parallel, the first is
+The last six joints towards the tool rotate about axes of which the second, third and fourth are parallel, the first is
 perpendicular to the second, the fifth to the fourth, and the sixth perpendicular to the fifth and meets it, as in
 Universal Robots' arms [Hawkins2013]. Names, zeros, signs, and where the arm is mounted do not matter. The first axis
 may pass beside the second (a1), the fifth beside the fourth (a4): the formulas stay the same.
@@ -35,7 +35,7 @@ class URArm:
     """
 
     carrier: int
-    """Body that carries joint 1, as `pack_robot` counts and turns bodies; 0 is the world."""
+    """Body that carries joint 1, as `pack_robot` counts and aligns bodies; 0 is the world."""
     coordinates: tuple[int, ...]
     """Index into q of each of the six joints."""
     T_carrier_base: Floats
@@ -102,7 +102,7 @@ def pack_ur_arm(arm: URArm, weights: Floats | None = None) -> ClosedFormArrays:
 
 
 def _last_six(arrays: RobotArrays) -> list[int] | None:
-    """The bodies of the last six joints towards the tool, the first one first; None unless all of them turn."""
+    """The bodies of the last six joints towards the tool, the first one first; None unless all of them are revolute."""
     body = int(arrays.frame_body[-1])
     chain: list[int] = []
     while body != 0 and len(chain) < 6:
@@ -162,7 +162,7 @@ def _measure(arrays: RobotArrays, chain: list[int], Ts_carrier_body: Floats) -> 
     x4 = np.cross(z1, z4)
     if min(np.linalg.norm(upper), np.linalg.norm(fore)) < MIN_LENGTH_M:
         return None
-    turns = np.array([0.0, _angle(upper), _angle(fore), _angle(plane @ x4)])  # of x1, x2, x3 and x4 in the plane
+    angles = np.array([0.0, _angle(upper), _angle(fore), _angle(plane @ x4)])  # of x1, x2, x3 and x4 in the plane
     angle_5 = np.arctan2(-z5 @ x4, z5 @ z1)
     x5 = x4 * np.cos(angle_5) + z1 * np.sin(angle_5)
     T_carrier_base = transform(snap(np.column_stack([x1, -z1, up])), shoulder)
@@ -180,7 +180,7 @@ def _measure(arrays: RobotArrays, chain: list[int], Ts_carrier_body: Floats) -> 
         d4=float((wrist - shoulder) @ z1),
         d5=float(beyond @ (plane @ z4)),
         signs=np.array([_sign(a @ b) for a, b in zip(canonical, axes, strict=True)]),
-        offsets=np.array([0.0, *np.diff(turns), angle_5, 0.0]),
+        offsets=np.array([0.0, *np.diff(angles), angle_5, 0.0]),
     )
 
 

@@ -1,8 +1,8 @@
-"""A proved bound on how the tool can be turned: whatever is farther off is out of reach, wherever the tool is.
+"""A proved bound on the orientation of the tool: whatever is farther off is out of reach, wherever the tool is.
 
-A direction that is fixed in the tool keeps its angle to the axis of the last joint that turns it. Seen from the axis
+A direction that is fixed in the tool keeps its angle to the axis of the last revolute joint. Seen from the axis
 before, that angle lies in an interval, given by the angle between the two axes; and so on to the first joint, whose
-axis does not move. Ranges of joints do not count, but a joint that may not turn at all is part of its link.
+axis does not move. Ranges of joints do not count, but a joint that may not rotate at all is part of its link.
 """
 
 import math
@@ -31,8 +31,8 @@ class Cone(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Turning:
-    """All orientations of the tool lie in these cones; there are none for a tool that can be turned any way."""
+class OrientationReach:
+    """All orientations of the tool lie in these cones; there are none for a tool that can have any orientation."""
 
     of_axis: tuple[Cone, ...]
     """Of the tool's z axis."""
@@ -52,7 +52,7 @@ class Turning:
         return max(0.0, excess - self.slack_rad - SKEW * float(measure_skew(target.R_world_tool[None])[0]))
 
     def find_worst(self, target: Target) -> Cone:
-        """The cone that a target asks the tool to leave the farthest; there must be one."""
+        """The cone that a target asks the tool to leave by most; there must be one."""
         rows = target.R_world_tool.tolist()
         return max(self._find_cones(target), key=lambda cone: _leave_one(cone, rows))
 
@@ -73,18 +73,18 @@ class Turning:
         return excess
 
 
-def bound_turning(chain: Chain) -> Turning:
+def bound_orientation(chain: Chain) -> OrientationReach:
     """The bound, ready to be asked about targets."""
     axes, own, R_last_tool = _find_axes(chain)
     slack = SKEW * chain.skew + ROUNDING_RAD * chain.skews
     every = _enclose(axes, own, R_last_tool)
     cones = [cone for cone in every if cone.low > slack or cone.high < np.pi - slack]
-    return Turning(of_axis=tuple(cones[: every[0] in cones]), of_pose=tuple(cones), slack_rad=slack)
+    return OrientationReach(of_axis=tuple(cones[: every[0] in cones]), of_pose=tuple(cones), slack_rad=slack)
 
 
 def _find_axes(chain: Chain) -> tuple[list[Floats], list[Floats], Floats]:
-    """Axes [3] of the joints that turn the tool, from the world on, each as the joint before moves it and as the joint
-    itself does; and the rotation [3, 3] from what the last of them moves to the tool."""
+    """Axes [3] of the joints that rotate the tool, from the world on, each as the joint before moves it and as
+    the joint itself does; and the rotation [3, 3] from what the last of them moves to the tool."""
     axes, own, R = [], [], np.eye(3)
     for link in chain.links:
         R = R @ link.R_before_link
@@ -96,9 +96,9 @@ def _find_axes(chain: Chain) -> tuple[list[Floats], list[Floats], Floats]:
 
 
 def _enclose(axes: Sequence[Floats], own: Sequence[Floats], R_last_tool: Floats) -> list[Cone]:
-    """The cones of the tool's z, x, y and what its last joint turns about, around the first joint's axis.
+    """The cones of the tool's z, x, y and the axis of its last joint, around the first joint's axis.
 
-    A direction of a tool that nothing turns stays where it is.
+    A direction of a tool that nothing rotates stays where it is.
     """
     directions = [*np.eye(3)[[2, 0, 1]], *([R_last_tool.T @ own[-1]] if own else [])]
     between = [_angle(before, axis) for axis, before in zip(axes[:0:-1], own[-2::-1], strict=True)]

@@ -77,7 +77,7 @@ def frame_names(robot: Robot) -> list[str]:
 
 
 def pack_targets(targets: Targets | Sequence[Target]) -> TargetArrays:
-    """The targets' own arrays; a sequence of `Target` is turned into such first."""
+    """The targets' own arrays; a sequence of `Target` is converted first."""
     targets = Targets.of(targets)
     return TargetArrays(kind=targets.kind, T_world_tool=targets.T_world_tool)
 
@@ -89,7 +89,7 @@ def _body_row(robot: Robot, body: Body, carries_tool: bool) -> tuple[int, int, b
 
 
 def _align(body: Body) -> Floats:
-    """T_body_aligned: the body's frame, turned so that its joint axis is z; a pure rotation, so .T is its inverse."""
+    """T_body_aligned: the body's frame, rotated so that its joint axis is z; a pure rotation, so .T is its inverse."""
     return transform(rotation_with_z(body.axis), np.zeros(3))
 
 

@@ -1,7 +1,7 @@
 """A proved bound on where the tool can be: what lies outside is out of reach, whatever the joints do.
 
-Walk from the world to the tool. Joints with parallel axes form a run: along their common axis their offsets and slides
-add up exactly, across it they can at best be stretched into one line. So the tool lies within a ball around a convex
+Walk from the world to the tool. Joints with parallel axes form a run: along their common axis offsets and prismatic
+joints add up exactly, across it they can at best be stretched into one line. So the tool lies in a ball around a convex
 set that is simple: what the leading prismatic joints span, widened by the cylinder of the first run. Its distance is
 approached from below: a plane that parts a point from the whole set proves how far out the point is at least.
 
@@ -16,21 +16,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.model.chain import Chain, Link, path_to_tool, turns
+from ikde.model.chain import Chain, Link, is_revolute, path_to_tool
 from ikde.model.robot import Robot
 
 PARALLEL = 1e-9  # between axes of one run; by how far they are not is added to what the run can reach
-SWEEPS = 60  # of the search for the nearest point; two are enough where slides are at right angles
+SWEEPS = 60  # of the search for the nearest point; two are enough where prismatic joints are at right angles
 CONVERGED, ROUNDING = 1e-13, 2e-15  # of all lengths
 TINY_M = 1e-300
-SKEW = 3.0  # rad: how far a matrix may turn directions, times what it lacks of a rotation
+SKEW = 3.0  # rad: how far a matrix may rotate directions, times what it lacks of a rotation
 
 Vector = tuple[float, float, float]
 Column = Any
 """A float, or as many as there are positions [T]."""
 
 
-class _Slide(NamedTuple):
+class _Prismatic(NamedTuple):
     """A direction of length 1, and how far along it something can be at least and at most, m."""
 
     direction: Vector
@@ -51,10 +51,10 @@ _FLOAT, _COLUMN = _Arithmetic(min, max, math.sqrt), _Arithmetic(np.minimum, np.m
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reach:
-    """All that the tool can reach lies in here: around `centre`, the sums of slides, a disc and a ball; m."""
+    """All that the tool can reach lies in here: around `centre`, the sums of prismatic joints, a disc and a ball; m."""
 
     centre: Vector
-    slides: tuple[_Slide, ...]
+    prismatic: tuple[_Prismatic, ...]
     axis: Vector
     """Of the disc."""
     disc: float
@@ -91,16 +91,16 @@ class Reach:
         return excess
 
     def _begin(self, x: Column, y: Column, z: Column) -> list[Column]:
-        """The offset from the centre, what is left of it, the share of the disc, and of each slide."""
+        """The offset from the centre, what is left of it, the share of the disc, and of each prismatic joint."""
         x, y, z = x - self.centre[0], y - self.centre[1], z - self.centre[2]
         nothing = 0.0 * x
-        return [x, y, z, x, y, z, nothing, nothing, nothing, *[nothing] * len(self.slides)]
+        return [x, y, z, x, y, z, nothing, nothing, nothing, *[nothing] * len(self.prismatic)]
 
     def _sweep(self, state: list[Column], how: _Arithmetic) -> tuple[Column, Column]:
-        """Better shares of slides and disc, put into `state`; the distance that is left, and what is proved of it."""
+        """Better shares of joints and disc, put into `state`; the distance that is left, and what is proved of it."""
         least, most, root = how
         ox, oy, oz, x, y, z, fx, fy, fz, *taken = state
-        for k, ((dx, dy, dz), low, high) in enumerate(self.slides):
+        for k, ((dx, dy, dz), low, high) in enumerate(self.prismatic):
             before = taken[k]
             taken[k] = share = least(most(before + (x * dx + y * dy + z * dz), low), high)
             step = share - before
@@ -117,7 +117,7 @@ class Reach:
         nx, ny, nz = x / length, y / length, z / length
         # How far beyond all that can be summed up the offset lies along this direction.
         bound = ox * nx + oy * ny + oz * nz
-        for (dx, dy, dz), low, high in self.slides:
+        for (dx, dy, dz), low, high in self.prismatic:
             along = nx * dx + ny * dy + nz * dz
             bound = bound - most(along * low, along * high)
         return distance, bound - self.disc * root(_square(self._across(nx, ny, nz))) if self.disc > 0.0 else bound
@@ -136,7 +136,7 @@ def _square(vector: Sequence[Column]) -> Column:
 
 @dataclass(slots=True)
 class _Run:
-    """Revolute joints with parallel axes, and slides between them: sums along the axis, and across it stretched; m."""
+    """Revolute joints with parallel axes, and prismatic ones between them: summed along it, stretched across it; m."""
 
     axis: Floats
     low: float = 0.0
@@ -147,15 +147,15 @@ class _Run:
     """Sum of the angles between the axes, rad."""
 
     def add(self, offset: Floats) -> None:
-        self.slide(offset, 1.0, 1.0)
+        self.add_prismatic(offset, 1.0, 1.0)
 
-    def slide(self, direction: Floats, lower: float, upper: float) -> None:
+    def add_prismatic(self, direction: Floats, lower: float, upper: float) -> None:
         parallel = float(direction @ self.axis)
         ends = parallel * lower, parallel * upper
         self.low, self.high = self.low + min(ends), self.high + max(ends)
-        farthest = max(abs(lower), abs(upper))
-        self.across += farthest * _norm(direction - parallel * self.axis)
-        self.total += farthest * _norm(direction)
+        largest = max(abs(lower), abs(upper))
+        self.across += largest * _norm(direction - parallel * self.axis)
+        self.total += largest * _norm(direction)
 
     @property
     def length(self) -> float:
@@ -165,27 +165,27 @@ class _Run:
 def bound_reach(chain: Chain) -> Reach:
     """The bound, ready to be asked about positions. Sound for any tree; sharp for the usual ones.
 
-    Ranges of turns do not count, but a joint that may not turn at all is part of its link.
+    Ranges of revolute joints do not count, but one that may not rotate at all is part of its link.
     """
     links = chain.links
     first = next((i for i, link in enumerate(links) if link.is_revolute), len(links))
-    R, centre, slides = np.eye(3), np.zeros(3), []
+    R, centre, prismatic = np.eye(3), np.zeros(3), []
     for link in links[:first]:
         centre = centre + R @ link.p_before_link
         R = R @ link.R_before_link
-        slides.append(_Slide(as_vector(R @ link.axis), link.lower, link.upper))
-    askew = SKEW * chain.skew * sum(max(abs(slide.low), abs(slide.high)) for slide in slides)
+        prismatic.append(_Prismatic(as_vector(R @ link.axis), link.lower, link.upper))
+    askew = SKEW * chain.skew * sum(max(abs(joint.low), abs(joint.high)) for joint in prismatic)
     if first == len(links):
         centre, no_disc = as_vector(centre + R @ chain.p_link_tool), {"axis": (0.0, 0.0, 0.0), "disc": 0.0}
-        return Reach(centre=centre, slides=tuple(slides), **no_disc, ball=askew, length=chain.length_m)
+        return Reach(centre=centre, prismatic=tuple(prismatic), **no_disc, ball=askew, length=chain.length_m)
     centre = centre + R @ links[first].p_before_link
     axis = as_vector(R @ links[first].R_before_link @ links[first].axis)
     runs = _runs(links[first:], chain.p_link_tool)
     askew += (2.0 * sum(run.tilt for run in runs) + SKEW * chain.skew) * sum(run.total for run in runs)
-    slides.append(_Slide(axis, runs[0].low, runs[0].high))
+    prismatic.append(_Prismatic(axis, runs[0].low, runs[0].high))
     return Reach(
         centre=as_vector(centre),
-        slides=tuple(slides),
+        prismatic=tuple(prismatic),
         axis=axis,
         disc=runs[0].across,
         ball=sum(run.length for run in runs[1:]) + askew,
@@ -194,9 +194,9 @@ def bound_reach(chain: Chain) -> Reach:
 
 
 def arm_length_m(robot: Robot) -> float:
-    """Length of the chain from the first joint that turns to the tool, stretched, in m; slides at zero."""
+    """Length of the chain from the first revolute joint to the tool, stretched, in m; prismatic joints at zero."""
     path, p_body_tool, _ = path_to_tool(robot)
-    first = next((i for i, body in enumerate(path) if turns(robot, body)), len(path))
+    first = next((i for i, body in enumerate(path) if is_revolute(robot, body)), len(path))
     offsets = [body.T_parent_body[:3, 3] for body in path[first + 1 :]]
     return sum(map(_norm, [*offsets, p_body_tool]))
 
@@ -211,7 +211,7 @@ def _runs(links: Sequence[Link], p_link_tool: Floats) -> list[_Run]:
             axis = R_run_link @ link.axis
             apart = _sine(axis, runs[-1].axis)
             if not link.is_revolute:
-                runs[-1].slide(axis, link.lower, link.upper)
+                runs[-1].add_prismatic(axis, link.lower, link.upper)
             elif apart <= PARALLEL:
                 runs[-1].tilt += apart
             else:

@@ -33,7 +33,7 @@ class Joint:
     kind: JointKind
     lower: float = -np.inf
     upper: float = np.inf
-    """Limits: infinite of a continuous joint, which turns without end, and finite of any other."""
+    """Limits: infinite of a continuous joint, which rotates without end, and finite of any other."""
     home: float
     max_speed: float | None = None
     """m/s or rad/s; None: the robot's file gives none. No solve depends on it, a track does (`MotionLimits.of`)."""
@@ -55,7 +55,7 @@ class Frame:
     """[3, 3]"""
     joint: str | None = None
     axis: Floats | None = None
-    """[3] unit vector in this frame; the joint turns about it or slides along it."""
+    """[3] unit vector in this frame; the joint rotates about it or moves along it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,11 +100,11 @@ class Detector:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wheels:
-    """The two driven wheels of a base that drives in the plane and turns, side by side on one axis."""
+    """The two driven wheels of a planar base (x, y, yaw), side by side on one axis."""
 
     radius_m: float
     half_track_m: float
-    """From the middle of the base, the origin of what its turning joint moves, to either wheel."""
+    """From the middle of the base, the origin of what its yaw joint moves, to either wheel."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,7 +208,7 @@ class Robot:
         """Ranges [N] that written kernels hold for: `drawn`, and all between it and what it was by the robot's file.
 
         So a run that narrows limits needs no kernels of its own, and one that widens them has some, but for a joint
-        that could turn all around before: one turn is as good as many.
+        that could rotate all around before: one turn is as good as many.
         """
         lower, upper = self.drawn
         if not self.file_ranges:

@@ -209,11 +209,11 @@ def _read_axes(values: ArrayLike, rows: Rows) -> Floats:
     return axes / lengths[..., None]
 
 
-def _read_vectors(values: ArrayLike, name: str, farthest: float, rows: Rows) -> Floats:
-    """Vectors [*rows, 3] of finite numbers up to `farthest`."""
+def _read_vectors(values: ArrayLike, name: str, largest: float, rows: Rows) -> Floats:
+    """Vectors [*rows, 3] of finite numbers up to `largest`."""
     vectors = _read(values, name, (*rows, 3))
-    good = np.all(np.abs(vectors) <= farthest, axis=-1)  # False for NaN
-    _refuse(good, name, lambda row: f"expected finite numbers up to {farthest:g}, got {vectors[row].tolist()}")
+    good = np.all(np.abs(vectors) <= largest, axis=-1)  # False for NaN
+    _refuse(good, name, lambda row: f"expected finite numbers up to {largest:g}, got {vectors[row].tolist()}")
     return vectors
 
 

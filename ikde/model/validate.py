@@ -105,7 +105,7 @@ def _check_joints(robot: Robot) -> None:
             _require(endless, "a continuous joint has no limits; one with limits is revolute", *where, key)
         for key in ("home",) if joint.kind == "continuous" else ("lower", "upper", "home"):
             _require(bool(abs(getattr(joint, key)) <= MAX_MAGNITUDE), _too_far(joint, getattr(joint, key)), *where, key)
-        _require(joint.lower <= joint.upper, "limits are upside down: upper is below lower", *where, "upper")
+        _require(joint.lower <= joint.upper, "the upper limit is below the lower one", *where, "upper")
         inside = joint.lower <= joint.home <= joint.upper
         _require(inside, "home is outside the limits", *where, "home")
         for key in ("max_speed", "max_acceleration", "max_effort"):
@@ -194,7 +194,7 @@ def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int,
         body = tree.frame_body[row.start]
         _require(
             body == tree.frame_body[row.end],
-            "a joint moves these two frames against each other; add a fixed frame on one body",
+            "these two frames are on different bodies; add a fixed frame on one of the two",
             *here,
             "to",
         )
@@ -245,7 +245,9 @@ def _check_conventions(robot: Robot) -> None:
         _require(name != robot.convention, "this is the convention the file is written in", "conventions", name)
         for joint, offset in offsets.items():
             _check_name(joint, kinds, ("conventions", name, joint), "joint")
-            _require(kinds[joint] != "prismatic", "only a joint that turns can be shifted", "conventions", name, joint)
+            _require(
+                kinds[joint] != "prismatic", "only a revolute joint can have an offset", "conventions", name, joint
+            )
             is_near = bool(abs(offset) <= MAX_MAGNITUDE)
             _require(is_near, f"expected at most {MAX_MAGNITUDE:g} rad either way", "conventions", name, joint)
 
@@ -255,7 +257,9 @@ def _check_wheels(robot: Robot) -> None:
     wheels = robot.wheels
     for key, what, value in (("wheels", "wheels need", wheels), ("drive", "a drive needs", robot.drive)):
         drives = value is None or bool(find_planar_base(robot)[0] >= 0)
-        needed = f"{what} a base that slides along x, then y, turns about z, and carries all that can collide"
+        needed = (
+            f"{what} a planar base, prismatic along x and y and revolute about z, that carries all that can collide"
+        )
         _require(drives, needed, key)
     _require(robot.drive is None or robot.drive in DRIVES, f"expected one of {', '.join(DRIVES)}", "drive")
     if wheels is None:

@@ -58,10 +58,10 @@ class Solutions:
 def apply_setup(robot: Robot, setup: Setup) -> Robot:
     """The robot with a setup's joint ranges."""
     offsets = convention_offsets(robot, "classical") if setup.limits == "classical" else np.zeros(len(robot.joints))
-    turn = {"half_turn": np.pi, "full_turn": 2.0 * np.pi}.get(setup.limits)
+    reach = {"half_turn": np.pi, "full_turn": 2.0 * np.pi}.get(setup.limits)
     joints = []
     for joint, offset in zip(robot.joints, offsets, strict=True):
-        lower, upper = (joint.lower - offset, joint.upper - offset) if turn is None else (-turn, turn)
+        lower, upper = (joint.lower - offset, joint.upper - offset) if reach is None else (-reach, reach)
         joints.append(replace(joint, lower=lower, upper=upper))
     return limit_base(replace(robot, joints=tuple(joints)), setup.base_half_width_m)
 

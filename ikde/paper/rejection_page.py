@@ -98,7 +98,7 @@ def _judge(data: Rejection) -> Text:
         worst = max(abs(ours.percent - printed.percent) for printed, ours in cells)
         lines.append(
             f"- {name}: {met} of {len(cells)} of our rates lie within the sampling error of the print, "
-            f"{exact} of the printed ones within our narrower intervals; the farthest is {fixed(worst, 1)} points off."
+            f"{exact} of the printed ones within our narrower intervals; the largest distance {fixed(worst, 1)} points."
         )
     return Text("\n".join(lines))
 

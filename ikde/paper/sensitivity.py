@@ -57,7 +57,7 @@ class Distance:
     group: str
     value: str
     reading: str
-    farthest_points: float | None  # None where a target has no solutions
+    distance_points: float | None  # None where a target has no solutions
 
     @property
     def change(self) -> str:
@@ -115,12 +115,12 @@ def compute_sensitivity(inputs: Inputs) -> Sensitivity:
     """Rates of both readings for every variation, and how far each is from the print."""
     printed = {name: read_print(inputs.published["table_4"][name]) for name in inputs.targets}
     rows = [_rate(printed, *row) for row in _list_rows(inputs)]
-    known = (row for row in rows if row.farthest_points is not None)
-    ranked = sorted(known, key=lambda row: row.farthest_points or 0.0)
+    known = (row for row in rows if row.distance_points is not None)
+    ranked = sorted(known, key=lambda row: row.distance_points or 0.0)
     return Sensitivity(
         rows=rows,
         closest=[
-            Distance(group=row.group, value=row.value, reading=row.reading, farthest_points=row.farthest_points)
+            Distance(group=row.group, value=row.value, reading=row.reading, distance_points=row.distance_points)
             for row in ranked[:CLOSEST]
         ],
         printed=printed,
@@ -161,8 +161,8 @@ def _rate(
         rejected = reject(spheres, Q[name])
         cells.append(CellRate(target=name, spheres=spheres, **rate_fields(int(rejected.sum()), len(rejected))))
     worst = max(abs(cell.percent - printed[cell.target][cell.spheres].percent) for cell in cells)
-    farthest = worst if all(cell.SN for cell in cells) else None
-    return VariedRates(group=group, value=value, reading=reading, cells=cells, farthest_points=farthest)
+    largest = worst if all(cell.SN for cell in cells) else None
+    return VariedRates(group=group, value=value, reading=reading, cells=cells, distance_points=largest)
 
 
 def show_sensitivity(data: Sensitivity, _: Inputs) -> Section:
@@ -198,15 +198,15 @@ def _make_closest(data: Sensitivity) -> Table:
         data.closest,
         label("change", lambda row: row.change),
         label("pairs", lambda row: row.reading),
-        ours("farthest of four rates from the print", "points", _format_distance),
+        ours("largest distance of four rates from the print", "points", _format_distance),
         caption="The settings that come closest to the print",
         note=f"A rate's interval is up to ±{fixed(widest, 1)} points wide, and all rows share their random "
-        "streams: settings that differ by less cannot be told apart.",
+        "streams: settings that differ by less cannot be distinguished.",
     )
 
 
 def _format_distance(row: Distance) -> str:
-    return "–" if row.farthest_points is None else fixed(row.farthest_points, 1)
+    return "–" if row.distance_points is None else fixed(row.distance_points, 1)
 
 
 def _make_rates(data: Sensitivity, reading: str) -> Table:
@@ -216,10 +216,10 @@ def _make_rates(data: Sensitivity, reading: str) -> Table:
         label("change", lambda row: row.change),
         (Column("solved"), lambda row: f"{sum(cell.SN for cell in row.cells[::2]):,}"),
         *(_show_cell(data, k) for k in range(len(rows[0].cells))),
-        (Column("farthest", "points"), _format_distance),
+        (Column("largest distance", "points"), _format_distance),
         caption=f"Rejected solutions, {READING_NAMES[reading]}",
         note=f"Rates with Wilson's 95 % interval; {2 * data.settings['solves']:,} solves a row, of both targets; "
-        "farthest: the largest of four distances from the print.",
+        "largest distance: that of four rates from the print.",
     )
 
 

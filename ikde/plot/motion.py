@@ -84,11 +84,11 @@ def plot_base(motion: TrackSummary) -> Any:
     x, y, heading = (motion.robot.joint_names.index(name) for name in trajectory.base_joints)
     times, q = trajectory.times_s, trajectory.q
     place = [Line(label=name, x=times, y=q[:, joint]) for name, joint in (("x", x), ("y", y))]
-    turned = Line(label="", x=times, y=DEG * q[:, heading])
+    yaw = Line(label="", x=times, y=DEG * q[:, heading])
     ends = DEG * _ranges(motion)[heading]
     panels = [
         Panel(y=Axis(label="place", unit="m"), lines=place, min_span=MIN_PLACE_MM / MM),
-        Panel(y=Axis(label="heading", unit="deg"), lines=[turned], bounds=ends, min_span=MIN_ROTATION_DEG),
+        Panel(y=Axis(label="heading", unit="deg"), lines=[yaw], bounds=ends, min_span=MIN_ROTATION_DEG),
     ]
     return plot_panels([*panels, *_speed_panels(motion, x, heading)], x=TIME)
 
@@ -99,10 +99,10 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     times, v = _in_steps(motion, trajectory.v.reshape(-1, len(labels)))
     _, omega = _in_steps(motion, trajectory.omega[:, None])
     lines = [Line(label=label, x=times, y=v[:, k]) for k, label in enumerate(labels)]
-    turning = Line(label="", x=times, y=DEG * omega[:, 0])
+    yaw_rate = Line(label="", x=times, y=DEG * omega[:, 0])
     panels = [
         Panel(y=Axis(label="v", unit="m/s"), lines=lines, bounds=bounds[x]),
-        Panel(y=Axis(label="ω", unit="deg/s"), lines=[turning], bounds=DEG * bounds[heading], min_span=MIN_RATE),
+        Panel(y=Axis(label="ω", unit="deg/s"), lines=[yaw_rate], bounds=DEG * bounds[heading], min_span=MIN_RATE),
     ]
     if trajectory.wheel_speeds is not None:
         _, speeds = _in_steps(motion, trajectory.wheel_speeds)

@@ -1,6 +1,6 @@
 """The little markup of a page's text: `` `code` ``, `**bold**` and `[text](#anchor)`.
 
-A backslash takes a mark at its face value; `verbatim` does so for text that somebody else has written.
+A backslash takes a mark at its face value; `verbatim` does so for text from elsewhere.
 """
 
 import re

@@ -142,7 +142,7 @@ def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     else:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
         table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
-    table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, as weighed")
+    table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, weighted")
     table.add_row("self-collision", COLLISIONS[result.collision])
     table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""

@@ -107,17 +107,17 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
     yield "largest error in total", f"{_mm(graded.total_error_m)} mm", ""
     if trajectory.path.orientation != "free":
-        turn = graded.largest_orientation_error_rad
-        yield "largest orientation error", f"{_tiny(turn)} rad", f"{limits.orientation_error_rad:g} rad"
+        angle = graded.largest_orientation_error_rad
+        yield "largest orientation error", f"{_tiny(angle)} rad", f"{limits.orientation_error_rad:g} rad"
     yield from _list_limits(motion)
     yield from _list_clearance(motion)
     if len(trajectory.deviation_m):
         off = f"{significant(MM * float(trajectory.deviation_m.max()))} mm"
         if trajectory.path.orientation != "free":
             off += f", {_tiny(float(trajectory.deviation_rad.max()))} rad"
-        yield "tool off the path half-way between samples, at most", off, ""
+        yield "largest distance from the path between samples", off, ""
     if trajectory.drive == "differential":
-        yield "base sliding sideways, at most", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
+        yield "sideways slip of the base", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
     if motion.started:
         yield "smallest singular value of the arm", singular(float(motion.singular_values.min())), ""
     if len(trajectory.seconds):
@@ -134,7 +134,7 @@ def _list_limits(motion: TrackSummary) -> Iterator[Row]:
         name, value, end = left
         scale, unit = (MM, "mm") if _is_prismatic(motion, name) else (DEG, "deg")
         outside = f", {violations.range} outside" if violations.range else ""
-        yield f"least range left, {name}{outside}", f"{fixed(scale * value, 1)} {unit}", f"to {scale * end:g} {unit}"
+        yield f"joint-limit margin, {name}{outside}", f"{fixed(scale * value, 1)} {unit}", f"to {scale * end:g} {unit}"
     distance, most = motion.largest_distance_m, motion.limits.max_distance_m
     if distance is not None and most is not None:
         beyond = f", {violations.distance} beyond" if violations.distance else ""

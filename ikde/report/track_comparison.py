@@ -28,7 +28,7 @@ FIGURES = (
     *(Column("mm", group="largest error"), Column("rad", group="largest error")),
     *(Column("limits", group="broken"), Column("collisions", group="broken")),
     *(Column("mm", group="largest step"), Column("deg", group="largest step")),
-    Column("least σ"),
+    Column("smallest σ"),
     Column("clearance", "mm"),
     *(Column("median", "µs", group="a sample"), Column("p99", "µs", group="a sample")),
     Column("whole path", "s"),
@@ -82,7 +82,7 @@ def make_runs_table(compared: Sequence[Compared]) -> Table:
         rows=tuple(rows),
         caption="What each method reaches, breaks and costs",
         note="Counts are ranges over the seeds; errors, steps and clearances the worst. A step is what the base or a "
-        "joint does in one sample. Clearance is the certified one, between the samples, too. σ is the least singular "
+        "joint does in one sample. Clearance is the certified one, between the samples, too. σ: the smallest singular "
         "value of the arm's Jacobian, in m and rad, in what the path asks for. Limits counts every joint, wheel and "
         "sample by itself. Times are those of the first seed, which ran alone: a sample of continuation is a step of "
         "the motion that was found, the whole path all the search for it, starts and backtracking; the other two were "

@@ -143,12 +143,12 @@ def _headline(motion: TrackSummary) -> list[Block]:
 
 
 def _make_clearance(motion: TrackSummary) -> Number:
-    """The least clearance, and what is certain between samples."""
+    """The smallest clearance, and what is certain between samples."""
     clearance_m, proof = motion.grade.clearance_m, motion.certificate
     if clearance_m is None:
         return Number("not checked", "self-collision", "no detector")
     certain = f"{gap_mm(proof.clearance_m, 1)} mm certified between" if proof else ""
-    return Number(f"{gap_mm(clearance_m, 1)} mm", "least clearance at samples", certain)
+    return Number(f"{gap_mm(clearance_m, 1)} mm", "smallest clearance at samples", certain)
 
 
 def _tell_black(motion: TrackSummary) -> str:

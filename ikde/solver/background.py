@@ -105,7 +105,7 @@ class Child:
     def compile(self, question: Question) -> bool:
         """True if it is at work, or has been started for this; False if it has ended without: it is not tried again.
 
-        What is asked while it works on something else has its turn when that is done, if it is still asked then.
+        What is asked while it works on something else is compiled when that is done, if it is still asked then.
         """
         with self._lock:
             if self.is_at_work:
@@ -150,8 +150,8 @@ def start(question: dict[str, Any]) -> "subprocess.Popen[bytes]":
         stderr=subprocess.DEVNULL,
         **flags,
     )
-    told = {**question, "path": sys.path, "parent": os.getpid(), "cache": str(cache_folder.CACHE_FOLDER)}
-    process.stdin.write(json.dumps(told).encode() + b"\n")
+    request = {**question, "path": sys.path, "parent": os.getpid(), "cache": str(cache_folder.CACHE_FOLDER)}
+    process.stdin.write(json.dumps(request).encode() + b"\n")
     process.stdin.flush()
     return process
 

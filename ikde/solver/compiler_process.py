@@ -1,7 +1,7 @@
 """The process behind `solver/background.py`: compiles what one question needs into the cache, and ends.
 
-It is told by its parent, on standard input, a robot as plain data: no code, no pickle, no name of a file but that of
-the cache folder. Nothing is imported before it is its turn, so that those which wait take no room.
+Its parent sends it, on standard input, a robot as plain data: no code, no pickle, no name of a file but that of
+the cache folder. Nothing is imported before it may compile, so that those which wait take no room.
 """
 
 import os
@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 LOCK = "compiling.lock"
-LOOK_S = 0.5
+POLL_S = 0.5
 
 
 def run(question: dict[str, Any]) -> None:
-    """Wait for the turn, compile, end; at the lowest priority."""
+    """Wait for the lock, compile, end; at the lowest priority."""
     if hasattr(os, "nice"):
         os.nice(19)
     threading.Thread(target=_end_with, args=(question["parent"],), daemon=True).start()
@@ -58,7 +58,7 @@ def take_turn(cache: Path) -> Iterator[None]:
 def _end_with(parent: int) -> None:
     """End when the parent has: another process may have inherited the other end of standard input."""
     while os.getppid() == parent:
-        time.sleep(LOOK_S)
+        time.sleep(POLL_S)
     leave()
 
 

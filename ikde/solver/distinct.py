@@ -54,7 +54,7 @@ def solve_distinct(
     method: str = "auto",
     **question: Unpack[Question],
 ) -> list[SolveResult]:
-    """Up to `count` distinct solutions: each two differ by more than 0.1 rad in a turn or 50 mm in a slide.
+    """Up to `count` distinct solutions: any two differ by more than 0.1 rad or 50 mm in a joint.
 
     The list is shorter if no more are found; unreached, it holds one result with the reason. Plain numpy has graded
     each (`verified`). A timeout is that of the whole call.
@@ -168,8 +168,8 @@ def _go_on(
 
 
 def are_distinct(robot: Robot, q: Floats, other: Floats) -> bool:
-    """True if a revolute joint differs by more than 0.1 rad (around the circle) or a slide by more than 50 mm."""
+    """True if a revolute joint differs by more than 0.1 rad (around the circle) or a prismatic one by 50 mm."""
     difference = np.abs(q - other)
-    turns = difference[~robot.is_prismatic] % (2.0 * np.pi)
-    turned = np.minimum(turns, 2.0 * np.pi - turns) > REVOLUTE_APART_RAD
-    return bool(np.any(turned) or np.any(difference[robot.is_prismatic] > PRISMATIC_APART_M))
+    angles = difference[~robot.is_prismatic] % (2.0 * np.pi)
+    rotated = np.minimum(angles, 2.0 * np.pi - angles) > REVOLUTE_APART_RAD
+    return bool(np.any(rotated) or np.any(difference[robot.is_prismatic] > PRISMATIC_APART_M))

@@ -39,7 +39,7 @@ PROVED = {
     StopReason.COLLISION: "every configuration with this pose collides or is outside the limits",
 }
 
-MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and looks into what is in the way"
+MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and diagnoses what is in the way"
 
 _OUT_OF_REACH, _COLLISION, _BUDGET, _TIMED_OUT = map(
     STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT)

@@ -5,7 +5,7 @@ Stand at the shoulder, the first axis pointing up, and look to the wrist centre,
 * `right`: the wrist centre is to the right of the plane through the first axis that the links are parallel to, `left`:
   to its left; if it lies in that plane, the second axis tells where right is;
 * `up`: the elbow is above the line from shoulder to wrist, `down`: below;
-* `flip`: the fifth joint is turned the other way, and the fourth and the sixth by half a turn.
+* `flip`: the fifth joint is rotated the other way, and the fourth and the sixth by half a turn.
 """
 
 import numpy as np

@@ -23,7 +23,7 @@ from ikde.solver.metrics import Metrics
 from ikde.solver.problem import Problem
 from ikde.solver.way import as_word
 
-FEW, FEW_WITHOUT_LANES = 32, 1000
+MAX_FEW, MAX_WITHOUT_LANES = 32, 1000
 
 
 def answer_few(problem: Problem, targets: Targets, *, seed: int, streams: Sequence[int]) -> SearchState | None:
@@ -33,10 +33,10 @@ def answer_few(problem: Problem, targets: Targets, *, seed: int, streams: Sequen
     `referee`.
     """
     count = len(targets)
-    if problem.settings.timeout_s is not None or count > FEW_WITHOUT_LANES or not _is_usual(problem):
+    if problem.settings.timeout_s is not None or count > MAX_WITHOUT_LANES or not _is_usual(problem):
         return None
     asked = _find_asked(problem, {*targets.kind.tolist()})
-    if not asked or (count > FEW and _has_lanes(problem, asked)):
+    if not asked or (count > MAX_FEW and _has_lanes(problem, asked)):
         return None
     return _Rows(problem, targets, asked).answer(as_word(seed), streams)
 

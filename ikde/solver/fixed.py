@@ -1,4 +1,4 @@
-"""Where no joint may move there is nothing to search: the one configuration is looked at, and that is the answer."""
+"""Where no joint may move there is nothing to search: the one configuration is graded, and that is the answer."""
 
 import time
 from dataclasses import fields
@@ -15,11 +15,11 @@ from ikde.solver.metrics import Metrics, compute_metrics, make_metrics, pack_gra
 from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
 
-FEW = 64
+MAX_PLAIN = 64
 """Targets: so many are graded by the kernel in plain Python, 0.4 ms each, where compiling it takes 10 s."""
 
 
-def look(problem: Problem, targets: Targets, found: SearchState) -> None:
+def grade_fixed(problem: Problem, targets: Targets, found: SearchState) -> None:
     """Fill `found`: every target is tried once, with one evaluation, by no engine; what it is off by is exact."""
     began, settings, collision = time.perf_counter(), problem.settings, problem.collision
     found.q[:] = problem.lower
@@ -44,7 +44,7 @@ def look(problem: Problem, targets: Targets, found: SearchState) -> None:
 def _grade(problem: Problem, targets: Targets) -> Metrics:
     """Metrics of the one configuration for every target; the same bits whether machine code or Python computes them."""
     collision, settings, count = problem.collision, problem.settings, len(targets)
-    if count > FEW:
+    if count > MAX_PLAIN:
         return compute_metrics(collision, targets, np.tile(problem.lower, (count, 1)), settings)
     metrics, (kinds, T_world_tool), grader = (
         make_metrics(count),

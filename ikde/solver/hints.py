@@ -19,7 +19,9 @@ from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Bools, Grade, verify_many
 
-WIDER = 4.0  # how much wider the slides get when a probe asks whether limits are what stands in the way
+WIDER = (
+    4.0  # how much wider the ranges of prismatic joints get when a probe asks whether limits are what stands in the way
+)
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
 
 TOOL_AXES = {(1.0, 0.0, 0.0): "x axis", (0.0, 1.0, 0.0): "y axis", (0.0, 0.0, 1.0): "z axis"}
@@ -59,21 +61,23 @@ def meets(problem: Problem, target: Target, q: Floats) -> bool:
 
 def hint_at_bounds(problem: Problem, target: Target) -> str:
     """What opens the bounds that exclude a target, or that nothing does."""
-    frozen, slides = problem.frozen, [joint.name for joint in problem.robot.joints if _limits_bounds(joint)]
+    frozen, limiting = problem.frozen, [joint.name for joint in problem.robot.joints if _limits_bounds(joint)]
 
     def is_open(freed: Names, widened: Names) -> bool:
         return prove(problem.with_ranges(*_open_ranges(problem, freed, widened)), target) == (0.0, 0.0)
 
     ways = [f"free {_name(freed)}" for freed in _find_fewest(frozen, lambda names: is_open(names, ()))]
     if not ways:
-        ways = [f"a larger range for {_name(wide)}" for wide in _find_fewest(slides, lambda names: is_open((), names))]
+        ways = [
+            f"a larger range for {_name(wide)}" for wide in _find_fewest(limiting, lambda names: is_open((), names))
+        ]
     if not ways:
-        for wide in _find_fewest(slides, lambda names: is_open(frozen, names)):
+        for wide in _find_fewest(limiting, lambda names: is_open(frozen, names)):
             freed = _find_fewest(frozen, lambda names, wide=wide: is_open(names, wide))[0]
             ways.append(f"free {_name(freed)} and a larger range for {_name(wide)}")
     if ways:
         return f"{', or '.join(ways)}: then the bound no longer excludes the target"
-    widest = problem.with_ranges(*_open_ranges(problem, frozen, slides))
+    widest = problem.with_ranges(*_open_ranges(problem, frozen, limiting))
     far_m, off_rad = prove(widest, target)
     asked = ["a target closer to the robot"] if far_m > 0.0 else []
     asked += [f"another orientation ({_name_cone(widest, target)})"] if off_rad > 0.0 else []
@@ -146,7 +150,7 @@ def try_widening(problem: Problem, probe: Probe) -> str | None:
 
 
 def _limits_bounds(joint: Joint) -> bool:
-    """Whether a wider range may open a bound: the range of a turn does not count, unless it is a point."""
+    """Whether a wider range may open a bound: the range of a revolute joint does not count, unless it is a point."""
     return joint.kind == "prismatic" or joint.lower == joint.upper
 
 
@@ -159,17 +163,17 @@ def _open_ranges(problem: Problem, freed: Names, widened: Names) -> tuple[Floats
 
 
 def _widen(problem: Problem) -> tuple[Floats, Floats]:
-    """Slides four times as wide, revolute joints free to turn once around; what is frozen stays."""
-    slides, is_frozen = problem.robot.is_prismatic, np.isin(problem.robot.joint_names, problem.frozen)
+    """Prismatic joints with ranges four times as wide, revolute ones free to rotate once; what is frozen stays."""
+    prismatic, is_frozen = problem.robot.is_prismatic, np.isin(problem.robot.joint_names, problem.frozen)
     grow = 0.5 * (WIDER - 1.0) * (problem.upper - problem.lower)
-    lower = np.where(slides, np.maximum(problem.lower - grow, -MAX_MAGNITUDE), np.minimum(problem.lower, -np.pi))
-    upper = np.where(slides, np.minimum(problem.upper + grow, MAX_MAGNITUDE), np.maximum(problem.upper, np.pi))
+    lower = np.where(prismatic, np.maximum(problem.lower - grow, -MAX_MAGNITUDE), np.minimum(problem.lower, -np.pi))
+    upper = np.where(prismatic, np.minimum(problem.upper + grow, MAX_MAGNITUDE), np.maximum(problem.upper, np.pi))
     return np.where(is_frozen, problem.lower, lower), np.where(is_frozen, problem.upper, upper)
 
 
 def _name_cone(problem: Problem, target: Target) -> str:
-    """What the joints keep, however they turn, and the target asks for otherwise."""
-    cone = find_bounds(problem.robot, problem.lower, problem.upper).turning.find_worst(target)
+    """What the joints keep, however they rotate, and the target asks for otherwise."""
+    cone = find_bounds(problem.robot, problem.lower, problem.upper).orientation.find_worst(target)
     direction = TOOL_AXES.get(cone.tool, f"direction {_numbers(cone.tool)}")
     angles = " to ".join(dict.fromkeys(f"{angle:.3f}" for angle in (cone.low, cone.high)))
     return f"the tool's {direction} stays {angles} rad from {_numbers(cone.world)} of the world"
@@ -181,9 +185,9 @@ def _numbers(vector: Sequence[float]) -> str:
 
 def _leave_ranges(problem: Problem, q: Floats) -> Bools:
     """Which joints of `q` [N] stand outside their ranges, whatever whole turns are taken [N]."""
-    lower, upper, turn = problem.lower, problem.upper, np.where(problem.robot.is_prismatic, 0.0, 2.0 * np.pi)
-    turned = q + turn * np.ceil((lower - q) / (2.0 * np.pi))
-    return ~((lower <= q) & (q <= upper)) & ~((lower <= turned) & (turned <= upper))
+    lower, upper, period = problem.lower, problem.upper, np.where(problem.robot.is_prismatic, 0.0, 2.0 * np.pi)
+    shifted = q + period * np.ceil((lower - q) / (2.0 * np.pi))
+    return ~((lower <= q) & (q <= upper)) & ~((lower <= shifted) & (shifted <= upper))
 
 
 def _find_fewest(names: Names, helps: Callable[[Names], bool]) -> list[Names]:

@@ -13,7 +13,10 @@ from ikde.model.robot import Robot
 Weights = Mapping[str, float]
 """Weights by joint name, per m or rad."""
 
-LEAST, MOST = 1e-6, 1e6  # of a weight, per m or rad: beyond, a share of rounding would be another joint's motion
+MIN_WEIGHT, MAX_WEIGHT = (
+    1e-6,
+    1e6,
+)  # of a weight, per m or rad: beyond, a share of rounding would be another joint's motion
 
 
 def read_weights(robot: Robot, weights: Weights | None) -> Floats:
@@ -26,8 +29,14 @@ def read_weights(robot: Robot, weights: Weights | None) -> Floats:
     for name, value in weights.items():
         if name not in names:
             raise InputError(f"{robot.name} has no joint {name!r}{nearest(str(name), names)}", ("weights", str(name)))
-        if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not LEAST <= value <= MOST:
-            raise InputError(f"expected a number from {LEAST:g} to {MOST:g}, got {value!r}", ("weights", name))
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float | np.number)
+            or not MIN_WEIGHT <= value <= MAX_WEIGHT
+        ):
+            raise InputError(
+                f"expected a number from {MIN_WEIGHT:g} to {MAX_WEIGHT:g}, got {value!r}", ("weights", name)
+            )
         read[names.index(name)] = value
     read.setflags(write=False)
     return read
@@ -35,14 +44,14 @@ def read_weights(robot: Robot, weights: Weights | None) -> Floats:
 
 @lru_cache(maxsize=64)
 def default_weights(robot: Robot) -> Floats:
-    """Weights [N]: 1 / range, of a turn for a joint without limits; 1 / m for a base that drives in the plane.
+    """Weights [N]: 1 / range, or 1 / (2 pi) for a joint without limits; 1 / m for a planar base.
 
     So a joint's whole range counts as much as that of any other, and as much as one metre of driving.
     """
     lower, upper = robot.drawn
     widths = upper - lower
     widths[[k for k in find_planar_base(robot)[:2] if k >= 0]] = 1.0
-    weights = np.clip(1.0 / np.where(widths > 0.0, widths, 1.0), LEAST, MOST)
+    weights = np.clip(1.0 / np.where(widths > 0.0, widths, 1.0), MIN_WEIGHT, MAX_WEIGHT)
     weights.setflags(write=False)
     return weights
 

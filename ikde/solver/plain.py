@@ -16,7 +16,7 @@ from ikde.model.robot import WORLD, Pairs, Robot, SphereRow
 
 
 def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
-    """T of a joint [..., 4, 4]: a turn about `axis` [3] by `value` [...] rad, or a slide along it by `value` m."""
+    """T of a joint [..., 4, 4]: a rotation about `axis` [3] by `value` [...] rad, or a shift along it by `value` m."""
     T = np.zeros((*value.shape, 4, 4))
     T[...] = np.eye(4)
     if kind == "prismatic":

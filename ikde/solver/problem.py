@@ -47,7 +47,7 @@ class Problem:
 
     @property
     def centre(self) -> Floats:
-        """[N] what joints are turned to, by whole turns, and motions begin at: `near`, else home."""
+        """[N] what joints are unwound towards, by whole turns, and motions begin at: `near`, else home."""
         return self.robot.home if self.near is None else self.near
 
     @property
@@ -66,7 +66,7 @@ class Problem:
 
     @property
     def turns(self) -> tuple[Floats, Floats, NDArray[np.bool_], Floats]:
-        """What `kernels.turns.unwind` takes beside q: lower, upper, turning and centre, each [N].
+        """What `kernels.turns.unwind` takes beside q: lower, upper, is_revolute and centre, each [N].
 
         Inside the ranges of the problem and the robot's limits: no turn leads beyond them where a probe asks what
         wider ranges would bring.

@@ -24,7 +24,7 @@ class StopReason(StrEnum):
 
     REACHED = "reached"
     OUT_OF_REACH = "out_of_reach"
-    """A bound, or the closed form, proves that no joint values bring the tool there, or turn it so."""
+    """A bound, or the closed form, proves that no joint values bring the tool there, or orient it so."""
     COLLISION = "collision"
     """The pose was met, but only by configurations that collide with themselves, as far as trying tells, or as the
     reason says: proved, of all that are inside the limits."""
@@ -207,7 +207,7 @@ class SolveResult:
     @cached_property
     def solve_seconds(self) -> float:
         """Wall time of this search, without compilation; in bulk, very short searches share a call and its time
-        evenly."""
+        in equal parts."""
         return self._parts[5]
 
     @cached_property
@@ -256,7 +256,7 @@ _new, _set_parts = object.__new__, vars(SolveResult)["_parts"].__set__
 
 
 class ResultMaker:
-    """Makes the results of one problem from rows of numbers (`kernels/answer.py`): reached, unless it is told others.
+    """Makes the results of one problem from rows of numbers (`kernels/answer.py`): reached, if no counts say otherwise.
 
     Nothing is computed: the words, names and pairs of a result are made when they are asked for (1.6 us of 9).
     """

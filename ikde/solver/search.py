@@ -18,7 +18,7 @@ from ikde.solver.engine_table import ENGINES, NAMES
 from ikde.solver.engines.engine import Engine, SearchInputs
 from ikde.solver.engines.search_state import SearchState, make_search_state
 from ikde.solver.few import answer_few
-from ikde.solver.fixed import look
+from ikde.solver.fixed import grade_fixed
 from ikde.solver.problem import Problem
 from ikde.solver.proof import prove_many
 from ikde.solver.referee import Referee
@@ -26,7 +26,7 @@ from ikde.solver.referee import Referee
 REFUSALS = 16  # of one row by the grader, before the next engine takes over
 PIECE = 2**17  # targets: so many are finished before the next are begun, which bounds what is not kept
 PARTS = 16  # of a piece on each thread: their ends, where lanes run empty, cost little, and no thread waits long
-FEWEST = 512  # targets of a part that are worth a thread
+MIN_TARGETS = 512  # targets of a part that are worth a thread
 
 
 def search(
@@ -53,7 +53,7 @@ def search(
     targets, few = Targets.of(targets), None
     if problem.is_fixed:
         found = make_search_state(problem, len(targets))
-        look(problem, targets, found)
+        grade_fixed(problem, targets, found)
         return found
     if attempts is None and first_attempt == 0:
         few = answer_few(problem, targets, seed=seed, streams=streams)
@@ -192,7 +192,7 @@ def _hurry(engine: Engine, count: int) -> None:
 
 def _cut(rows: Ints, most: int, threads: int) -> list[range]:
     """Open rows in parts of at most `most`, each a range that may hold others."""
-    size = min(most, max(FEWEST, len(rows) // (PARTS * threads)))
+    size = min(most, max(MIN_TARGETS, len(rows) // (PARTS * threads)))
     parts = (rows[first : first + size] for first in range(0, len(rows), size))
     return [range(int(part[0]), int(part[-1]) + 1) for part in parts]
 

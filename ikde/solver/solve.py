@@ -49,7 +49,7 @@ def solve(
             the bit, if it meets the target.
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
         weights: of joints, by name, in the motion sqrt(sum (w_j dq_j)^2), per m or rad, 1e-6 to 1e6; left out: 1 /
-            range, of a turn for a joint without limits, and 1 / m for a base that drives in the plane.
+            range, 1 / (2 pi) for a joint without limits, and 1 / m for a planar base.
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None

@@ -46,8 +46,8 @@ def find_always_touching(collision: CollisionModel) -> AlwaysTouching | None:
     pairs, done = collision.pairs, 0
     while pairs and done < CONFIGURATIONS:
         piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
-        farthest = compute_gaps(collision, piece, pairs).max(axis=0)
-        pairs = tuple(pair for pair, gap in zip(pairs, farthest, strict=True) if gap <= collision.limit_m)
+        largest = compute_gaps(collision, piece, pairs).max(axis=0)
+        pairs = tuple(pair for pair, gap in zip(pairs, largest, strict=True) if gap <= collision.limit_m)
         done += len(piece)
     if not pairs:
         return None

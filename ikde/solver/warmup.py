@@ -60,7 +60,7 @@ def list_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
 
 
 def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None = None) -> list[Compiled]:
-    """Run stages in order; `progress` is told the number of each before it begins."""
+    """Run stages in order; `progress` is called with the number of each before it begins."""
     done = []
     for number, stage in enumerate(stages):
         if progress is not None:
@@ -72,7 +72,7 @@ def warm_up(stages: list[Stage], progress: Callable[[int, Stage], None] | None =
 
 
 def _stay_silent() -> None:
-    """`progress` has told what is compiled."""
+    """`progress` has said what is compiled."""
 
 
 def _solve_many(robot: Robot, collision: CollisionChoice, targets: list[Target], settings: SolveSettings) -> object:

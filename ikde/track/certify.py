@@ -1,7 +1,7 @@
 """Between samples: a lower bound on the clearance of the whole motion, and how far the tool leaves the path.
 
 Joints run linearly. Seen from a body that carries two components, only the joints between them move them, so the place
-of a base does not enter. If joint j turns by |dq_j|, no point of what it carries moves farther than |dq_j| times its
+of a base does not enter. If joint j rotates by |dq_j|, no point of what it carries moves farther than |dq_j| times its
 largest distance from the axis; so the gap of two spheres is nowhere in a segment below (gap(0) + gap(1) - travel) / 2,
 where travel is the sum over those joints. Segments whose bound is too weak are halved.
 """

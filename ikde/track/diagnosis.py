@@ -1,7 +1,7 @@
 """Why a rollout ends before its path does.
 
-Every limit is taken away in turn. The one without which a step is found is what stands in the way, and that step shows
-by how much. Only what is out of reach is proved; all else is what trying found, and is said as such.
+Every limit is relaxed, one after the other. The one without which a step is found is what stands in the way, and that
+step shows by how much. Only what is out of reach is proved; all else is what trying found, and is said as such.
 """
 
 import numpy as np
@@ -80,7 +80,7 @@ def explain_stop(rollout: Rollout, static: SolveResult | None) -> TrackStop:
     stop = _without_speed(rollout)
     if stop is not None:
         return stop
-    text = f"{tell_when(follower, sample)}: no way on within the limits was found"
+    text = f"{tell_when(follower, sample)}: no step within the limits was found"
     return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
 
 
@@ -91,7 +91,7 @@ def tell_uncertified(follower: Follower, sample: int, pair: tuple[str, str]) -> 
 
 
 def _try(follower: Follower, rollout: Rollout, scale: Floats | float = 1.0) -> Finding | None:
-    """The step from a rollout's end, if there is one; `scale` turns shares of its largest step into this follower's."""
+    """The step from a rollout's end, if there is one; `scale` makes shares of its largest step this follower's."""
     sample = rollout.last + 1
     q, step = np.zeros_like(rollout.rows[0]), np.zeros(follower.size)
     status, _, _ = track_sample(
@@ -178,7 +178,7 @@ def _without_wheels(rollout: Rollout) -> TrackStop | None:
     limit = follower.plan.limits.wheel_speed_rad_s
     if limit is None or needed <= limit:
         return None
-    text = f"{tell_when(follower, sample)}: a wheel turns at {needed:.4g} rad/s {IN_STEP}, its limit is {limit:.4g}"
+    text = f"{tell_when(follower, sample)}: a wheel rotates at {needed:.4g} rad/s {IN_STEP}, its limit is {limit:.4g}"
     return TrackStop(sample=sample, reason=TrackStopReason.WHEEL_LIMIT, text=text, limit="wheels")
 
 

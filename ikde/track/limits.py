@@ -63,7 +63,7 @@ class MotionLimits:
     def of(cls, robot: Robot, **changes: object) -> Self:
         """The joints' own speeds and accelerations, as the robot's file gives them.
 
-        Where it gives none: 0.5 m/s for a prismatic joint, pi/2 rad/s for one that turns [Qiao2022], any acceleration.
+        Where it gives none: 0.5 m/s for a prismatic joint, pi/2 rad/s for a revolute one [Qiao2022], any acceleration.
         """
         speed = [joint.max_speed or DEFAULT_SPEED[joint.kind] for joint in robot.joints]
         acceleration = np.array([joint.max_acceleration or np.inf for joint in robot.joints])

@@ -12,7 +12,7 @@ from ikde.formats.entries import only_key
 from ikde.formats.error_path import prefix_errors
 from ikde.kernels.arrays import Floats
 from ikde.track.expression import evaluate_formula
-from ikde.track.orientations import Turn, make_turn
+from ikde.track.orientations import Orientations, make_orientations
 from ikde.track.path import MAX_SAMPLES, ToolPath
 from ikde.track.segments import make_segments
 from ikde.track.shapes import follow_points, follow_segments
@@ -27,7 +27,7 @@ class Way:
     samples: int
     positions: Callable[[Floats], Floats]
     """Samples k [S], whole or not -> positions [S, 3] in m."""
-    turn: Callable[[Floats], Turn] | None = None
+    orient: Callable[[Floats], Orientations] | None = None
     """The same for orientations, where waypoints have some."""
 
 
@@ -45,7 +45,7 @@ def make_path(spec: TrackSpec, name: str, folder: Path) -> ToolPath:
     """
     way = _make_way(spec, folder)
     k = np.arange(2 * way.samples + 1) / 2.0
-    p, (orientation, R) = way.positions(k), _turn(spec, way, k)
+    p, (orientation, R) = way.positions(k), _orient(spec, way, k)
     try:
         return ToolPath(
             name=name,
@@ -99,18 +99,18 @@ def _between_waypoints(waypoints: Waypoints, spec: TrackSpec) -> Way:
     return Way(
         samples=samples,
         positions=lambda k: follow_points(points, k * legs / samples),  # exact where they are samples
-        turn=(lambda k: waypoints.turn(k * legs / samples)) if waypoints.are_turned else None,
+        orient=(lambda k: waypoints.orient(k * legs / samples)) if waypoints.have_orientations else None,
     )
 
 
-def _turn(spec: TrackSpec, way: Way, k: Floats) -> Turn:
+def _orient(spec: TrackSpec, way: Way, k: Floats) -> Orientations:
     """What is asked of the orientation at samples `k` [S]."""
-    if way.turn is not None:
+    if way.orient is not None:
         if spec.orientation is not None:
             raise InputError("the waypoints have orientations of their own; leave one of the two out", ("orientation",))
         with prefix_errors("path"):
-            return way.turn(k)
+            return way.orient(k)
     if spec.orientation is None or isinstance(spec.orientation, str):
         return "free", np.broadcast_to(np.eye(3), (len(k), 3, 3))
     with prefix_errors("orientation"):
-        return make_turn(spec.orientation, spec.units, k, way.samples)
+        return make_orientations(spec.orientation, spec.units, k, way.samples)

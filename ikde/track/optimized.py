@@ -125,5 +125,5 @@ def _measure_miss(follower: Follower, sample: int, q: Floats) -> str:
     target = follower.path.targets()[sample : sample + 1]
     tool = compute_frames(follower.robot, q[None])[follower.robot.tool]
     far = float(np.linalg.norm(tool[0, :3, 3] - target.p_world_tool[0]))
-    turn = float(compute_orientation_errors(target, tool[:, :3, :3])[0])
-    return f"{1e3 * far:.3g} mm" + (f" and {turn:.3g} rad" if turn > 0.0 else "")
+    angle = float(compute_orientation_errors(target, tool[:, :3, :3])[0])
+    return f"{1e3 * far:.3g} mm" + (f" and {angle:.3g} rad" if angle > 0.0 else "")

@@ -13,24 +13,24 @@ from ikde.model.rotation import length, rotation_with_z
 from ikde.model.target import MIN_LENGTH, Target, Targets
 from ikde.track.expression import evaluate_formula
 from ikde.track.slerp import PathOrientation, slerp
-from ikde.track.spec import Formula, KeyframeEntry, TurnEntry
+from ikde.track.spec import Formula, KeyframeEntry, PathOrientationEntry
 
-Turn = tuple[PathOrientation, Floats]
+Orientations = tuple[PathOrientation, Floats]
 """What is asked of the orientation, and rotations [S, 3, 3]."""
 
 
-def make_turn(entry: TurnEntry, units: UnitsEntry, k: Floats, samples: int) -> Turn:
+def make_orientations(entry: PathOrientationEntry, units: UnitsEntry, k: Floats, samples: int) -> Orientations:
     """Orientations at samples `k` [S] of so many; raises `InputError` with a path inside `entry`."""
     key = only_key(entry)
     with prefix_errors(key):
         if entry.keyframes is not None:
-            return _turn_keyframes(entry.keyframes, units, k / samples)
+            return _read_keyframes(entry.keyframes, units, k / samples)
         formulas: Sequence[Formula] = getattr(entry, key)
         columns = [evaluate_formula(index, formula, k, samples) for index, formula in enumerate(formulas)]
-        return _turn_formulas(key, np.column_stack(columns), units, k)
+        return _read_formulas(key, np.column_stack(columns), units, k)
 
 
-def _turn_formulas(key: str, values: Floats, units: UnitsEntry, k: Floats) -> Turn:
+def _read_formulas(key: str, values: Floats, units: UnitsEntry, k: Floats) -> Orientations:
     """Orientations from values [S, 3 or 4]."""
     if key == "rpy":
         return "pose", make_orientation("rpy", values * units.angle_rad)["R_world_tool"]
@@ -43,7 +43,7 @@ def _turn_formulas(key: str, values: Floats, units: UnitsEntry, k: Floats) -> Tu
     return "pose", make_orientation("quat_wxyz", units_only)["R_world_tool"]
 
 
-def _turn_keyframes(entries: Sequence[KeyframeEntry], units: UnitsEntry, share: Floats) -> Turn:
+def _read_keyframes(entries: Sequence[KeyframeEntry], units: UnitsEntry, share: Floats) -> Orientations:
     """Orientations at shares [S] of the path's time; before the first keyframe and after the last they stay."""
     targets = []
     for index, entry in enumerate(entries):

@@ -20,7 +20,7 @@ def make_line(start: Floats, to: Floats) -> Curve:
 
 
 def make_arc(start: Floats, center: Floats, normal: Floats, angle_rad: float) -> Curve:
-    """A circle's arc from `start` about the axis through `center` along `normal`, right-handed; many turns may do.
+    """A circle's arc from `start` about the axis through `center` along `normal`, right-handed; several turns may do.
 
     Raises:
         InputError: for a normal of length 0, or a start on the axis.

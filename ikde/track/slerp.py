@@ -16,8 +16,8 @@ def slerp(orientation: PathOrientation, R: Floats, at: Floats) -> Floats:
     """Rotations [S, 3, 3] at places `at` [S] along a list of rotations.
 
     Args:
-        orientation: `pose` turns about one axis between neighbours; `axis` moves the z columns on great circles, and
-            the turn about them means nothing; `free` gives identities.
+        orientation: `pose` rotates about one axis between neighbours; `axis` moves the z columns on great circles, and
+            the rotation about them means nothing; `free` gives identities.
         R: rotations [T, 3, 3] at the places 0, 1, ..., T - 1.
         at: places, 0 to T - 1; at whole numbers what is asked there comes back to rounding.
 

@@ -60,9 +60,9 @@ class ArcEntry(Entry):
     center: Vector
     """A point of the axis."""
     normal: Vector
-    """The axis' direction, any length; the turn about it is right-handed."""
+    """The axis' direction, any length; the rotation about it is right-handed."""
     angle: Number
-    """How far it turns; more than a whole turn and less than none will do."""
+    """The angle, right-handed about the axis; negative ones and more than a full turn are allowed."""
 
 
 class ArcThroughEntry(Entry):
@@ -87,7 +87,7 @@ class SegmentEntry(Entry):
     duration_s: Positive
     """Seconds: a whole number of samples."""
     pace: Literal["even", "smooth"] = "even"
-    """`even`: samples share the way out evenly; `smooth`: from rest to rest with minimum jerk."""
+    """`even`: samples are evenly spaced along the way; `smooth`: from rest to rest with minimum jerk."""
     line: LineEntry | None = None
     """A straight line."""
     arc: ArcEntry | None = None
@@ -116,7 +116,7 @@ class PathEntry(Entry):
     curve: CurveEntry | None = None
     """Lines, arcs and splines."""
     waypoints: Annotated[list[InlineTarget], Field(min_length=2)] | None = None
-    """A list of poses, written here: straight lines between them, turns on the shortest way."""
+    """A list of poses, written here: straight lines between them, shortest rotations between them."""
     file: FileEntry | None = None
     """A table of waypoints: CSV, Parquet or NPZ."""
 
@@ -128,26 +128,27 @@ class KeyframeEntry(OrientationEntry):
     """When: share of the path's time, 0 to 1."""
 
 
-class TurnEntry(Entry):
-    """How the tool is turned: exactly one key."""
+class PathOrientationEntry(Entry):
+    """The orientation of the tool: exactly one key."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
     axis: ThreeFormulas | None = None
-    """Direction of the tool's z axis, any length; the turn about it stays free. Numbers or formulas."""
+    """Direction of the tool's z axis, any length; the rotation about it is free. Numbers or formulas."""
     rpy: ThreeFormulas | None = None
     """Roll, pitch, yaw about the fixed axes of the world. Numbers or formulas."""
     quat_wxyz: FourFormulas | None = None
     """Quaternion, w first, any length. Numbers or formulas."""
     keyframes: Annotated[list[KeyframeEntry], Field(min_length=1, max_length=10_000)] | None = None
-    """Orientations at moments: even turns on the shortest way between them."""
+    """Orientations at moments: constant angular velocity on the shortest way between them."""
 
 
-def _free_or_turn(value: Any) -> str:
-    return "free" if isinstance(value, str) else "turn"
+def _free_or_given(value: Any) -> str:
+    return "free" if isinstance(value, str) else "given"
 
 
 Orientation = Annotated[
-    Annotated[Literal["free"], Tag("free")] | Annotated[TurnEntry, Tag("turn")], Discriminator(_free_or_turn)
+    Annotated[Literal["free"], Tag("free")] | Annotated[PathOrientationEntry, Tag("given")],
+    Discriminator(_free_or_given),
 ]
 
 
@@ -157,7 +158,7 @@ class LimitsEntry(Entry):
     ranges: bool = Field(default=True, strict=True)
     """Whether joints must stay in their ranges."""
     speed: dict[Name, NotNegative | None] = {}
-    """Joint, or `prismatic` or `revolute` for all others that slide or turn: units a second; 0: frozen, null: no limit.
+    """Joint, or `prismatic` or `revolute` for all others of that kind: units a second; 0: frozen, null: no limit.
     """
     acceleration: dict[Name, Positive | None] = {}
     """Likewise, units a second squared (default: no limits)."""
@@ -189,7 +190,7 @@ class TrackSpec(Entry):
     path: PathEntry
     """Where the tool goes."""
     orientation: Orientation | None = None
-    """`free`, or how the tool is turned (default: what the waypoints say, else free)."""
+    """`free`, or the orientation of the tool (default: what the waypoints say, else free)."""
     drive: Drive | None = None
     """How the base moves: on arcs of constant v and omega, or freely (default: on arcs; freely if there is no base)."""
     method: TrackMethod = "continuation"

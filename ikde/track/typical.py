@@ -1,7 +1,7 @@
 """`typical`, what the paper compares itself with: differential evolution sample by sample [Qiao2022, section 3.1].
 
 Every joint is free, also those of a base, (d_x, d_y, q_z, q1 .. q6), and speed, collision and drive are ignored: the
-motion jumps and collides, and a base with wheels would have to slide; `verify_track` counts it. What is not printed and
+motion jumps and collides, and a base with wheels would slip sideways; `verify_track` counts it. What is not printed and
 what we take for it: docs/track.md.
 """
 

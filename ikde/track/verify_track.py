@@ -39,7 +39,7 @@ class Violations:
     collision: int | None
     """Samples within the safe distance; None without a detector: not checked."""
     sideways: int
-    """Segments in which a base with wheels would slide, by more than 1e-9 m/s."""
+    """Segments in which a base with wheels would slip sideways, by more than 1e-9 m/s."""
 
     @property
     def total(self) -> int:
@@ -113,7 +113,7 @@ def verify_track(
     frames = compute_frames(robot, q)
     tool = frames[robot.tool]
     error = tool[:, :3, 3] - targets.p_world_tool
-    turn = compute_orientation_errors(targets, tool[:, :3, :3])
+    angle = compute_orientation_errors(targets, tool[:, :3, :3])
     speeds = np.diff(q, axis=0) / dt_s
     base = find_wheels(robot, drive)
     nothing = np.full(max(len(q) - 1, 0), np.nan)
@@ -125,10 +125,10 @@ def verify_track(
     centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
     driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)
-    wrong = (np.abs(error) > limits.position_error_m).any(axis=1) | (turn > limits.orientation_error_rad)
+    wrong = (np.abs(error) > limits.position_error_m).any(axis=1) | (angle > limits.orientation_error_rad)
     return TrackGrade(
         error_m=error,
-        orientation_error_rad=turn,
+        orientation_error_rad=angle,
         speeds=speeds,
         driven=driven,
         v=v,
@@ -167,13 +167,13 @@ def _count_outside(robot: Robot, q: Floats, base: Ints, v: Floats, omega: Floats
     count = int(np.count_nonzero(_is_outside(robot, np.arange(q.shape[1]), q)))
     if base[0] < 0:
         return count
-    turn, heading = omega * dt_s, q[:-1, base[2]]
-    for k, quarter in ((0, 0.5), (1, 0.0)):  # x is farthest out where the heading is along y, y where it is along x
+    rotation, heading = omega * dt_s, q[:-1, base[2]]
+    for k, quarter in ((0, 0.5), (1, 0.0)):  # x is largest where the heading is along y, y where it is along x
         quarters = heading / np.pi - quarter
-        first = np.where(turn > 0.0, np.ceil(quarters), np.floor(quarters))
+        first = np.where(rotation > 0.0, np.ceil(quarters), np.floor(quarters))
         for further in (0.0, 1.0):
-            ahead = (first + np.sign(turn) * further + quarter) * np.pi - heading
-            share = np.divide(ahead, turn, out=np.zeros_like(turn), where=np.abs(ahead) < np.abs(turn))
+            ahead = (first + np.sign(rotation) * further + quarter) * np.pi - heading
+            share = np.divide(ahead, rotation, out=np.zeros_like(rotation), where=np.abs(ahead) < np.abs(rotation))
             place = step_base(q[:-1, base], v, omega, share * dt_s)[:, k]
             count += int(np.count_nonzero(_is_outside(robot, base[k], place) & (share > 0.0)))
     return count

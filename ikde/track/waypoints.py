@@ -1,4 +1,4 @@
-"""Waypoints of a track file, written there or in a table: poses, and the shortest turns between them."""
+"""Waypoints of a track file, written there or in a table: poses, and the shortest rotations between them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from ikde.formats.table_targets import read_targets
 from ikde.formats.tables import row_error
 from ikde.kernels.arrays import Floats
 from ikde.model.target import AXIS, POSITION, Target, Targets
-from ikde.track.orientations import Turn
+from ikde.track.orientations import Orientations
 from ikde.track.slerp import PathOrientation, slerp
 
 ASKED = {"position": "a position", "axis": "an axis", "pose": "a pose"}
@@ -27,11 +27,11 @@ class Waypoints:
     """What is wrong with the waypoint of this index, as an error in its place."""
 
     @property
-    def are_turned(self) -> bool:
+    def have_orientations(self) -> bool:
         """Whether they ask for orientations."""
         return self.targets.kind[0] != POSITION
 
-    def turn(self, at: Floats) -> Turn:
+    def orient(self, at: Floats) -> Orientations:
         """Orientations at places `at` [S], 0 at the first waypoint, 1 at the next; raises `InputError` where it is."""
         orientation: PathOrientation = "axis" if self.targets.kind[0] == AXIS else "pose"
         try:
@@ -44,7 +44,7 @@ def read_waypoints(entry: FileEntry | Sequence[InlineTarget], units: UnitsEntry,
     """Waypoints from a table or a list.
 
     Raises:
-        InputError: with a path inside `entry`; later, of a turn, with a path inside the `path` of the track file.
+        InputError: with a path inside `entry`; later, of orientations, with a path inside `path` of the track file.
         FileError: for what is wrong inside a table, with its row.
     """
     if isinstance(entry, FileEntry):

@@ -1,4 +1,4 @@
-"""What came of an arm: by target, and who was not reached."""
+"""What came of an arm: by target, and what was not reached."""
 
 import pytest
 

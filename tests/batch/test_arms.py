@@ -115,7 +115,7 @@ def test_names_of_arms_can_name_files(qiao):
         ({"settings": {"position_tolerance": -1}}, "settings.position_tolerance: expected a finite number above 0"),
         ({"method": "de", "settings": {"de": {"strategy": "best"}}}, "settings.de.strategy: expected one of rand/1"),
         ({"ranges": {"d_z": [0, 1]}}, "ranges.d_z: qiao2021 has no joint 'd_z' (did you mean"),
-        ({"ranges": {"d_x": [1, 0]}}, "ranges.d_x: this range is upside down"),
+        ({"ranges": {"d_x": [1, 0]}}, "ranges.d_x: the upper end of this range is below"),
         ({"near": {"elbow": 0}}, "near.elbow: qiao2021 has no joint 'elbow'; it has d_x"),
         ({"weights": {"q1": 0}}, "weights.q1: expected a number from 1e-06 to 1e+06, got 0"),
         ({"near": {"q1": 1e9}}, "near.q1: expected at most 100000 m or rad"),

@@ -203,7 +203,7 @@ def test_a_folder_that_cannot_be_written_is_an_error_in_one_line(tmp_path, monke
 
 def test_a_lock_that_is_none_is_left_alone(tmp_path):
     (tmp_path / LOCK).write_text("mine")
-    with pytest.raises(FileError, match="is none of ours"):
+    with pytest.raises(FileError, match="was not written by ikde"):
         claim(tmp_path)
     assert (tmp_path / LOCK).read_text() == "mine"
 

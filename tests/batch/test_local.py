@@ -145,7 +145,7 @@ def test_what_goes_wrong_is_raised_where_its_part_would_come(batch, substitute):
         next(answers)
 
 
-def test_when_nobody_takes_parts_any_more_searches_stop(monkeypatch, substitute):
+def test_when_no_more_parts_are_taken_searches_stop(monkeypatch, substitute):
     batch = make_batch(arms=(make_arm("endless", **ENDLESS),))
     watch, parts = Watch(substitute), parts_of(batch)
     substitute(module._warm_up, lambda *arguments: None)

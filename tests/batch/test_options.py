@@ -11,7 +11,7 @@ from ikde.errors import InputError
     [
         ((0, None, None), "threads: expected a whole number of at least 1, got 0"),
         ((None, "local", 0), "workers: expected a whole number of at least 1, got 0"),
-        ((None, None, 2), "workers: only a local cluster"),
+        ((None, None, 2), "workers: the number of workers"),
         ((2, "local", None), "threads: workers of a cluster use one thread each"),
         ((None, "nowhere", None), "dask: expected 'local' or an address"),
     ],

@@ -112,7 +112,7 @@ def test_a_full_disk_leaves_finished_parts_and_says_how_to_go_on(batch, whole, t
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     part = tmp_path / "timing" / "free-00002.parquet"
-    advice = "finished parts are intact; run the same command again to go on"
+    advice = "finished parts are intact; run the same command again to resume"
     assert str(caught.value) == f"{part}: cannot be written: File too large; {advice}"
     assert len(read_files(tmp_path)) == len(read_files(tmp_path, "timing")) == 2
     ikde.run_batch(batch, tmp_path)
@@ -143,8 +143,8 @@ def test_an_input_that_vanishes_leaves_finished_parts(batch, tmp_path):
     [
         ({"threads": 0}, "threads: expected a whole number of at least 1, got 0"),
         ({"workers": -1}, "workers: expected a whole number of at least 1, got -1"),
-        ({"workers": 2}, "workers: only a local cluster"),
-        ({"workers": 2, "dask": "tcp://a:1"}, "workers: only a local cluster"),
+        ({"workers": 2}, "workers: the number of workers"),
+        ({"workers": 2, "dask": "tcp://a:1"}, "workers: the number of workers"),
         ({"threads": 2, "dask": "local"}, "threads: workers of a cluster use one thread each"),
     ],
 )

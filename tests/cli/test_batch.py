@@ -131,7 +131,7 @@ def test_a_dry_run_leaves_the_cluster_alone_and_says_so(cli, spec, monkeypatch):
     outcome = cli("batch", spec, "--dry-run", "--dask", "local", "--workers", "2")
     assert (outcome.code, outcome.err) == (
         0,
-        "a dry run solves its sample on this machine: the cluster is left alone\n",
+        "a dry run solves its sample on this machine: the cluster is not used\n",
     )
 
 
@@ -152,12 +152,12 @@ def test_a_run_of_another_file_is_replaced_only_if_told_to(cli, spec, tmp_path):
     [
         ("", "--out: a run needs a folder"),
         ("--out run --threads 0", "threads: expected a whole number of at least 1"),
-        ("--out run --workers 2", "workers: only a local cluster"),
+        ("--out run --workers 2", "workers: the number of workers"),
         ("--out run --dask nowhere", "dask: expected 'local' or an address"),
         ("--out run --dask local --threads 2", "threads: workers of a cluster use one thread each"),
         ("--dry-run --threads -1", "threads: expected a whole number of at least 1"),
         ("--dry-run --threads 0", "threads: expected a whole number of at least 1"),
-        ("--dry-run --workers 2", "workers: only a local cluster"),
+        ("--dry-run --workers 2", "workers: the number of workers"),
         ("--dry-run --dask nowhere", "dask: expected 'local' or an address"),
         ("--dry-run --dask local --threads 2", "threads: workers of a cluster use one thread each"),
     ],
@@ -182,6 +182,6 @@ def test_ctrl_c_says_how_to_go_on(spec, tmp_path):
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         printed, said = process.communicate(timeout=60)
-    line = "ikde: interrupted; finished parts are intact; run the same command again to go on"
+    line = "ikde: interrupted; finished parts are intact; run the same command again to resume"
     assert (process.returncode, printed, said.splitlines()[1:]) == (130, "", [line])
     assert len(ikde.read_batch(out)) >= 4

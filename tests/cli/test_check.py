@@ -63,7 +63,7 @@ def test_a_robot_without_spheres_is_not_called_free(cli):
     assert outcome.err == "ikde: self-collision is not checked: qiao2021_dh has no spheres\n"
 
 
-def test_who_asks_for_no_detector_is_not_told(cli):
+def test_a_detector_that_is_switched_off_is_not_missed(cli):
     assert cli("check", "--detector", "none").err == ""
     assert cli("check", "--robot", "qiao2021_dh", "--detector", "none").err == ""
 

@@ -124,7 +124,7 @@ def test_pairs_that_always_touch_are_named_with_a_line_that_loads(cli, tmp_path)
     [
         ("radius: 200", "radius: -200", ":15 → spheres.coarse[0].radius", "above 0"),
         ("radius: 200", "radius: 0", ":15 → spheres.coarse[0].radius", "above 0"),
-        ("lower: -90, upper: 90", "lower: 90, upper: -90", ":7 → joints.turn.upper", "upside down"),
+        ("lower: -90, upper: 90", "lower: 90, upper: -90", ":7 → joints.turn.upper", "upper limit is below"),
         ("parent: rail", "parent: tip", ":10 → frames.arm.parent", "a cycle"),
         ("{box: [bar]}", "{box: [baz]}", ":18 → pairs.all.pairs.box", "did you mean 'bar'"),
         ("home: 10", "hoem: 10", ":7 → joints.turn.hoem", "did you mean 'home'"),

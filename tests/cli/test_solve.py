@@ -283,7 +283,7 @@ def test_a_robot_without_a_detector_is_told_once(cli, options):
     assert (outcome.code, outcome.err) == (0, "ikde: self-collision is not checked: qiao2021_dh has no spheres\n")
 
 
-def test_who_asks_for_no_detector_is_not_told(cli):
+def test_a_detector_that_is_switched_off_is_not_missed(cli):
     assert cli(*SOLVE, "--detector", "none").err == ""
     assert cli(*SOLVE, "--robot", "qiao2021_dh", "--detector", "none").err == ""
 
@@ -382,7 +382,7 @@ def test_weights_decide_what_moves_and_the_motion_is_stated(cli, qiao):
     light = cli(*SOLVE, "--near", text, "--json").data
     assert abs(moved[0]) < abs(light["q"]["d_x"] - near["d_x"])
     assert f"{light['motion']:.6g} from near" in cli(*SOLVE, "--near", text).out
-    assert "from home, as weighed" in cli(*SOLVE).out
+    assert "from home, weighted" in cli(*SOLVE).out
 
 
 def test_an_order_that_is_none_is_refused_also_of_one_solution(refuse):

@@ -82,7 +82,7 @@ def test_a_robot_of_ones_own_needs_no_wheels(cli, cart, tmp_path):
     assert json.loads((tmp_path / "a" / "summary.json").read_text())["largest_wheel_speed_rad_s"] is None
 
 
-def test_wheels_that_nobody_told_of_have_no_limit(cart, refuse):
+def test_wheels_without_geometry_have_no_limit(cart, refuse):
     cart.write_text(cart.read_text() + "limits: {wheel_speed: 5}\n")
     told = refuse("track", cart)
     assert "short.yaml:7 → limits.wheel_speed: qiao2021 has no wheels: its file has no `wheels`" in told

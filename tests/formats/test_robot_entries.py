@@ -41,7 +41,7 @@ def test_ranges_replace_those_of_the_robot(qiao):
     robot = with_ranges(qiao, {"d_x": [-1, 1]}, SI)
     assert (robot.joints[0].lower, robot.joints[0].upper, robot.joints[1:]) == (-1.0, 1.0, qiao.joints[1:])
     assert with_ranges(qiao, {}, SI) is qiao
-    with pytest.raises(InputError, match=r"^ranges\.d_x: this range is upside down"):
+    with pytest.raises(InputError, match=r"^ranges\.d_x: the upper end of this range is below"):
         with_ranges(qiao, {"d_x": [1, -1]}, SI)
 
 

@@ -144,7 +144,7 @@ def test_a_detector_of_a_run_file_is_never_run(tmp_path, monkeypatch):
         ("position_tolerance: 0.05", "position_tolerance: 0", ":10 → solve.settings.position_tolerance:", "above 0"),
         ("position_tolerance: 0.05", "tolerance: 1", ":10 → solve.settings.tolerance:", "'position_tolerance'"),
         ("d_x: [-60, 60]", "d_x: [60]", ":11 → solve.ranges.d_x:", "expected 2 values, got 1"),
-        ("d_x: [-60, 60]", "d_x: [60, -60]", ":11 → solve.ranges.d_x:", "upside down"),
+        ("d_x: [-60, 60]", "d_x: [60, -60]", ":11 → solve.ranges.d_x:", "upper end of this range is below"),
         ("d_x: [-60, 60]", "dx: [-60, 60]", ":11 → solve.ranges.dx:", "no joint 'dx' (did you mean 'd_x'?)"),
         ("population: 80", "population: 3", ":15 → arms.many.settings.de.population:", "at least 6"),
         ("population: 80", "populaton: 3", ":15 → arms.many.settings.de.populaton:", "did you mean 'population'?"),

@@ -178,7 +178,7 @@ def test_frames_may_stand_in_any_order(tmp_path):
         ("xyz: [0, 0, 500]", "xyz: [0, 0]", "robot.yaml:10 → frames.arm.xyz", "expected 3 values, got 2"),
         ("xyz: [0, 0, 500]", "xyz: [0, 0, 1, 2]", "frames.arm.xyz", "expected 3 values, got 4"),
         ("xyz: [0, 0, 500]", "xyz: [0, 0, .nan]", "frames.arm.xyz", "finite"),
-        ("lower: -90, upper: 90", "lower: 90, upper: -90", "robot.yaml:7 → joints.turn.upper", "upside down"),
+        ("lower: -90, upper: 90", "lower: 90, upper: -90", "robot.yaml:7 → joints.turn.upper", "upper limit is below"),
         ("home: 10", "home: 100", "joints.turn.home", "outside the limits"),
         ("upper: 1e3", "upper: 1.1e8", "robot.yaml:6 → joints.slide.upper", "at most 100000 m from 0, got 110000.0"),
         ("lower: -90", "lower: -6e6", "robot.yaml:7 → joints.turn.lower", "at most 100000 rad from 0"),

@@ -13,7 +13,7 @@ def test_each_name_has_its_rows(qiao):
     work = plain_module(names).make_motion_work(pack_robot(qiao), CollisionModel.of(qiao).arrays, 9)
     single = [names.HERE, names.TRIAL, names.BEST, names.Y, names.SPLIT, names.STEP, names.ALONG, names.BEHIND]
     single += [names.FREE_POINT, names.POINT, names.PRODUCT, names.ROW]
-    many = {names.JACOBIAN: 6, names.ROWS: 6, names.TURNED: 3, names.SLOPE: names.MAX_CONTACTS}
+    many = {names.JACOBIAN: 6, names.ROWS: 6, names.ROTATED: 3, names.SLOPE: names.MAX_CONTACTS}
     rows = single + [first + k for first, count in many.items() for k in range(count)]
     tables = work.tables
     assert sorted(rows) == list(range(len(tables.vectors)))

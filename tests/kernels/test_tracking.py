@@ -67,7 +67,7 @@ def test_pairs_that_are_kept_too_far_apart_leave_no_way(qiao):
     assert status in (STUCK, INFEASIBLE)
 
 
-def test_who_cannot_brake_has_no_step(qiao):
+def test_a_joint_that_cannot_brake_has_no_step(qiao):
     stand = Stand(qiao, qiao.home, acceleration=np.full(9, 0.1))
     stand.q[8] = qiao.upper[8] - 1e-4
     assert take(stand, stand.target(), last=np.eye(8)[7])[0][0] == NO_STEP

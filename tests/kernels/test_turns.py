@@ -9,9 +9,9 @@ from ikde.kernels.turns import TURN, unwind, unwind_rows
 angles = st.floats(-40.0, 40.0)
 
 
-def unwound(q, lower, upper, centre=0.0, turning=1):
+def unwound(q, lower, upper, centre=0.0, is_revolute=1):
     values = np.array([q], dtype=float)
-    unwind(np.array([lower]), np.array([upper]), np.array([turning]), np.array([centre]), values)
+    unwind(np.array([lower]), np.array([upper]), np.array([is_revolute]), np.array([centre]), values)
     return float(values[0])
 
 
@@ -48,7 +48,7 @@ def test_a_joint_without_limits_comes_all_the_way():
 
 
 def test_a_slide_and_what_is_no_number_stay():
-    assert unwound(6.0, -10.0, 10.0, turning=0) == 6.0
+    assert unwound(6.0, -10.0, 10.0, is_revolute=0) == 6.0
     assert np.isnan(unwound(np.nan, -10.0, 10.0))
     q = np.array([50.0, np.nan, 50.0])
     unwind(np.full(3, -99.0), np.full(3, 99.0), np.array([0, 1, 1]), np.zeros(3), q)
@@ -71,9 +71,13 @@ def test_where_rounding_leaves_two_turns_equally_far_the_joint_stays():
 
 def test_rows_are_unwound_like_one(rng):
     Q, centre = rng.uniform(-20.0, 20.0, (50, 4)), rng.uniform(-3.0, 3.0, 4)
-    lower, upper, turning = np.array([-9.0, -np.inf, -7.0, -20.0]), np.array([9.0, np.inf, 2.0, 20.0]), np.arange(4) % 3
+    lower, upper, is_revolute = (
+        np.array([-9.0, -np.inf, -7.0, -20.0]),
+        np.array([9.0, np.inf, 2.0, 20.0]),
+        np.arange(4) % 3,
+    )
     rows = Q.copy()
-    unwind_rows(lower, upper, turning, centre, rows)
+    unwind_rows(lower, upper, is_revolute, centre, rows)
     for row in Q:
-        unwind(lower, upper, turning, centre, row)
+        unwind(lower, upper, is_revolute, centre, row)
     np.testing.assert_array_equal(rows, Q)

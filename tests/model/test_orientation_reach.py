@@ -19,7 +19,7 @@ HERE = (0.0, 0.0, 0.0)
 
 
 def orientation_excess_rad(robot, target, lower, upper):
-    return find_bounds(robot, lower, upper).turning.excess_rad(target)
+    return find_bounds(robot, lower, upper).orientation.excess_rad(target)
 
 
 def miss_rad(robot, target, q):
@@ -120,10 +120,11 @@ def test_the_worst_cone_is_the_one_that_proves_it(about):
     """Tilted about x the tool's x axis stays level, tilted about y its y axis does: neither is to blame."""
     robot, rpy = make_scara(), np.array([np.pi, 0.0, 0.0])
     rpy[about] += 0.3
-    turning, target = find_bounds(robot, robot.lower, robot.upper).turning, Target(HERE, rotation_from_rpy(rpy))
-    worst = turning.find_worst(target)
+    orientation, target = find_bounds(robot, robot.lower, robot.upper).orientation, Target(HERE, rotation_from_rpy(rpy))
+    worst = orientation.find_worst(target)
     angle = np.arccos(target.R_world_tool @ worst.tool @ worst.world)
-    assert max(worst.low - angle, angle - worst.high) == pytest.approx(turning.excess_rad(target)) == pytest.approx(0.3)
+    excess = pytest.approx(orientation.excess_rad(target))
+    assert max(worst.low - angle, angle - worst.high) == excess == pytest.approx(0.3)
 
 
 def test_a_matrix_that_is_nearly_a_rotation_proves_nothing_beyond_its_digits():

@@ -130,7 +130,7 @@ def test_the_home_of_a_continuous_joint_is_finite(home):
 
 def test_limits_upside_down():
     joints = (make_joint("slide", kind="prismatic"), make_joint("turn", lower=1.0, upper=-1.0))
-    reject("limits are upside down", "joints", "turn", "upper", joints=joints)
+    reject("the upper limit is below the lower one", "joints", "turn", "upper", joints=joints)
 
 
 def test_home_outside_the_limits():
@@ -248,7 +248,7 @@ def test_a_count_is_at_least_one(count):
 
 
 def test_a_row_across_a_joint():
-    message = "a joint moves these two frames against each other; add a fixed frame on one body"
+    message = "these two frames are on different bodies; add a fixed frame on one of the two"
     reject(message, "spheres", "fine", 2, "to", approximations=replace_rows(end="a"))
 
 
@@ -322,7 +322,7 @@ def test_a_convention_with_an_unknown_joint():
 
 
 def test_a_slide_cannot_be_shifted():
-    message = "only a joint that turns can be shifted"
+    message = "only a revolute joint can have an offset"
     reject(message, "conventions", "other", "slide", conventions={"other": {"slide": 1.0}})
 
 
@@ -336,7 +336,9 @@ def test_a_shift_keeps_the_digits_of_an_angle(offset):
 
 
 def test_wheels_need_a_base():
-    message = "wheels need a base that slides along x, then y, turns about z, and carries all that can collide"
+    message = (
+        "wheels need a planar base, prismatic along x and y and revolute about z, that carries all that can collide"
+    )
     reject(message, "wheels", wheels=Wheels(radius_m=0.1, half_track_m=0.2))
 
 

@@ -28,4 +28,4 @@ def test_a_print_outside_our_interval_is_said(results, inputs):
     assert all(row[-2:] == (Cell("no", "off"), Cell("no", "off")) for row in tables(section)[0].rows)
     judged = [block.markup for block in section.blocks if isinstance(block, Text)][1]
     assert "0 of 4 of our rates lie within the sampling error of the print" in judged
-    assert "the farthest is 36.0 points off" in judged
+    assert "the largest distance 36.0 points" in judged

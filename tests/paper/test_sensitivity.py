@@ -59,12 +59,12 @@ def test_the_distance_is_that_of_the_worst_cell(table):
     printed = [73, 63, 86, 65]
     for row in table.rows:
         gaps = [abs(cell.rejected_pct - p) for cell, p in zip(row.cells, printed, strict=True)]
-        assert row.farthest_points == pytest.approx(max(gaps))
+        assert row.distance_points == pytest.approx(max(gaps))
 
 
 def test_the_closest_come_first(table):
-    ranked = [row.farthest_points for row in table.closest]
-    assert ranked == sorted(row.farthest_points for row in table.rows)[:5]
+    ranked = [row.distance_points for row in table.closest]
+    assert ranked == sorted(row.distance_points for row in table.rows)[:5]
 
 
 def test_eq_18_misses_nearly_everything_and_eq_20_calls_too_much(table):

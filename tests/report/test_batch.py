@@ -103,7 +103,7 @@ def test_what_was_not_checked_is_said():
     assert (unchecked["collision_checked"], unchecked["verified"]) == (0, None)
 
 
-def test_who_was_not_reached_is_named_with_the_reason():
+def test_unreached_targets_are_named_with_their_reason():
     text = format_run(SUMMARY)
     assert "not reached: 1 out of reach (arm plain [de])" in text
     assert "  plain [de], target 3 shelf [1], 1 of 4 repeats, first repeat 2: too far" in text

@@ -81,7 +81,7 @@ def test_without_a_detector_the_text_says_that_nothing_was_checked(qiao):
         (None, "by kernels alone"),
     ],
 )
-def test_who_graded_is_said_as_it_was(qiao, result, verified, words):
+def test_what_graded_is_said_as_it_was(qiao, result, verified, words):
     shown = result.with_changes(verified=verified)
     lines = [line.split() for line in format_solve(qiao, shown, Units()).splitlines()]
     assert ["graded", *words.split()] in lines

@@ -88,7 +88,7 @@ def test_a_base_without_wheels_has_all_rows_but_theirs(qiao, unwheeled, plan):
     motion = make_measured(unwheeled)
     rows = [row[0] for row in list_figures(motion)]
     assert rows == [row[0] for row in list_figures(make_measured(qiao)) if "wheel" not in row[0]]
-    assert "base sliding sideways, at most" in rows
+    assert "sideways slip of the base" in rows
     data = track_json(plan, motion)
     assert (data["drive"], data["largest_wheel_speed_rad_s"], data["wheel_limit_rad_s"]) == ("differential", None, None)
 
@@ -128,12 +128,12 @@ def rows_of(motion):
 def test_what_is_left_of_a_range_has_the_units_of_its_joint(qiao, plan):
     turning = make_measured(qiao)
     left = turning.range_left[1]
-    assert rows_of(turning)["least range left, q1"] == (f"{np.degrees(left):.1f} deg", "to 169 deg")
+    assert rows_of(turning)["joint-limit margin, q1"] == (f"{np.degrees(left):.1f} deg", "to 169 deg")
     frames = [make_frame("a", "world", joint="s1", axis=(1, 0, 0)), make_frame("b", "a", joint="s2", axis=(0, 0, 1))]
     gantry = make_robot({"s1": "prismatic", "s2": "prismatic"}, frames, tool="b")
     q = [[0.0, 0.5], [0.0, 1.0 + 1e-15]]
     sliding = make_measured(gantry, q=q, drive="omnidirectional", detector="none")
-    assert rows_of(sliding)["least range left, s2"] == ("0.0 mm", "to 1000 mm")
+    assert rows_of(sliding)["joint-limit margin, s2"] == ("0.0 mm", "to 1000 mm")
     least = track_json(plan, sliding)["smallest_range_left"]
     assert (least["joint"], least["limit"]) == ("s2", 1.0)
     assert least["value"] == pytest.approx(0.0, abs=1e-12)
@@ -172,7 +172,7 @@ def test_what_is_not_asked_for_is_none(qiao, plan):
 def test_a_base_whose_wheels_are_not_known_still_drives_on_arcs(qiao, plan):
     motion = make_measured(qiao)
     unknown = replace(motion, trajectory=replace(motion.trajectory, wheel_speeds=None))
-    assert {"base sliding sideways, at most", "largest speed, base, 40 %"} <= set(rows_of(unknown))
+    assert {"sideways slip of the base", "largest speed, base, 40 %"} <= set(rows_of(unknown))
     assert "largest wheel speed" not in rows_of(unknown)
     assert track_json(plan, unknown)["largest_wheel_speed_rad_s"] is None
 

@@ -78,7 +78,7 @@ def test_a_singular_value_of_nothing_but_rounding_is_0(compared):
     (one,) = compared
     runs = [{**run, "smallest_singular_value": 1.8e-18} for run in one.data["runs"]]
     table = make_runs_table([replace(one, data={**one.data, "runs": runs})])
-    assert dict(zip([c.head for c in table.columns], table.rows[0], strict=True))["least σ"] == "0"
+    assert dict(zip([c.head for c in table.columns], table.rows[0], strict=True))["smallest σ"] == "0"
 
 
 def test_a_robot_that_stands_still_has_nothing_about_its_base(compared, monkeypatch):

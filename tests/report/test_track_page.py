@@ -75,7 +75,7 @@ def test_without_a_detector_the_page_says_not_checked(qiao):
     assert "certified" not in text
 
 
-def test_it_says_who_measured(page):
+def test_it_says_what_measured(page):
     assert page.sections[0].blocks[0].caption == "Measured by plain numpy, not by the kernels that search"
     assert "differential drive" in page.subtitle
 
@@ -100,7 +100,7 @@ def test_nothing_followed_is_a_short_page(qiao):
 def test_a_start_alone_is_shown(qiao):
     page = make_page(make_measured(qiao, steps=0, further=5))
     assert "Motion" in [section.title for section in page.sections]
-    assert "least clearance at samples" in [item.label for item in page.lead[-1].items]
+    assert "smallest clearance at samples" in [item.label for item in page.lead[-1].items]
     assert "certified" not in render_html(page)  # there is nothing between
 
 

@@ -134,19 +134,19 @@ def test_pairs_that_blocked_are_counted(rng):
     assert found.metrics.closest_pair.tolist() == [1] * 3
 
 
-@pytest.mark.parametrize("count", [few.FEW, few.FEW + 1])
+@pytest.mark.parametrize("count", [few.MAX_FEW, few.MAX_FEW + 1])
 def test_beyond_a_few_there_are_lanes(count):
     made = answer_few(problem_of(ROBOT), (targets_of("position") * 4)[:count])
-    assert (made is not None) == (count <= few.FEW)
+    assert (made is not None) == (count <= few.MAX_FEW)
 
 
-@pytest.mark.parametrize(("count", "plain"), [(few.FEW, 0), (few.FEW + 1, 1), (few.FEW_WITHOUT_LANES + 1, 0)])
+@pytest.mark.parametrize(("count", "plain"), [(few.MAX_FEW, 0), (few.MAX_FEW + 1, 1), (few.MAX_WITHOUT_LANES + 1, 0)])
 def test_until_lanes_are_compiled_more_than_a_few_are_answered_one_by_one(count, plain, substitute):
     problem, asked = problem_of(ROBOT), []
     substitute(few.answers_plainly, lambda answer, question: asked.append(question) or True)
     few.prepare.cache_clear()  # no lanes have run
     made = answer_few(problem, (targets_of("position") * 100)[:count])
-    assert (made is not None) == (count <= few.FEW_WITHOUT_LANES)
+    assert (made is not None) == (count <= few.MAX_WITHOUT_LANES)
     assert [question.call for question in asked if question.call == MANY] == [MANY] * plain
 
 

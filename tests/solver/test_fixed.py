@@ -126,7 +126,7 @@ def test_many_are_told_what_each_is_told_alone(qiao, rng, explain):
     assert rows.reached.tolist() == [True, False, False]
 
 
-def test_a_colliding_row_that_nobody_looked_into_names_its_pair_whatever_the_time(qiao, rng):
+def test_a_colliding_row_that_was_not_diagnosed_names_its_pair_whatever_the_time(qiao, rng):
     q = colliding_q(qiao, rng)
     timed = ikde.SolveSettings(timeout_s=1e-9)
     asked = {"freeze": hold(qiao, q), "bulk": BulkOptions(explain=False, verify="none")}
@@ -157,7 +157,7 @@ def test_machine_code_and_python_see_the_same_bits(qiao, rng, monkeypatch):
     targets = targets_near(qiao, np.array([q, free_q(qiao, rng), free_q(qiao, rng)]), rng)
     asked = {"freeze": hold(qiao, q), "bulk": BulkOptions(explain=False, verify="none")}
     plain = ikde.solve_many(qiao, targets, **asked)
-    monkeypatch.setattr("ikde.solver.fixed.FEW", 0)
+    monkeypatch.setattr("ikde.solver.fixed.MAX_PLAIN", 0)
     compiled = ikde.solve_many(qiao, targets, **asked)
     for name in (
         "q",

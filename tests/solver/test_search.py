@@ -58,7 +58,7 @@ def test_cutting_attempts_into_calls_does_not_change_the_bits(problem, monkeypat
     assert bits(run(problem)) == bits(whole)
 
 
-def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao, substitute):
+def test_only_what_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao, substitute):
     asked = []
 
     def watched(problem, targets):
@@ -74,7 +74,7 @@ def test_only_who_is_unreached_after_a_few_attempts_is_proved_out_of_reach(qiao,
     assert found.counts[5, ATTEMPTS] == ENGINES["de"].attempts_before_proof
 
 
-def test_who_asks_for_what_no_joint_turns_is_told_after_a_few_attempts():
+def test_an_orientation_that_no_joint_gives_is_excluded_after_a_few_attempts():
     robot, settings = make_scara(), ikde.SolveSettings(method="de", restarts=9)
     tilted = ikde.Target((0.5, 0.0, 0.0), axis_world_tool=(1, 0, -1))
     upright, free = ikde.Target((0.74, 0.1, -0.2), axis_world_tool=(0, 0, -1)), ikde.Target((0.74, 0.1, 0.2))
@@ -287,7 +287,7 @@ def test_pieces_and_their_parts_do_not_change_the_bits(qiao, rng, monkeypatch, p
     whole = search(problem, targets, seed=3, streams=range(9, 35), threads=1)
     assert whole.counts[:, COLLIDING].any()
     monkeypatch.setattr(module, "PIECE", piece)
-    monkeypatch.setattr(module, "FEWEST", fewest)
+    monkeypatch.setattr(module, "MIN_TARGETS", fewest)
     found = search(problem, targets, seed=3, streams=range(9, 35), threads=threads)
     assert bits(found) == bits(whole)
     assert found.metrics.clearance_m.tobytes() == whole.metrics.clearance_m.tobytes()

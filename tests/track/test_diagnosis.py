@@ -55,7 +55,7 @@ def test_wheels():
         [[0.002, 0, 0]] * 2 + [[0.009, 0, 0]] * 3, wheel_speed_rad_s=1.5, frozen=("q1", "q2", "q3", "q4", "q5", "q6")
     )
     assert (stop.sample, stop.reason, stop.limit) == (3, TrackStopReason.WHEEL_LIMIT, "wheels")
-    assert stop.text == "sample 3 (0.06 s): a wheel turns at 4.5 rad/s in the step that was found, its limit is 1.5"
+    assert stop.text == "sample 3 (0.06 s): a wheel rotates at 4.5 rad/s in the step that was found, its limit is 1.5"
 
 
 def test_distance_from_the_platform():

@@ -111,8 +111,8 @@ def _settings(robot: RobotArrays) -> list[str]:
 
 
 def _sines(robot: RobotArrays) -> list[str]:
-    turning = robot.bodies[1:][robot.bodies[1:, PRISMATIC] == 0]
-    return [f"s{k}, c{k} = sin_cos(q{k})" for k in sorted(set(turning[:, COORDINATE].tolist()))]
+    revolute = robot.bodies[1:][robot.bodies[1:, PRISMATIC] == 0]
+    return [f"s{k}, c{k} = sin_cos(q{k})" for k in sorted(set(revolute[:, COORDINATE].tolist()))]
 
 
 def _coordinates(robot: RobotArrays) -> list[int]:

@@ -29,7 +29,7 @@ ORIGIN = Pose(R=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), p=(0.0, 0.0
 def write_bodies(writer: Writer, robot: RobotArrays, root: int = 0) -> dict[int, Pose]:
     """Poses of `root` and the bodies that it carries, seen from `root`.
 
-    Takes `q<k>` of the slides, `s<k>` and `c<k>` of the turns, k being the coordinate of q.
+    Takes `q<k>` of prismatic joints, `s<k>` and `c<k>` of revolute ones, k being the coordinate of q.
     """
     poses = {root: ORIGIN}
     for body in range(root + 1, len(robot.bodies)):
@@ -71,8 +71,8 @@ def write_jacobian(writer: Writer, robot: RobotArrays, poses: dict[int, Pose], t
 
 def write_cross(writer: Writer, name: str, a: Vector | list[Value], b: Vector | list[Value]) -> list[Value]:
     """A x b."""
-    turns = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    return [writer.sum(f"{name}_{'xyz'[i]}", (a[j], b[k]), (-1.0, a[k], b[j])) for i, j, k in turns]
+    cycles = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+    return [writer.sum(f"{name}_{'xyz'[i]}", (a[j], b[k]), (-1.0, a[k], b[j])) for i, j, k in cycles]
 
 
 def snap(values: Floats) -> Floats:

@@ -32,8 +32,8 @@ def write_step(writer: Writer, robot: RobotArrays, kind: str) -> Step:
     if kind == "position":
         columns = {k: column[:3] for k, column in columns.items()}
     else:
-        orientation, turn = (_write_turn if kind == "pose" else _write_tilt)(writer, tool)
-        error += [writer.sum(f"w_{'xyz'[i]}", ("rotation_length", turn[i])) for i in range(3)]
+        orientation, rotation = (_write_rotation if kind == "pose" else _write_tilt)(writer, tool)
+        error += [writer.sum(f"w_{'xyz'[i]}", ("rotation_length", rotation[i])) for i in range(3)]
         columns = {k: _weigh(writer, k, column, tool, kind) for k, column in columns.items()}
     columns = {k: _write_active(writer, k, column, error) for k, column in columns.items()}
     size = writer.sum("size", *((e, e) for e in error))
@@ -43,40 +43,40 @@ def write_step(writer: Writer, robot: RobotArrays, kind: str) -> Step:
     return Step(position=position, orientation=orientation, next_q=_write_next(writer, moves, robot))
 
 
-def _write_turn(writer: Writer, tool: Pose) -> tuple[Value, list[Value]]:
-    """Axis * 2 sin(angle / 2) of S = R_target R_tool^T, as in `damped.compute_turn`, and its size."""
+def _write_rotation(writer: Writer, tool: Pose) -> tuple[Value, list[Value]]:
+    """Axis * 2 sin(angle / 2) of S = R_target R_tool^T, as in `damped.compute_rotation`, and its size."""
     columns = [(tool.column(j), (f"m0{j}", f"m1{j}", f"m2{j}")) for j in range(3)]
     products = [product for a, b in columns for product in zip((0.25,) * 3, a, b, strict=True)]
     quarter = text(writer.sum("quarter", *products, (0.25,)))
     half = writer.let("half", f"0.5 / math.sqrt(max({quarter}, {MIN_SQUARE!r}))")
-    turns = ((1, 2), (2, 0), (0, 1))
+    cycles = ((1, 2), (2, 0), (0, 1))
     twice = [
         writer.sum(f"twice_{'xyz'[i]}", *(p for a, b in columns for p in ((a[j], b[k]), (-1.0, a[k], b[j]))))
-        for i, (j, k) in enumerate(turns)
+        for i, (j, k) in enumerate(cycles)
     ]
-    turn = [writer.sum(f"u_{'xyz'[i]}", (twice[i], half)) for i in range(3)]
-    size = text(writer.sum("turn", *((u, u) for u in turn)))
+    rotation = [writer.sum(f"u_{'xyz'[i]}", (twice[i], half)) for i in range(3)]
+    size = text(writer.sum("rotation", *((u, u) for u in rotation)))
     orientation = writer.let("orientation", f"{OPPOSITE!r} if {quarter} < {MIN_SQUARE!r} else math.sqrt({size})")
-    return orientation, turn
+    return orientation, rotation
 
 
 def _write_tilt(writer: Writer, tool: Pose) -> tuple[Value, list[Value]]:
     """Axis * sin(angle) from the tool's z axis to the target's, and its size."""
     z, wanted = tool.column(2), ("m02", "m12", "m22")
-    turn = write_cross(writer, "u", z, wanted)
-    size = writer.let("turn", f"math.sqrt({text(writer.sum('sine', *((u, u) for u in turn)))})")
+    rotation = write_cross(writer, "u", z, wanted)
+    size = writer.let("rotation", f"math.sqrt({text(writer.sum('sine', *((u, u) for u in rotation)))})")
     cosine = text(writer.sum("cosine", *zip(z, wanted, strict=True)))
-    return writer.let("orientation", f"{OPPOSITE!r} - {size} if {cosine} < 0.0 else {size}"), turn
+    return writer.let("orientation", f"{OPPOSITE!r} - {size} if {cosine} < 0.0 else {size}"), rotation
 
 
 def _weigh(writer: Writer, k: int, column: list[Value], tool: Pose, kind: str) -> list[Value]:
     """The rotation rows in metres; for an axis target without the part about the tool's own axis."""
-    turn = column[3:]
+    rotation = column[3:]
     if kind == "axis":
         z = tool.column(2)
-        along = writer.sum(f"z{k}", *zip(turn, z, strict=True))
-        turn = [writer.sum(f"t{k}_{'xyz'[i]}", (turn[i],), (-1.0, along, z[i])) for i in range(3)]
-    weighted = [writer.sum(f"w{k}_{'xyz'[i]}", ("rotation_length", turn[i])) for i in range(3)]
+        along = writer.sum(f"z{k}", *zip(rotation, z, strict=True))
+        rotation = [writer.sum(f"t{k}_{'xyz'[i]}", (rotation[i],), (-1.0, along, z[i])) for i in range(3)]
+    weighted = [writer.sum(f"w{k}_{'xyz'[i]}", ("rotation_length", rotation[i])) for i in range(3)]
     return [*column[:3], *weighted]
 
 

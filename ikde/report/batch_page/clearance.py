@@ -52,7 +52,7 @@ def _is_there(arms: Sequence[ArmAnswers], measure: Measure) -> bool:
 
 
 def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
-    heads = {measure: ("least", "median") if measure is CLEARANCE else ("median", "at most") for measure in measures}
+    heads = {measure: ("smallest", "median") if measure is CLEARANCE else ("median", "at most") for measure in measures}
     return Table(
         columns=(
             *Column.of("arm", "detector"),

@@ -49,7 +49,7 @@ def _make_table(run: RunAnswers) -> Table:
         ),
         caption="What a solve costs",
         note="Over all solves, also those that did not reach their target. The time is a solve's wall time while all "
-        "threads are busy; very short searches share a call, and its time evenly.",
+        "threads are busy; very short searches share a call, and its time in equal parts.",
     )
 
 

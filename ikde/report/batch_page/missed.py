@@ -55,9 +55,9 @@ def _explain(run: RunAnswers, rows: list[tuple[str, ...]]) -> str:
     """What the table cannot say for itself."""
     notes = ["Reasons are those of the first repeat that missed."] if run.manifest.repeats > 1 else []
     if not run.manifest.recipe.get("explain", True):
-        notes.append("The run was told not to find out why (`explain: false`).")
+        notes.append("The run does not explain what was missed (`explain: false`).")
     elif not any("reason" in row for arm in run.arms for row in arm.missed.values()):
-        notes.append("The run was told not to keep reasons (`output: {columns}`).")
+        notes.append("The run keeps no reasons (`output: {columns}`).")
     elif not any(row[-1] for row in rows):
         notes.append("Nothing was found that would help.")
     return " ".join(notes)

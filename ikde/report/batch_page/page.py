@@ -90,7 +90,7 @@ def _cost(arm: ArmAnswers) -> list[Number]:
     clearance_m = arm.of_reached("clearance_m")
     if clearance_m.size:
         least = f"{significant(1e3 * float(clearance_m.min()))} mm"
-        numbers.append(Number(least, "least clearance", f"of the reached, detector {arm.facts.detector}"))
+        numbers.append(Number(least, "smallest clearance", f"of the reached, detector {arm.facts.detector}"))
     return numbers
 
 

@@ -78,12 +78,12 @@ def make_descent(problem: Problem, kind: str) -> DescentArrays:
     return DescentArrays(
         rotation_length=rotation_length_m(problem.robot),
         position_tolerance=shrink(settings.position_tolerance_m),
-        orientation_tolerance=shrink(measure_turn(settings.orientation_tolerance_rad, kind)),
+        orientation_tolerance=shrink(measure_rotation(settings.orientation_tolerance_rad, kind)),
     )
 
 
-def measure_turn(angle_rad: float, kind: str) -> float:
-    """How `damped.compute_turn` measures an angle in [0, pi]: a number that grows with it, from 0 to 2.
+def measure_rotation(angle_rad: float, kind: str) -> float:
+    """How `damped.compute_rotation` measures an angle in [0, pi]: a number that grows with it, from 0 to 2.
 
     For a pose the chord 2 sin(angle / 2). For an axis the sine, unfolded beyond a quarter turn, where it is flat: there
     a step stops up to 1.5e-6 rad inside. (With the chord, 4 of 20,000 answers of qiao2021 would be others.)

@@ -1,7 +1,7 @@
 """Seeds for frozen joints of an arm, at whatever values: rows of the pool of the joint limits, moved.
 
 Taken are the rows whose own value of the first frozen joint is nearest to the wanted one: free of collision as they
-were, or nearly so. Every frozen joint is then set, and the tool turned about its axis as it stands with the frozen
+were, or nearly so. Every frozen joint is then set, and the tool rotated about its axis as it stands with the frozen
 joints at zero, from the tool's end of the chain on: 0.1 ms, where drawing a pool takes 50.
 """
 
@@ -13,7 +13,7 @@ from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PRISMATIC, Floats, Ints,
 from ikde.solver.engines.draws import place_bodies, place_tools, sin_cos
 from ikde.solver.engines.grids import find_cells, sort_cells
 
-MOST = 2**14  # rows of the pool that are moved
+MAX_ROWS = 2**14  # rows of the pool that are moved
 ROWS = 1024  # of them, for one value
 
 
@@ -21,12 +21,12 @@ class Axis(NamedTuple):
     """Where the axis of a frozen joint lies in each of K configurations with all frozen joints at zero."""
 
     number: int  # of the joint among the frozen ones
-    slides: bool
+    is_prismatic: bool
     direction: Floats  # [3, K]
     point: Floats  # [3, K] m
 
 
-class Turned(NamedTuple):
+class Rotated(NamedTuple):
     """Columns [3, C, K] of transforms, the last one the place, moved about an axis: still + c * across + s * aside."""
 
     still: Floats
@@ -42,7 +42,7 @@ class FrozenPools(NamedTuple):
     value: Floats  # [K] of that joint
     tools: Floats  # [3, C, K] columns of T_world_tool that a kind of target asks for, with the frozen joints at zero
     axes: tuple[Axis, ...]  # of those that move the tool, the last one first
-    turned: Turned | None  # `tools` about the first of `axes`
+    rotated: Rotated | None  # `tools` about the first of `axes`
     asked: Ints  # which entries of the columns the seeds keep, and which [G] their grid divides
     divided: Ints
     seeds: SeedArrays  # all else
@@ -55,7 +55,7 @@ def freeze_pool(
 
     `asked` are the entries of the transform [3, 4], row by row, that the pool keeps.
     """
-    q = q[:: 1 + len(q) // MOST]
+    q = q[:: 1 + len(q) // MAX_ROWS]
     order = np.argsort(q[:, joints[0]], kind="stable")
     q = q[order]
     zeroed = q.copy()
@@ -70,7 +70,7 @@ def freeze_pool(
         value=q[:, joints[0]].copy(),
         tools=tools,
         axes=axes,
-        turned=turn(tools, axes[0]) if axes else None,
+        rotated=rotate(tools, axes[0]) if axes else None,
         asked=np.array([place_of[entry] for entry in asked]),
         divided=np.array([place_of[entry] for entry in seeds.grid[:, 0].tolist()]),
         seeds=_coarsen(seeds),
@@ -97,29 +97,29 @@ def _move_tools(pools: FrozenPools, values: Floats, taken: slice) -> Floats:
     """The columns [3, C, rows] of some rows with the frozen joints at `values` [F]."""
     tools, (sines, cosines) = pools.tools[:, :, taken], sin_cos(values)
     for axis in pools.axes:
-        if axis is pools.axes[0] and pools.turned:
-            still, across, aside = (part[:, :, taken] for part in pools.turned)
+        if axis is pools.axes[0] and pools.rotated:
+            still, across, aside = (part[:, :, taken] for part in pools.rotated)
         else:
             moved = axis._replace(direction=axis.direction[:, taken], point=axis.point[:, taken])
-            still, across, aside = turn(tools, moved)
+            still, across, aside = rotate(tools, moved)
         k = axis.number
-        tools = still + values[k] * aside if axis.slides else still + cosines[k] * across + sines[k] * aside
+        tools = still + values[k] * aside if axis.is_prismatic else still + cosines[k] * across + sines[k] * aside
     return tools
 
 
-def turn(tools: Floats, axis: Axis) -> Turned:
+def rotate(tools: Floats, axis: Axis) -> Rotated:
     """Columns [3, C, K] apart, by how they move about an axis, or along it."""
-    if axis.slides:
+    if axis.is_prismatic:
         aside = np.zeros(tools.shape)
         aside[:, -1] = axis.direction
-        return Turned(tools, aside, aside)
+        return Rotated(tools, aside, aside)
     u, v = axis.direction[:, None], tools.copy()
     v[:, -1] -= axis.point
     still = u * (u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
     aside = np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
     across = v - still
     still[:, -1] += axis.point
-    return Turned(still, across, aside)
+    return Rotated(still, across, aside)
 
 
 def _find_axes(robot: RobotArrays, q: Floats, joints: tuple[int, ...]) -> list[Axis]:
@@ -129,7 +129,7 @@ def _find_axes(robot: RobotArrays, q: Floats, joints: tuple[int, ...]) -> list[A
     return [
         Axis(
             number=joints.index(row[COORDINATE]),
-            slides=bool(row[PRISMATIC]),
+            is_prismatic=bool(row[PRISMATIC]),
             direction=T_world_body[body, :, 2],
             point=T_world_body[body, :, 3],
         )

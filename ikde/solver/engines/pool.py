@@ -26,7 +26,7 @@ from ikde.solver.problem import NEAR_FIRST_BOX, Problem, pack_searched
 DRAWN, DRAWN_NARROW = 2**16, 2**11  # configurations: within the joint limits, within ranges of a problem's own
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
 X, Y, Z = 3, 7, 11  # entries of the transform [3, 4], row by row
-TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # those that a base which turns cannot change, beside Z
+TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # those that the yaw of a base cannot change, beside Z
 AXIS_X, AXIS_Y = 2, 6
 KEPT = {  # what each kind of target asks of the tool, in the order of the columns of `kernels/seeds.py`
     "position": (X, Y, Z),
@@ -232,8 +232,8 @@ def rotation_length_m(robot: Robot) -> float:
 
 
 def find_base(robot: Robot, lower: Floats, upper: Floats) -> Ints:
-    """Coordinates [3] of x, y and turn of a planar base that has room; -1 thrice for any other robot."""
-    x, y, turn = base = find_planar_base(robot)
-    if x < 0 or min(upper[x] - lower[x], upper[y] - lower[y]) < ROOMY_M or upper[turn] - lower[turn] < FULL_TURN_RAD:
+    """Coordinates [3] of x, y and yaw of a planar base that has room; -1 thrice for any other robot."""
+    x, y, yaw = base = find_planar_base(robot)
+    if x < 0 or min(upper[x] - lower[x], upper[y] - lower[y]) < ROOMY_M or upper[yaw] - lower[yaw] < FULL_TURN_RAD:
         return NO_BASE
     return base

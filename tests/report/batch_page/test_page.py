@@ -59,7 +59,7 @@ def test_the_same_run_gives_the_same_page(folder, page):
 
 def test_one_arm_is_shown_with_its_cost(answers, bare):
     careful = make_batch_page(replace(answers, arms=answers.arms[1:]))
-    assert labels(careful) == ["reached", "a solve, median", "attempts, median", "least clearance"]
+    assert labels(careful) == ["reached", "a solve, median", "attempts, median", "smallest clearance"]
     assert labels(make_batch_page(bare)) == ["reached", "a solve, median"]
 
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.kernels.damped import compute_turn
+from ikde.kernels.damped import compute_rotation
 from ikde.model.pack import pack_targets
 from ikde.model.rotation import rotation_from_rpy
-from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges, measure_turn
+from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges, measure_rotation
 from tests.problems import problem_of
 from tests.solver.engines.questions import make_question
 
@@ -52,13 +52,13 @@ def test_a_turn_is_measured_as_the_kernel_measures_it(kind, rng):
         T[:3, :3] = rotation_from_rpy(np.array([angle, 0.0, 0.0]))
         extra = {"axis_world_tool": T[:3, 2]} if kind == "axis" else {"R_world_tool": T[:3, :3]}
         target = pack_targets([ikde.Target(np.zeros(3), **extra)])
-        measured = compute_turn(target, 0, np.eye(4)[:3].copy(), np.empty(3))
-        assert measured == pytest.approx(measure_turn(angle, kind), abs=1e-15, rel=1e-9)
+        measured = compute_rotation(target, 0, np.eye(4)[:3].copy(), np.empty(3))
+        assert measured == pytest.approx(measure_rotation(angle, kind), abs=1e-15, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", ["axis", "pose"])
 def test_the_measure_of_a_turn_grows_with_its_angle(kind):
-    sizes = [measure_turn(angle, kind) for angle in np.linspace(0.0, np.pi, 10_001)]
+    sizes = [measure_rotation(angle, kind) for angle in np.linspace(0.0, np.pi, 10_001)]
     assert (np.diff(sizes) > 0.0).all()
     assert sizes[0] == 0.0
     assert sizes[-1] == pytest.approx(2.0)

@@ -67,7 +67,7 @@ def test_the_rows_are_those_that_had_nearly_the_value(qiao, rng, monkeypatch):
 
 
 def test_a_large_pool_is_thinned_out_evenly(qiao, rng, monkeypatch):
-    monkeypatch.setattr(frozen, "MOST", 100)
+    monkeypatch.setattr(frozen, "MAX_ROWS", 100)
     pools, whole = make_pools(qiao, rng, (4,))
     assert {row.tobytes() for row in pools.q} == {row.tobytes() for row in whole.q[::4]}
 
