@@ -26,9 +26,7 @@ from ikde.model.target import KINDS
 from ikde.solver import background
 from ikde.solver.asker import find_asker
 from ikde.solver.background import LATER, WAIT, Child, Question, answers_plainly, choose_way, compile_way
-from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.lm import pack_answer
-from ikde.solver.problem import pack_searched
 from ikde.solver.quick import find_quick
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
@@ -83,13 +81,11 @@ def test_kernels_of_tables_give_the_same_bits_both_ways(name, kind):
     robot, rng = ikde.load_robot(name), np.random.default_rng(3)
     problem = problem_of(robot, ikde.SolveSettings.for_method("lm"))
     near = replace(problem, near=robot.home)
-    asked = pack_searched(near.collision), make_ranges(near), make_descent(near, kind)
     answer = answer_target.bind(*pack_answer(problem, kind))
     for stream in range(3):
         q = free_q(robot, rng)
         target = make_target(robot, q, kind)
-        models, ranges, descent = asked
-        descend = reduce_motions.bind(*models, pack_targets([target]), np.array([0]), ranges, descent, near.weights)
+        descend = reduce_motions.bind(*pack_walk(near, kind), *pack_targets([target]), np.array([0]))
         rows, moved = np.zeros((2, size_of(len(q), len(problem.collision.pairs)))), np.array([[q], [q]])
         for row, Q, way in zip(rows, moved, ("plain", "compiled"), strict=True):
             getattr(answer, way)(target.T_world_tool, np.int64(-1), stream, 0, 16, row)
