@@ -51,23 +51,22 @@ class Asker:
         """The call of an engine as it was laid out for the one before, with the ranges of this one."""
         is_near = problem.near is not None
         if engine == CLOSED:
-            make, source = partial(analytic.pack_answer, problem), problem.weights
+            numbers, *others = self._keep((CLOSED, is_near), problem.weights, analytic.pack_answer, problem)
         else:
-            source = make_seeds(problem, self._kind)
-            make = partial(lm.pack_answer, problem, self._kind, source)
-        numbers, *others = self._keep((engine, is_near), source, make)
+            seeds = make_seeds(problem, self._kind)
+            numbers, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
         if not is_near:
             ranges = analytic.make_still_ranges(problem) if engine == CLOSED else make_ranges(problem)
             return set_ranges(numbers, ranges.ravel(), problem.centre), *others
-        walk = self._keep("walk", problem.weights, lambda: make_walk(problem, self._kind))
+        walk = self._keep("walk", problem.weights, make_walk, problem, self._kind)
         ranges = np.concatenate((problem.lower, problem.upper, problem.near))  # where both engines begin
         return walk, set_ranges(numbers, ranges, problem.near), *others
 
-    def _keep(self, name: Hashable, source: Any, make: Callable[[], Any]) -> Any:
+    def _keep(self, name: Hashable, source: Any, make: Callable[..., Any], *arguments: Any) -> Any:
         """What was made of the same source by the call before, else made now."""
         kept = self._kept.get(name)
         if kept is None or kept[0] is not source:
-            kept = self._kept[name] = source, make()
+            kept = self._kept[name] = source, make(*arguments)
         return kept[1]
 
 

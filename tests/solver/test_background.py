@@ -27,6 +27,7 @@ from ikde.solver import background
 from ikde.solver.asker import find_asker
 from ikde.solver.background import LATER, WAIT, Child, Question, answers_plainly, choose_way, compile_way
 from ikde.solver.engines.lm import pack_answer
+from ikde.solver.engines.stay_near import pack_walk
 from ikde.solver.quick import find_quick
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
