@@ -49,18 +49,19 @@ class Asker:
 
     def _lay_out(self, problem: Problem, engine: str) -> Sequence[Any]:
         """The call of an engine as it was laid out for the one before, with the ranges of this one."""
-        is_near = problem.near is not None
+        near = problem.near
+        is_near = near is not None
         if engine == CLOSED:
             numbers, *others = self._keep((CLOSED, is_near), problem.weights, analytic.pack_answer, problem)
         else:
             seeds = make_seeds(problem, self._kind)
             numbers, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
-        if not is_near:
+        if near is None:
             ranges = analytic.make_still_ranges(problem) if engine == CLOSED else make_ranges(problem)
             return set_ranges(numbers, ranges.ravel(), problem.centre), *others
         walk = self._keep("walk", problem.weights, make_walk, problem, self._kind)
-        ranges = np.concatenate((problem.lower, problem.upper, problem.near))  # where both engines begin
-        return walk, set_ranges(numbers, ranges, problem.near), *others
+        ranges = np.concatenate((problem.lower, problem.upper, near))  # where both engines begin
+        return walk, set_ranges(numbers, ranges, near), *others
 
     def _keep(self, name: Hashable, source: Any, make: Callable[..., Any], *arguments: Any) -> Any:
         """What was made of the same source by the call before, else made now."""

@@ -134,10 +134,28 @@ def test_one_child_at_a_time_and_one_trial_a_question(qiao, child):
     first = child._process
     assert answers_plainly(lost, Question(collision, "axis"))
     assert child._process is first
-    first.code = -9  # somebody killed it: the first question compiles for itself, the second gets a child of its own
+    first.code = 0  # it could not keep what it made: the first question compiles, the second gets a child of its own
     assert not answers_plainly(lost, Question(collision, "pose"))
     assert answers_plainly(lost, Question(collision, "axis"))
     assert child._process is not first
+
+
+@pytest.mark.parametrize("between", [False, True])
+def test_a_child_that_was_killed_is_started_once_more(qiao, child, between):
+    """Also if another question had its turn before the first is asked again."""
+    collision, lost = CollisionModel.of(qiao), Answer(is_kept=False)
+    pose, axis = (Question(collision, kind) for kind in ("pose", "axis"))
+    assert answers_plainly(lost, pose)
+    first, first.code = child._process, -9
+    if between:
+        assert answers_plainly(lost, axis)
+        child._process.code = 0
+    assert answers_plainly(lost, pose)
+    assert child.works_on(pose)
+    assert child._process is not first
+    child._process.code = -9
+    assert not answers_plainly(lost, pose)
+    assert answers_plainly(lost, axis) is not between
 
 
 def test_what_was_asked_while_the_child_was_at_work_has_its_turn_when_it_is_asked_again(qiao, child):
