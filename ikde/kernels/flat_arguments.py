@@ -43,10 +43,7 @@ def flatten_search(
     q, T_world_tool, *others = seeds
     sizes = np.array([ranges.shape[1], len(seeds.grid)])
     numbers, whole = _flatten(collision.safe_distance, sizes, np.zeros(2, dtype=np.int64), ranges, *descent, *others)
-    models = flatten_models(robot, collision)
-    whole[2:4] = len(numbers), len(whole)
-    numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
-    return numbers, whole, q, T_world_tool
+    return *_append_models(numbers, whole, robot, collision), q, T_world_tool
 
 
 def flatten_closed_form(
@@ -55,10 +52,7 @@ def flatten_closed_form(
     """What `unpack_closed_form` takes: safe distance and ranges stand where `flatten_search` puts them."""
     sizes = np.array([ranges.shape[1], carrier, 0, 0])
     numbers, whole = _flatten(collision.safe_distance, ranges, arm.transforms, arm.lengths, arm.angles, sizes, arm[0])
-    models = flatten_models(robot, collision)
-    whole[2:4] = len(numbers), len(whole)
-    numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
-    return numbers, whole
+    return _append_models(numbers, whole, robot, collision)
 
 
 def flatten_models(robot: RobotArrays, collision: CollisionArrays) -> tuple[Floats, Ints]:
@@ -69,8 +63,7 @@ def flatten_models(robot: RobotArrays, collision: CollisionArrays) -> tuple[Floa
 def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms) -> tuple[Floats, Ints]:
     """What `unpack_grader` takes."""
     joints = np.array([terms.limits.shape[1]])
-    numbers, whole = _flatten(*_list_models(robot, collision), *terms, joints)
-    return numbers, whole
+    return _flatten(*_list_models(robot, collision), *terms, joints)
 
 
 def flatten_answer(
@@ -96,6 +89,13 @@ def set_ranges(block: Floats, ranges: Floats, turns: Turns) -> Floats:
         start = 1 + k * joints if k < len(ranges) else end + (k - 6) * joints
         numbers[start : start + joints] = bound
     return numbers
+
+
+def _append_models(numbers: Floats, whole: Ints, robot: RobotArrays, collision: CollisionArrays) -> tuple[Floats, Ints]:
+    """Both models behind a search's own numbers; where they begin stands in whole[2:4]."""
+    models = flatten_models(robot, collision)
+    whole[2:4] = len(numbers), len(whole)
+    return np.concatenate([numbers, models[0]]), np.concatenate([whole, models[1]])
 
 
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
