@@ -25,8 +25,8 @@ TESTS = Path(__file__).parent
 WORKERS = 2
 LATE = {
     "kernels": 1,
-    **dict.fromkeys(("batch", "bench", "cli", "report", "solver", "track"), 2),
-    **dict.fromkeys(("test_docs.py", "test_regrade.py", "test_track_file.py"), 2),
+    **dict.fromkeys(("batch", "bench", "cli", "paper", "report", "solver", "track"), 2),
+    **dict.fromkeys(("test_batch_file.py", "test_docs.py", "test_regrade.py", "test_track_file.py"), 2),
 }
 LEFT_OUT = pytest.StashKey[int]()
 
