@@ -25,7 +25,8 @@ TESTS = Path(__file__).parent
 WORKERS = 2
 LATE = {
     "kernels": 1,
-    **dict.fromkeys(("batch", "bench", "cli", "report", "solver", "track", "test_docs.py", "test_regrade.py"), 2),
+    **dict.fromkeys(("batch", "bench", "cli", "paper", "report", "solver", "track"), 2),
+    **dict.fromkeys(("test_batch_file.py", "test_docs.py", "test_regrade.py", "test_track_file.py"), 2),
 }
 LEFT_OUT = pytest.StashKey[int]()
 
@@ -113,7 +114,7 @@ def pytest_collection():
 
 def pytest_collection_modifyitems(items):
     """First what needs no kernels, then what compiles its own; last what needs what `ahead` compiles meanwhile."""
-    items.sort(key=lambda item: LATE.get(item.path.relative_to(TESTS).parts[0], 0))
+    items.sort(key=lambda item: max(LATE.get(part, 0) for part in item.path.relative_to(TESTS).parts))
 
 
 def pytest_deselected(items):

@@ -9,12 +9,11 @@ makes it for one target, `solve_poses` for many: the same moves, the same bits.
 import numpy as np
 
 from ikde.kernels.answer import grade_row, open_row
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, DescentArrays, TargetArrays
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
 from ikde.kernels.closed_form import ANGLES, BRANCHES, Room, solve_ur_arm
-from ikde.kernels.flat_arguments import unpack_answer, unpack_closed_form, unpack_models
+from ikde.kernels.flat_arguments import grades, unpack_answer, unpack_closed_form, unpack_models
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.least_motion import reduce_motion
 from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.seeds import draw_seed
 from ikde.kernels.tables import find_collision, make_buffers, unpack_used
@@ -125,12 +124,17 @@ def solve_branches(
 @kernel
 def make_room(numbers, whole, ranges, carrier):
     """Room for attempts; the carrier's pose and the joints that are frozen are in it already."""
-    q, T_world_carrier = ranges[0].copy(), np.eye(4)[:3].copy()
+    q, T_world_carrier = ranges[0].copy(), np.empty((3, 4))
+    for i in range(3):  # in loops: numpy's `eye`, and its copying into slices, took 3 s to compile
+        for j in range(4):
+            T_world_carrier[i, j] = 1.0 if i == j else 0.0
     if carrier > 0:
         robot, _ = unpack_models(numbers[whole[2] :], whole[whole[3] :])
         T_world_body = np.empty((robot.bodies.shape[0], 3, 4))
         compute_bodies(robot, q, T_world_body)
-        T_world_carrier[:] = T_world_body[carrier]
+        for i in range(3):
+            for j in range(4):
+                T_world_carrier[i, j] = T_world_body[carrier, i, j]
     return Room(
         T_world_carrier,
         np.empty((3, 4)),
@@ -208,38 +212,22 @@ def answer_pose(numbers, whole, T_world_tool, seed, stream, first, last, out):
     As `lm.answer_target`, but that one attempt, `first`, shows all there is. True if it is reached and accepted.
     """
     grader, terms, kinds, turns = unpack_answer(numbers, whole)
-    out_q, is_met, _ = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
+    out_q, is_met = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
     if not is_met:
         return False
     unwind(turns[0], turns[1], turns[2], turns[3], out_q)
-    return grade_row(grader, terms, TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), whole[0], out)
-
-
-@kernel
-def answer_pose_near(numbers, whole, descent, weight, T_world_tool, seed, stream, first, last, out):
-    """The same, moved to the least motion from ranges[2]; `descent` [9] as `DescentArrays`, `weight` [N]."""
-    grader, terms, kinds, turns = unpack_answer(numbers, whole)
     target = TargetArrays(kinds, T_world_tool.reshape((1, 3, 4)))
-    out_q, is_met, is_reached = find_branch(numbers, whole, T_world_tool, np.uint64(seed), stream, first, out)
-    if not is_met:
-        return False
-    unwind(turns[0], turns[1], turns[2], turns[3], out_q)
-    if is_reached:
-        d, (ranges, _, _) = descent, unpack_closed_form(numbers, whole)
-        settings = DescentArrays(d[0], d[1], d[2], d[3], d[4], d[5], int(d[6]), int(d[7]), d[8])
-        robot, collision = unpack_models(numbers[whole[2] :], whole[whole[3] :])
-        reduce_motion(robot, collision, target, 0, ranges, settings, weight, out_q)
-    return grade_row(grader, terms, target, whole[0], out)
+    return grades(whole) and grade_row(grader, terms, target, whole[0], out)
 
 
 @kernel
 def find_branch(numbers, whole, T_world_tool, seed, stream, attempt, out):
-    """One attempt on one pose [3, 4] into a row; its q [N], whether that meets the pose, and whether it is free."""
+    """One attempt on one pose [3, 4] into a row; its q [N], and whether that meets the pose."""
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
     buffers, outputs = make_buffers(models[0], models[1], whole[0]), open_row(whole[0], attempt, out)
     try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs)
-    return outputs[0], outputs[1][0] == 0.0, outputs[2][REACHED] == 1
+    return outputs[0], outputs[1][0] == 0.0
 
 
 @kernel

@@ -1,7 +1,8 @@
 """What stays from target to target, in flat arrays: numba unpacks every array that it hands over.
 
 A named tuple is unpacked field by field, in Python, on every call: the 27 arrays and numbers of a search took 12 us,
-five times as long as the search. The two `flatten_` functions lay named tuples end to end; kernels unpack them free.
+five times as long as the search. The `flatten_` functions lay named tuples end to end; kernels unpack them free. What
+they give is writable: numba takes what is read-only for a type of its own, and compiles all that it is handed to anew.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,7 +21,7 @@ from ikde.kernels.arrays import (
     RobotArrays,
     SeedArrays,
 )
-from ikde.kernels.jit import inline_view_kernel, kernel
+from ikde.kernels.jit import inline_kernel, inline_view_kernel, kernel
 
 Value = Floats | Ints | Indices | float
 Turns = tuple[Floats, Floats, Any, Floats]
@@ -42,10 +43,7 @@ def flatten_search(
     q, T_world_tool, *others = seeds
     sizes = np.array([ranges.shape[1], len(seeds.grid)])
     numbers, whole = _flatten(collision.safe_distance, sizes, np.zeros(2, dtype=np.int64), ranges, *descent, *others)
-    models = _flatten(*_list_models(robot, collision))
-    whole[2:4] = len(numbers), len(whole)
-    numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
-    return _freeze(numbers), _freeze(whole), q, T_world_tool
+    return *_append_models(numbers, whole, robot, collision), q, T_world_tool
 
 
 def flatten_closed_form(
@@ -54,38 +52,40 @@ def flatten_closed_form(
     """What `unpack_closed_form` takes: safe distance and ranges stand where `flatten_search` puts them."""
     sizes = np.array([ranges.shape[1], carrier, 0, 0])
     numbers, whole = _flatten(collision.safe_distance, ranges, arm.transforms, arm.lengths, arm.angles, sizes, arm[0])
-    models = _flatten(*_list_models(robot, collision))
-    whole[2:4] = len(numbers), len(whole)
-    numbers, whole = (np.concatenate(pair) for pair in zip((numbers, whole), models, strict=True))
-    return _freeze(numbers), _freeze(whole)
+    return _append_models(numbers, whole, robot, collision)
+
+
+def flatten_models(robot: RobotArrays, collision: CollisionArrays) -> tuple[Floats, Ints]:
+    """What `unpack_models` takes."""
+    return _flatten(*_list_models(robot, collision))
 
 
 def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms) -> tuple[Floats, Ints]:
     """What `unpack_grader` takes."""
     joints = np.array([terms.limits.shape[1]])
-    numbers, whole = _flatten(*_list_models(robot, collision), *terms, joints)
-    return _freeze(numbers), _freeze(whole)
+    return _flatten(*_list_models(robot, collision), *terms, joints)
 
 
-def flatten_answer(search: Sequence[Any], grader: tuple[Floats, Ints], kind: int, turns: Turns) -> tuple[Floats, Ints]:
+def flatten_answer(
+    search: Sequence[Any], grader: tuple[Floats, Ints], kind: int, turns: Turns, *, is_graded: bool = True
+) -> tuple[Floats, Ints]:
     """What `unpack_answer` takes: the block of a search, which stands first, that of the grader, and of `unwind`.
 
-    Writable: numba takes twice as long to see the type of an array that is read-only.
+    `is_graded`: by the search; not so what is moved further and graded then.
+
+    Of an array that is read-only numba takes twice as long to see the type.
     """
     *bounds, is_revolute, centre = (np.asarray(part) for part in turns)
-    where = [kind, len(search[0]), len(search[1])]
+    where = [int(is_graded), kind, len(search[0]), len(search[1])]
     numbers = np.concatenate([search[0], grader[0], *bounds, centre])
     return numbers, np.concatenate([search[1], grader[1], is_revolute.astype(np.int64), where])
 
 
-def set_ranges(block: Floats, ranges: Floats, turns: Turns) -> Floats:
-    """A copy of the numbers of `flatten_answer` with other ranges (lower, upper, near) and bounds of turns."""
-    numbers, joints = block.copy(), len(ranges[0])
-    end = len(numbers)
-    for k, bound in enumerate((*ranges, turns[0], turns[1], turns[3])):
-        start = 1 + k * joints if k < len(ranges) else end + (k - 6) * joints
-        numbers[start : start + joints] = bound
-    return numbers
+def _append_models(numbers: Floats, whole: Ints, robot: RobotArrays, collision: CollisionArrays) -> tuple[Floats, Ints]:
+    """Both models behind a search's own numbers; where they begin stands in whole[2:4]."""
+    models = flatten_models(robot, collision)
+    whole[2:4] = len(numbers), len(whole)
+    return np.concatenate([numbers, models[0]]), np.concatenate([whole, models[1]])
 
 
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
@@ -101,12 +101,6 @@ def _flatten(*values: Value) -> tuple[Floats, Ints]:
     numbers = np.concatenate([array.ravel() for array in arrays if array.dtype.kind == "f"])
     whole = np.concatenate([array.ravel().astype(np.int64) for array in arrays if array.dtype.kind in "iu"])
     return numbers, whole
-
-
-def _freeze(block: Any) -> Any:
-    """Read-only, which numba takes for a type of its own."""
-    block.setflags(write=False)
-    return block
 
 
 @inline_view_kernel
@@ -189,5 +183,12 @@ def unpack_answer(numbers, whole):
     """The grader's numbers and whole numbers, the kind of target [1], and what `unwind` takes beside q, as views."""
     joints, end = whole[0], whole.size - 3
     grader, bounds = numbers[whole[end + 1] : numbers.size - 3 * joints], numbers[numbers.size - 3 * joints :]
-    turns = bounds[:joints], bounds[joints : 2 * joints], whole[end - joints : end], bounds[2 * joints :]
-    return grader, whole[whole[end + 2] : end - joints], whole[end : end + 1], turns
+    turning = whole[end - 1 - joints : end - 1]
+    turns = bounds[:joints], bounds[joints : 2 * joints], turning, bounds[2 * joints :]
+    return grader, whole[whole[end + 2] : end - 1 - joints], whole[end : end + 1], turns
+
+
+@inline_kernel
+def grades(whole):
+    """Whether a search of one target grades what it finds."""
+    return whole[whole.size - 4] == 1

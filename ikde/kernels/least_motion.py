@@ -6,10 +6,14 @@ collision. Each step is Newton's for the Lagrangian [Nocedal2006, ch. 18], with 
 start, with linearised contacts (`kernels/contacts.py`), every step of it free.
 """
 
-from ikde.kernels.arrays import COORDINATE, PRISMATIC
+import numpy as np
+
+from ikde.kernels.answer import FIRST_COUNT, METRICS, SCORE, grade_row
+from ikde.kernels.arrays import COORDINATE, PRISMATIC, REACHED, DescentArrays, TargetArrays
 from ikde.kernels.attempt import is_inside
 from ikde.kernels.clearance import find_closest_spheres
-from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
+from ikde.kernels.flat_arguments import unpack_answer, unpack_models
+from ikde.kernels.jit import inline_kernel, inline_view_kernel, kernel, leaf_kernel
 from ikde.kernels.motion_step import (
     INSIDE,
     choose_doubt,
@@ -301,8 +305,41 @@ def reduce_motion(robot, collision, target, index, ranges, descent, weight, q):
                 return
 
 
+@inline_view_kernel
+def unpack_walk(walk):
+    """`DescentArrays` and weights [N] out of one array [9 + N]."""
+    w = walk
+    return DescentArrays(w[0], w[1], w[2], w[3], w[4], w[5], int(w[6]), int(w[7]), w[8]), w[9:]
+
+
 @kernel
-def reduce_motions(robot, collision, target, rows, ranges, descent, weight, q):
-    """`reduce_motion` of some rows [K] of `q` [T, N], a target each: the same bits."""
+def reduce_motions(numbers, whole, ranges, walk, kinds, T_world_tool, rows, q):
+    """`reduce_motion` of some rows [K] of `q` [T, N], a target each: the same bits.
+
+    `numbers` and `whole` as `unpack_models` takes them: of types as below, so that `reduce_motion` is compiled once.
+    """
+    robot, collision = unpack_models(numbers, whole)
+    target, (descent, weight) = TargetArrays(kinds, T_world_tool), unpack_walk(walk)
     for row in rows:
         reduce_motion(robot, collision, target, row, ranges, descent, weight, q[row])
+
+
+@kernel
+def descend_row(numbers, whole, walk, T_world_tool, out):
+    """`reduce_motion` of what `lm` or the closed form has reached, and its grade, from one call of Python.
+
+    Of all robots: in the modules that are written for them it took 5 s more to compile for each kind of target.
+    `numbers` and `whole` are those of `unpack_answer`, `out` is the row that the search has filled. Returns True if
+    the target is reached and the grader accepts it.
+    """
+    joints = whole[0]
+    if out[joints + METRICS + SCORE] == np.inf:
+        return False  # no branch meets the pose
+    grader, terms, kinds, _ = unpack_answer(numbers, whole)
+    robot, collision = unpack_models(numbers[whole[2] :], whole[whole[3] :])
+    target, (descent, weight) = TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), unpack_walk(walk)
+    ranges = numbers[1 : 1 + 3 * joints].reshape((3, joints))
+    if out[joints + METRICS :].view(np.int64)[FIRST_COUNT + REACHED] == 1:
+        index = np.int64(0)  # a literal would be compiled into functions of its own
+        reduce_motion(robot, collision, target, index, ranges, descent, weight, out[:joints])
+    return grade_row(grader, terms, target, joints, out)

@@ -9,9 +9,8 @@ import numpy as np
 
 from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
-from ikde.kernels.flat_arguments import unpack_answer, unpack_models, unpack_search
+from ikde.kernels.flat_arguments import grades, unpack_answer, unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.least_motion import reduce_motion
 from ikde.kernels.rng import seed_stream
 from ikde.kernels.seeds import draw_seed
 from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used
@@ -98,31 +97,17 @@ def answer_target(numbers, whole, pool, pool_T, T_world_tool, seed, stream, firs
     """`solve_target` on one target [3, 4], turned back and graded, from one call of Python.
 
     `numbers` and `whole` are those of `unpack_answer`, `out` is the row of `kernels/answer.py`; with `first` above 0 it
-    goes on with what stands there. Returns True if the target is reached and the grader accepts it.
+    goes on with what stands there. Returns True if the target is reached and the grader accepts it; False, and no
+    grade, where `descend_row` comes after it.
     """
     grader, terms, kinds, turns = unpack_answer(numbers, whole)
     target, joints = TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), whole[0]
     out_q, out_score, out_counts, out_pairs = open_row(joints, first, out)
-    question = (numbers, whole, pool, pool_T, target.kind, target.T_world_tool, 0, np.uint64(seed), stream, first, last)
-    solve_target(*question, out_q, out_score, out_counts, out_pairs)
+    index = np.int64(0)  # a literal would be compiled into functions of its own
+    asked = (target.kind, target.T_world_tool, index, np.uint64(seed), stream, first, last)
+    solve_target(numbers, whole, pool, pool_T, *asked, out_q, out_score, out_counts, out_pairs)
     unwind(turns[0], turns[1], turns[2], turns[3], out_q)
-    return grade_row(grader, terms, target, joints, out)
-
-
-@kernel
-def answer_near(numbers, whole, pool, pool_T, weight, T_world_tool, seed, stream, first, last, out):
-    """The same, moved to a local minimum of the motion from ranges[2] before it is graded; `weight` [N]."""
-    grader, terms, kinds, turns = unpack_answer(numbers, whole)
-    target, joints = TargetArrays(kinds, T_world_tool.reshape((1, 3, 4))), whole[0]
-    out_q, out_score, out_counts, out_pairs = open_row(joints, first, out)
-    question = (numbers, whole, pool, pool_T, target.kind, target.T_world_tool, 0, np.uint64(seed), stream, first, last)
-    solve_target(*question, out_q, out_score, out_counts, out_pairs)
-    unwind(turns[0], turns[1], turns[2], turns[3], out_q)
-    if out_counts[REACHED] == 1:
-        ranges, descent, _ = unpack_search(numbers, whole, pool, pool_T)
-        robot, collision = unpack_models(numbers[whole[2] :], whole[whole[3] :])
-        reduce_motion(robot, collision, target, 0, ranges, descent, weight, out_q)
-    return grade_row(grader, terms, target, joints, out)
+    return grades(whole) and grade_row(grader, terms, target, joints, out)
 
 
 @inline_kernel

@@ -43,12 +43,12 @@ class Clock(Protocol):
 class MachineCode(NullCache):
     """What numba asks for compiled code and reports of it: the methods of its own caches that a dispatcher calls."""
 
-    def __init__(self, function: FunctionType, source: str, folder: Path) -> None:
+    def __init__(self, function: FunctionType, source: str, folder: Path, options: dict[str, Any]) -> None:
         code = function.__code__
         self._folder = folder
         self._name = cache_folder.name_code(function)
         body = hashlib.sha256(code.co_code).hexdigest()
-        self._identity = (*VERSIONS, source, function.__qualname__, code.co_firstlineno, body)
+        self._identity = (*VERSIONS, source, function.__qualname__, code.co_firstlineno, body, *sorted(options.items()))
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Compiled code for types of arguments, or None if there is none that can be used."""
@@ -81,7 +81,8 @@ def compile_function(function: FunctionType, options: dict[str, Any]) -> Any:
     compiled: Any = numba.njit(**options)(function)
     source = hash_source(function.__code__.co_filename) if cache_folder.CACHE_IS_WRITABLE else None
     if source and not function.__closure__ and compiled is not function:
-        compiled._cache = MachineCode(function, source, cache_folder.CACHE_FOLDER / cache_folder.MACHINE_CODE)
+        folder = cache_folder.CACHE_FOLDER / cache_folder.MACHINE_CODE
+        compiled._cache = MachineCode(function, source, folder, options)
     return compiled
 
 

@@ -77,9 +77,12 @@ def frame_names(robot: Robot) -> list[str]:
 
 
 def pack_targets(targets: Targets | Sequence[Target]) -> TargetArrays:
-    """The targets' own arrays; a sequence of `Target` is converted first."""
+    """The targets' own poses; a sequence of `Target` is converted first.
+
+    Kinds are a copy, which is writable as those in `flatten_answer` are: kernels are compiled for one type of them.
+    """
     targets = Targets.of(targets)
-    return TargetArrays(kind=targets.kind, T_world_tool=targets.T_world_tool)
+    return TargetArrays(kind=targets.kind.copy(), T_world_tool=targets.T_world_tool)
 
 
 def _body_row(robot: Robot, body: Body, carries_tool: bool) -> tuple[int, int, bool, bool]:

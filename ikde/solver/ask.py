@@ -23,7 +23,7 @@ from ikde.solver.engines.pool import load_kernels
 from ikde.solver.problem import Problem
 from ikde.solver.proof import prove
 from ikde.solver.settings import SolveSettings
-from ikde.solver.way import Answer, Way
+from ikde.solver.way import Answer, Way, WithDescent
 
 LM, CLOSED = "lm", "analytic"
 
@@ -33,13 +33,12 @@ class Ways:
 
     def __init__(self, collision: CollisionModel, kind: str) -> None:
         kernels = load_kernels(collision, kind)
-        calls = {(LM, False): "answer_target", (LM, True): "answer_near"}
-        calls |= {(CLOSED, False): "answer_pose", (CLOSED, True): "answer_pose_near"}
-        self._ways = {
-            (engine, is_near): Way(getattr(kernels, call), Question(collision, kind, NEAR if is_near else ONE, engine))
-            for (engine, is_near), call in calls.items()
-            if hasattr(kernels, call)
-        }
+        self._ways = {}
+        for engine, name in ((LM, "answer_target"), (CLOSED, "answer_pose")):
+            if hasattr(kernels, name):
+                call = getattr(kernels, name)
+                self._ways[engine, False] = Way(call, Question(collision, kind, ONE, engine))
+                self._ways[engine, True] = Way(WithDescent(call), Question(collision, kind, NEAR, engine))
 
     def find(self, engine: str, is_near: bool) -> Way:
         """The way of an engine."""

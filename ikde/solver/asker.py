@@ -3,7 +3,7 @@
 What stays is laid out once; ranges and `near` are written into a copy of it, in 2 us.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from functools import cached_property, lru_cache, partial
 from typing import Any, TypeVar
 
@@ -14,7 +14,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.solver.ask import CLOSED, LM, Ask, Plan, Ways, make_plan
 from ikde.solver.choice import find_free
 from ikde.solver.engines import analytic, lm
-from ikde.solver.engines.engine import make_descent, make_ranges
+from ikde.solver.engines.engine import make_ranges, make_walk
 from ikde.solver.engines.pool import make_seeds, runs_on_tables
 from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
@@ -28,7 +28,7 @@ class Asker:
     def __init__(self, collision: CollisionModel, settings: SolveSettings, kind: str) -> None:
         self._collision, self._settings, self._kind = collision, settings, kind
         self._plans = lru_cache(maxsize=64)(self._make_plan)
-        self._kept: dict[str, tuple[Any, Any]] = {}
+        self._kept: dict[Hashable, tuple[Any, Any]] = {}
 
     def make(self, problem: Problem, way: type[Asked]) -> Asked | None:
         """The question of a problem, or None if it has no plan, or on tables, where engine and grader share code."""
@@ -49,30 +49,31 @@ class Asker:
 
     def _lay_out(self, problem: Problem, engine: str) -> Sequence[Any]:
         """The call of an engine as it was laid out for the one before, with the ranges of this one."""
-        is_near = problem.near is not None
+        near = problem.near
+        is_near = near is not None
         if engine == CLOSED:
-            numbers, whole = self._keep(CLOSED, problem.weights, lambda: analytic.pack_answer(problem))
-            block = set_ranges(numbers, analytic.make_still_ranges(problem), problem.centre), whole
-            if not is_near:
-                return block
-            descent = self._keep("descent", self, lambda: np.array(make_descent(problem, self._kind)))
-            return *block, descent, problem.weights
-        seeds = make_seeds(problem, self._kind)
-        numbers, *others = self._keep(LM, seeds, lambda: lm.pack_answer(problem, self._kind, seeds))
-        block = set_ranges(numbers, make_ranges(problem), problem.centre), *others
-        return (*block, problem.weights) if is_near else block
+            numbers, *others = self._keep((CLOSED, is_near), problem.weights, analytic.pack_answer, problem)
+        else:
+            seeds = make_seeds(problem, self._kind)
+            numbers, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
+        if near is None:
+            ranges = analytic.make_still_ranges(problem) if engine == CLOSED else make_ranges(problem)
+            return set_ranges(numbers, ranges.ravel(), problem.centre), *others
+        walk = self._keep("walk", problem.weights, make_walk, problem, self._kind)
+        ranges = np.concatenate((problem.lower, problem.upper, near))  # where both engines begin
+        return walk, set_ranges(numbers, ranges, near), *others
 
-    def _keep(self, name: str, source: Any, make: Callable[[], Any]) -> Any:
+    def _keep(self, name: Hashable, source: Any, make: Callable[..., Any], *arguments: Any) -> Any:
         """What was made of the same source by the call before, else made now."""
         kept = self._kept.get(name)
         if kept is None or kept[0] is not source:
-            kept = self._kept[name] = source, make()
+            kept = self._kept[name] = source, make(*arguments)
         return kept[1]
 
 
 def set_ranges(block: Floats, ranges: Floats, centre: Floats) -> Floats:
-    """A copy of the numbers of `flatten_answer` with other ranges [3, N], and turns between them to `centre` [N]."""
-    numbers, ranges = block.copy(), ranges.ravel()
+    """A copy of the numbers of `flatten_answer` with other ranges [3 N], and turns between them to `centre` [N]."""
+    numbers = block.copy()
     numbers[1 : 1 + len(ranges)] = numbers[-len(ranges) :] = ranges
     numbers[-len(centre) :] = centre
     return numbers

@@ -11,17 +11,19 @@ import os
 import subprocess
 import sys
 import threading
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from ikde.errors import InputError, quoted
 from ikde.kernels import cache_folder
-from ikde.kernels.jit import COMPILE, Bound
+from ikde.kernels.jit import COMPILE
 from ikde.model.collision_model import CollisionModel
 from ikde.model.plain_data import encode
 from ikde.solver.compile_note import name_work
+from ikde.solver.compile_turn import is_taken_for, mark_work
 
 BACKGROUND, WAIT, NEVER = WAYS = ("background", "wait", "never")
 LATER = "later"
@@ -29,6 +31,8 @@ LATER = "later"
 UNLESS_TOLD: ContextVar[str] = ContextVar("way", default=BACKGROUND)
 ONE, NEAR, MANY = "one", "near", "many of"
 GRACE_S = 0.5
+TRIES = 2
+"""How often a child is started for a question whose child is killed."""
 START = "import json, sys; q = json.loads(sys.stdin.readline()); sys.path[:] = q['path']; "
 START += "from ikde.solver.compiler_process import run; run(q)"
 
@@ -69,7 +73,16 @@ class Question(NamedTuple):
         return {"robot": encode(collision.robot), "detector": encode(collision.detector), "what": others}
 
 
-def answers_plainly(answer: Bound, question: Question) -> bool:
+class Answer(Protocol):
+    """What answers a question, as machine code or not."""
+
+    @property
+    def is_kept(self) -> bool:
+        """True if its machine code lies in the cache."""
+        ...
+
+
+def answers_plainly(answer: Answer, question: Question) -> bool:
     """True while a question is to be answered in plain Python; the child is started if there is something to do."""
     way = choose_way()
     if way in (NEVER, LATER):
@@ -90,7 +103,8 @@ class Child:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._asked: set[Question] = set()
+        self._tries: Counter[Question] = Counter()
+        self._killed: set[Question] = set()
         self._question: Question | None = None
 
     @property
@@ -103,16 +117,20 @@ class Child:
         return question == self._question and self.is_at_work
 
     def compile(self, question: Question) -> bool:
-        """True if it is at work, or has been started for this; False if it has ended without: it is not tried again.
+        """True if it is at work, or has been started for this, or another process is about it; else False.
 
-        What is asked while it works on something else is compiled when that is done, if it is still asked then.
+        If it has ended without, it is not tried again, but once if it was killed. What is asked while it works on
+        something else is compiled when that is done, if it is still asked then.
         """
         with self._lock:
             if self.is_at_work:
                 return True
-            if question in self._asked:
-                return False
-            self._asked.add(question)
+            if self._question and self._process and self._process.poll():
+                self._killed.add(self._question)
+            tries = TRIES if question in self._killed else 1
+            if self._tries[question] >= tries:
+                return is_taken_for(cache_folder.CACHE_FOLDER, mark_work(question.encode()))
+            self._tries[question] += 1
             self._question = question
             with suppress(OSError):
                 self._process = start(question.encode())

@@ -8,12 +8,11 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-LOCK = "compiling.lock"
+from ikde.solver.compile_turn import mark_work, take_turn
+
 POLL_S = 0.5
 
 
@@ -23,7 +22,7 @@ def run(question: dict[str, Any]) -> None:
         os.nice(19)
     threading.Thread(target=_end_with, args=(question["parent"],), daemon=True).start()
     threading.Thread(target=_end_with_input, daemon=True).start()
-    with take_turn(Path(question["cache"])):
+    with take_turn(Path(question["cache"]), mark_work(question)):
         compile_answer(question)
 
 
@@ -39,20 +38,6 @@ def compile_answer(question: dict[str, Any]) -> None:
     kind, call, engine = question["what"]
     wanted = f"{engine}, {call} {kind}"
     warm_up([stage for stage in list_stages(collision.robot, collision) if stage.name == wanted])
-
-
-@contextmanager
-def take_turn(cache: Path) -> Iterator[None]:
-    """Be the only one that compiles into a cache folder; where files cannot be locked there may be two, and no harm."""
-    handle = os.open(cache / LOCK, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o600)
-    try:
-        with suppress(ImportError, OSError):
-            import fcntl
-
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(handle)
 
 
 def _end_with(parent: int) -> None:

@@ -2,11 +2,13 @@
 
 import time
 from collections.abc import Callable
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels.jit import Kernel
+from ikde.kernels.jit import Bound, Kernel
+from ikde.kernels.least_motion import descend_row
 from ikde.solver.background import Question, answers_plainly
 from ikde.solver.compile_note import note_compile
 
@@ -21,10 +23,52 @@ def as_word(seed: int) -> int:
     return seed if seed < HALF_WORDS else seed - 2 * HALF_WORDS
 
 
+class Found(NamedTuple):
+    """What `WithDescent` is when its first arguments are there: a search, and the descent from what it finds."""
+
+    search: Bound
+    descent: Bound
+
+    @property
+    def is_kept(self) -> bool:
+        """True if the machine code of both lies in the cache."""
+        return self.search.is_kept and self.descent.is_kept
+
+    def plain(self, T_world_tool: Any, *others: Any) -> bool:
+        """The answer in plain Python."""
+        self.search.plain(T_world_tool, *others)
+        return self.descent.plain(T_world_tool, others[-1])
+
+
+class WithDescent:
+    """A search of one target, and behind it the descent to the least motion, as if they were one kernel.
+
+    Before what stays of the search it takes `walk` (`kernels/least_motion.py`).
+    """
+
+    def __init__(self, search: Kernel) -> None:
+        self._search = search
+
+    @cached_property
+    def compiled(self) -> Answer:
+        """Machine code: 1 us more than one call of one kernel."""
+        search, descend = self._search.compiled, descend_row.compiled
+
+        def answer(walk: Any, numbers: Any, whole: Any, *others: Any) -> bool:
+            search(numbers, whole, *others)
+            return descend(numbers, whole, walk, others[-6], others[-1])
+
+        return answer
+
+    def bind(self, walk: Any, *search: Any) -> Found:
+        """Both with their first arguments."""
+        return Found(self._search.bind(*search), descend_row.bind(*search[:2], walk))
+
+
 class Way:
     """A kernel that answers one target: in plain Python, until there is machine code."""
 
-    def __init__(self, kernel: Kernel, question: Question) -> None:
+    def __init__(self, kernel: Kernel | WithDescent, question: Question) -> None:
         self._kernel, self._question = kernel, question
         self.machine: Answer | None = None
         self.waited_s, self.compile_s = 0.0, 0.0

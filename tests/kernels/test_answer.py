@@ -54,7 +54,7 @@ def test_the_call_gives_the_bits_of_search_and_grader_one_after_the_other(qiao, 
     for stream in range(4):
         target = make_target(qiao, free_q(qiao, rng), kind)
         row, packed = np.empty(size_of(9, pairs)), pack_targets([target])
-        accepted = answer_target(*block, pool, pool_T, target.T_world_tool, 3, stream, 0, 20, row)
+        accepted = answer_target.bind(*block, pool, pool_T).plain(target.T_world_tool, 3, stream, 0, 20, row)
         q, score, counts, blocked = (
             np.empty(9),
             np.full(2, np.inf),
@@ -62,8 +62,8 @@ def test_the_call_gives_the_bits_of_search_and_grader_one_after_the_other(qiao, 
             np.zeros(pairs, np.int64),
         )
         question = (*packed, 0, np.uint64(3), stream, 0, 20)
-        solve_target(*search, pool, pool_T, *question, q, score, counts, blocked)
-        *metrics, pair, verdict = grade_one(*grader, *packed, q)
+        solve_target.bind(*search, pool, pool_T).plain(*question, q, score, counts, blocked)
+        *metrics, pair, verdict = grade_one.bind(*grader).plain(*packed, q)
         expected = pack_row(q, metrics, pair, counts, blocked)
         expected[9 + METRICS + SCORE :][:2] = score
         assert row.tobytes() == expected.tobytes()

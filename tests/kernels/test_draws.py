@@ -58,10 +58,10 @@ def test_how_many_were_found_in_a_row_is_told(qiao):
     assert np.isfinite(q).all()
 
 
-def test_written_kernels_draw_the_same_bits(qiao):
-    for detector in ("improved", "typical"):
-        collision = CollisionModel.of(qiao, detector)
-        module = load_module(collision, "position")
-        written, tables = draw(collision, 3, 10, 400, module), draw(collision, 3, 10, 400)
-        np.testing.assert_array_equal(written[0], tables[0])
-        assert written[1] == tables[1] == 400
+@pytest.mark.parametrize("detector", ["improved", pytest.param("typical", marks=pytest.mark.slow)])
+def test_written_kernels_draw_the_same_bits(qiao, detector):
+    collision = CollisionModel.of(qiao, detector)
+    module = load_module(collision, "position")
+    written, tables = draw(collision, 3, 10, 400, module), draw(collision, 3, 10, 400)
+    np.testing.assert_array_equal(written[0], tables[0])
+    assert written[1] == tables[1] == 400

@@ -11,6 +11,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_targets
 from ikde.model.target import Targets
 from ikde.solver.engines.engine import make_descent, make_ranges
+from ikde.solver.engines.stay_near import pack_walk
 from ikde.solver.problem import pack_searched
 from tests.conftest import random_q
 from tests.kernels.optimum import find_optimum, motion, residual, room
@@ -194,10 +195,9 @@ def test_rows_are_those_of_one_by_one(qiao, rng):
     Q = np.array([beside(qiao, near, rng, 0.2) for _ in range(4)])
     targets = [make_target(qiao, q, "axis") for q in Q]
     problem, end = problem_of(qiao, near=near), Q.copy()
-    arrays = make_ranges(problem), make_descent(problem, "axis"), problem.weights
     rows = np.array([3, 1])
     with quietly():
-        kernels.reduce_motions(*pack_searched(problem.collision), pack_targets(Targets.of(targets)), rows, *arrays, end)
+        kernels.reduce_motions(*pack_walk(problem, "axis"), *pack_targets(Targets.of(targets)), rows, end)
     for row, (q, target) in enumerate(zip(Q, targets, strict=True)):
         expected = reduce_motion(problem, target, q) if row in rows else q
         assert end[row].tobytes() == expected.tobytes()

@@ -1,6 +1,7 @@
 """Whole turns are taken as far as the range allows, and nothing else is touched."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,6 +41,13 @@ def test_a_turn_ends_inside_the_range_or_is_not_made():
     assert unwound(-6.0, -7.0, 0.1) == -6.0
     assert unwound(TURN, 0.0, TURN) == 0.0
     assert unwound(20.0, 5.0, 21.0) == 20.0 - 2.0 * TURN  # three would be nearest
+
+
+def test_between_one_turn_and_several_each_is_the_number_that_is_nearest():
+    for half_turns, turns in ((2.95, 1), (3.05, 2)):
+        for sign in (1.0, -1.0):
+            value = sign * half_turns * np.pi
+            assert unwound(value, -20.0, 20.0) == pytest.approx(value - sign * turns * TURN, abs=1e-14)
 
 
 def test_a_joint_without_limits_comes_all_the_way():

@@ -9,7 +9,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
-from ikde.solver.asker import Asker
+from ikde.solver.asker import Asker, set_ranges
 from ikde.solver.problem import make_problem
 from ikde.solver.quick import Quick
 from ikde.solver.result import FIELDS
@@ -118,3 +118,11 @@ def test_near_of_a_result_cannot_be_changed(qiao, rng):
     with pytest.raises(ValueError, match="read-only"):
         result.near[0] = 9.0
     assert result.motion == 0.0
+
+
+def test_ranges_of_the_search_those_of_turns_and_their_centre_are_written_in_their_places():
+    ranges, centre = np.arange(6.0), np.array([8.0, 9.0])
+    block = -np.ones(20)
+    written = set_ranges(block, ranges, centre)
+    assert written.tolist() == [-1.0, *ranges, *[-1.0] * 7, *ranges[:4], *centre]
+    assert (block == -1.0).all()

@@ -26,9 +26,8 @@ from ikde.model.target import KINDS
 from ikde.solver import background
 from ikde.solver.asker import find_asker
 from ikde.solver.background import LATER, WAIT, Child, Question, answers_plainly, choose_way, compile_way
-from ikde.solver.engines.engine import make_descent, make_ranges
 from ikde.solver.engines.lm import pack_answer
-from ikde.solver.problem import pack_searched
+from ikde.solver.engines.stay_near import pack_walk
 from ikde.solver.quick import find_quick
 from tests.problems import problem_of
 from tests.targets import free_q, make_target
@@ -83,13 +82,11 @@ def test_kernels_of_tables_give_the_same_bits_both_ways(name, kind):
     robot, rng = ikde.load_robot(name), np.random.default_rng(3)
     problem = problem_of(robot, ikde.SolveSettings.for_method("lm"))
     near = replace(problem, near=robot.home)
-    asked = pack_searched(near.collision), make_ranges(near), make_descent(near, kind)
     answer = answer_target.bind(*pack_answer(problem, kind))
     for stream in range(3):
         q = free_q(robot, rng)
         target = make_target(robot, q, kind)
-        models, ranges, descent = asked
-        descend = reduce_motions.bind(*models, pack_targets([target]), np.array([0]), ranges, descent, near.weights)
+        descend = reduce_motions.bind(*pack_walk(near, kind), *pack_targets([target]), np.array([0]))
         rows, moved = np.zeros((2, size_of(len(q), len(problem.collision.pairs)))), np.array([[q], [q]])
         for row, Q, way in zip(rows, moved, ("plain", "compiled"), strict=True):
             getattr(answer, way)(target.T_world_tool, np.int64(-1), stream, 0, 16, row)
@@ -137,10 +134,28 @@ def test_one_child_at_a_time_and_one_trial_a_question(qiao, child):
     first = child._process
     assert answers_plainly(lost, Question(collision, "axis"))
     assert child._process is first
-    first.code = -9  # somebody killed it: the first question compiles for itself, the second gets a child of its own
+    first.code = 0  # it could not keep what it made: the first question compiles, the second gets a child of its own
     assert not answers_plainly(lost, Question(collision, "pose"))
     assert answers_plainly(lost, Question(collision, "axis"))
     assert child._process is not first
+
+
+@pytest.mark.parametrize("between", [False, True])
+def test_a_child_that_was_killed_is_started_once_more(qiao, child, between):
+    """Also if another question had its turn before the first is asked again."""
+    collision, lost = CollisionModel.of(qiao), Answer(is_kept=False)
+    pose, axis = (Question(collision, kind) for kind in ("pose", "axis"))
+    assert answers_plainly(lost, pose)
+    first, first.code = child._process, -9
+    if between:
+        assert answers_plainly(lost, axis)
+        child._process.code = 0
+    assert answers_plainly(lost, pose)
+    assert child.works_on(pose)
+    assert child._process is not first
+    child._process.code = -9
+    assert not answers_plainly(lost, pose)
+    assert answers_plainly(lost, axis) is not between
 
 
 def test_what_was_asked_while_the_child_was_at_work_has_its_turn_when_it_is_asked_again(qiao, child):

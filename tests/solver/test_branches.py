@@ -78,13 +78,14 @@ def test_what_touches_almost_is_not_ruled_out(rng):
 
 
 @each_question
-def test_nearly_all_that_no_engine_reaches_is_ruled_out(problem, rng):
-    targets = others(rng, 300)
-    reached = search(problem, targets, seed=1, streams=range(300), attempts=40).counts[:, REACHED] == 1
+@pytest.mark.parametrize(("count", "attempts"), [(60, 4), pytest.param(300, 40, marks=pytest.mark.slow)])
+def test_nearly_all_that_no_engine_reaches_is_ruled_out(problem, rng, count, attempts):
+    targets = others(rng, count)
+    reached = search(problem, targets, seed=1, streams=range(count), attempts=attempts).counts[:, REACHED] == 1
     ruled_out = rule_out(problem, targets) >= 0
     assert not (reached & ruled_out).any()
     assert ruled_out[~reached].mean() > 0.95
-    assert ruled_out.sum() > 50
+    assert ruled_out.sum() > count / 6
 
 
 def test_all_collisions_are_named_and_counted_as_plain_numpy_sees_them(rng):

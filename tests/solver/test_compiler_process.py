@@ -12,7 +12,7 @@ import ikde
 from ikde.kernels import cache_files
 from ikde.model.plain_data import encode
 from ikde.solver import compiler_process, warmup
-from ikde.solver.compiler_process import compile_answer, take_turn
+from ikde.solver.compiler_process import compile_answer
 
 ROOT = Path(__file__).parents[2]
 
@@ -37,29 +37,6 @@ def test_with_near_and_without_a_detector_it_compiles_for_that(substitute):
     asked = done[0].run.keywords
     assert asked["collision"].detector is None
     assert asked["near"].tolist() == robot.home.tolist()
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs locks of files")
-def test_one_waits_for_another(tmp_path):
-    script = f"import sys; sys.path[:] = {sys.path!r}\nfrom pathlib import Path\n" + (
-        "from ikde.solver.compiler_process import take_turn\n"
-        f"with take_turn(Path({str(tmp_path)!r})):\n    print('mine', flush=True)\n    input()\n"
-    )
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, **pipes) as other:
-        assert other.stdout.readline() == "mine\n"
-        mine = threading.Event()
-
-        def wait():
-            with take_turn(tmp_path):
-                mine.set()
-
-        thread = threading.Thread(target=wait)
-        thread.start()
-        assert not mine.wait(0.3)
-        other.communicate("\n")
-        thread.join(20.0)
-        assert mine.is_set()
 
 
 def test_it_does_not_end_in_the_middle_of_a_file(monkeypatch):

@@ -4,6 +4,7 @@ import os
 import pickle
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -232,3 +233,13 @@ def test_a_search_that_is_begun_goes_on_where_it_stopped(rng):
         assert quick.blocking_pairs == long.blocking_pairs
         on += 1
     assert on > 0
+
+
+def test_waiting_for_machine_code_is_no_solving(qiao, monkeypatch):
+    quick, target = make_quick(qiao, "position"), ikde.Target((0.8, 0.5, 1.0))
+    quick.solve(target, 0, 0, 0.0)
+    monkeypatch.setattr(quick.ways, "take_waited_s", lambda: (50.0, 20.0))
+    quick.is_ready = False
+    result = quick.solve(target, 0, 0, time.perf_counter() - 60.0)
+    assert 10.0 <= result.solve_seconds < 40.0
+    assert result.compile_seconds == 20.0

@@ -28,14 +28,17 @@ NO_TABLES = '''def use_models(robot, collision):
 
 @leaf_kernel
 def unpack_used(numbers, whole):
-    """What straight-line code takes of both models, out of the block of a search."""
-    return 0, SafeDistance(numbers[0])
+    """What straight-line code takes of both models, out of the block of a search.
+
+    A literal would be a type of its own, and what draws targets would compile `find_collision` anew.
+    """
+    return np.int64(0), SafeDistance(numbers[0])
 
 
 @leaf_kernel
 def make_buffers(robot, collision, joints):
     """Straight-line code needs no buffers."""
-    return 0
+    return np.int64(0)
 '''
 
 

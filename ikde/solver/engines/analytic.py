@@ -32,7 +32,8 @@ def pack_still(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
 def pack_answer(problem: Problem) -> tuple[Floats, Ints]:
     """The same as `answer_pose` takes it."""
     block = pack_still(problem, check_closed_form(problem.robot))
-    return flatten_answer(block, pack_grader(problem.collision, problem.settings), POSE, problem.turns)
+    grader = pack_grader(problem.collision, problem.settings)
+    return flatten_answer(block, grader, POSE, problem.turns, is_graded=problem.near is None)
 
 
 class Analytic:

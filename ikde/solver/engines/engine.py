@@ -82,6 +82,11 @@ def make_descent(problem: Problem, kind: str) -> DescentArrays:
     )
 
 
+def make_walk(problem: Problem, kind: str) -> Floats:
+    """The same and the weights of the motion [9 + N], as `kernels/least_motion.py` takes them."""
+    return np.array([*make_descent(problem, kind), *problem.weights])
+
+
 def measure_rotation(angle_rad: float, kind: str) -> float:
     """How `damped.compute_rotation` measures an angle in [0, pi]: a number that grows with it, from 0 to 2.
 

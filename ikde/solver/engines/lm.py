@@ -45,7 +45,11 @@ def pack_answer(problem: Problem, kind: str, seeds: SeedArrays | None = None) ->
     """All that stays from target to target, as `answer_target` takes it; `seeds` if they are there already."""
     *search, pool, pool_T = pack_block(problem, kind, seeds)
     grader = pack_grader(problem.collision, problem.settings)
-    return *flatten_answer(search, grader, KINDS.index(kind), problem.turns), pool, pool_T
+    return (
+        *flatten_answer(search, grader, KINDS.index(kind), problem.turns, is_graded=problem.near is None),
+        pool,
+        pool_T,
+    )
 
 
 class DampedLeastSquares:
