@@ -4,7 +4,7 @@ import typer
 
 from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import layout, print_json, print_result
 
 
 def check(
@@ -39,6 +39,6 @@ def check(
     if as_json:
         print_json(check_json(model, result, convention))
     else:
-        print_result(format_check(result, Units(unit, angles), color=use_color()))
-    options.draw(plot, collision, values)
+        print_result(format_check(model, result, Units(unit, angles), **layout()))
+    options.draw(plot, collision, values, as_json=as_json)
     raise typer.Exit(ExitCode.NOT_REACHED if result.collision else ExitCode.OK)

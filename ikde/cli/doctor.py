@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ikde.cli.options import JsonOption
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import layout, print_json, print_result
 
 PACKAGES = ("numpy", "numba", "pydantic", "pyarrow", "matplotlib", "typer", "rich")
 
@@ -25,7 +25,7 @@ def doctor(as_json: JsonOption = False) -> None:
     for name, value in facts.items():
         words = seconds(value) if isinstance(value, float) else str(value)
         table.add_row(name.removesuffix("_seconds").replace("_", " "), plain(words))
-    print_result(render(table, judge(facts), color=use_color(), width=140))
+    print_result(render(table, judge(facts), **layout(140)))
 
 
 def judge(facts: Mapping[str, Any]) -> str:

@@ -1,7 +1,7 @@
 """`ikde fk`: where every frame is."""
 
 from ikde.cli import options
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import layout, print_json, print_result
 
 
 def fk(
@@ -33,5 +33,5 @@ def fk(
     if as_json:
         print_json(forward_json(model, values, frames, outside, convention))
     else:
-        print_result(format_forward(frames, outside, Units(unit, angles), color=use_color()))
-    options.draw(plot, collision, values)
+        print_result(format_forward(model, frames, outside, Units(unit, angles), **layout()))
+    options.draw(plot, collision, values, as_json=as_json)

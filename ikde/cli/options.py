@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperCommand
 
-from ikde.cli.output import print_note
+from ikde.cli.output import print_note, print_written
 
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
@@ -217,8 +217,10 @@ def check_positive(value: float | None, option: str, most: float | None = None) 
         raise InputError(f"expected at most {most:g}, half a turn, got {value:g}", (option,))
 
 
-def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None) -> None:
-    """Draw a configuration if a path is given."""
+def draw(
+    path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None, *, as_json: bool = False
+) -> None:
+    """Draw a configuration if a path is given, and say so."""
     if path is None:
         return
     from ikde.plot.pose import plot_pose, save_figure
@@ -226,3 +228,4 @@ def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: ob
 
     pose = draw_pose(collision, q, target=target)  # type: ignore[arg-type]
     save_figure(plot_pose(pose), path)
+    print_written(path, as_json=as_json)

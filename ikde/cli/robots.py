@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import AnglesOption, AngleUnit, Command, DetectorOption, JsonOption, LengthUnit, UnitOption
-from ikde.cli.output import page_width, print_json, print_line, print_result, use_color
+from ikde.cli.output import layout, print_json, print_line, print_result, print_written
 
 if TYPE_CHECKING:
     from ikde.model.collision_model import CollisionModel
@@ -31,7 +31,7 @@ def list_robots(as_json: JsonOption = False) -> None:
     if as_json:
         print_json(robots_json(loaded))
     else:
-        print_result(format_robots(loaded, color=use_color()))
+        print_result(format_robots(loaded, **layout()))
 
 
 @robots.command("show", cls=Command)
@@ -64,7 +64,7 @@ def show(
     elif as_json:
         print_json(robot_json(chosen))
     else:
-        print_result(format_robot(chosen, Units(unit, angles), color=use_color(), width=page_width()))
+        print_result(format_robot(chosen, Units(unit, angles), **layout()))
 
 
 def _format_kernels(collision: "CollisionModel", kind: str) -> str:
@@ -101,7 +101,7 @@ def validate(
         print_json({"valid": True, "name": model.name, **counts, "collision": pairs_json(chosen)})
     else:
         print_line(f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames")
-        print_result(format_pairs(chosen, Units(unit), color=use_color(), width=page_width()))
+        print_result(format_pairs(chosen, Units(unit), **layout()))
 
 
 @robots.command("export", cls=Command)
@@ -129,3 +129,4 @@ def export(
         print_result(text)
     else:
         write_xml(out, text)
+        print_written(out)

@@ -8,7 +8,7 @@ import typer
 from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
-from ikde.cli.output import print_json, print_note, print_result, use_color, working
+from ikde.cli.output import layout, print_json, print_note, print_result, working
 from ikde.cli.startup import skip_blas_probe
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
@@ -143,7 +143,7 @@ def solve(
     else:
         _print_several(model, results, units, convention, as_json, **spent)
         _note_fewer(results, count)
-    options.draw(plot, checked, results[0].q, target)
+    options.draw(plot, checked, results[0].q, target, as_json=as_json)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)
 
 
@@ -181,7 +181,7 @@ def _print(robot: "Robot", result: "SolveResult", units: "Units", convention: st
     if as_json:
         print_json(solve_json(robot, result, convention))
     else:
-        print_result(format_solve(robot, result, units, convention=convention, color=use_color()))
+        print_result(format_solve(robot, result, units, convention=convention, **layout()))
 
 
 def _print_several(
@@ -197,7 +197,7 @@ def _print_several(
     if as_json:
         print_json(solutions_json(robot, results, Spent(**spent), convention))
     else:
-        page = format_solutions(robot, results, units, Spent(**spent), convention=convention, color=use_color())
+        page = format_solutions(robot, results, units, Spent(**spent), convention=convention, **layout())
         print_result(page)
 
 

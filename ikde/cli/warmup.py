@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ikde.cli.options import DetectorOption, JsonOption, RobotOption
-from ikde.cli.output import print_json, print_note, print_result, use_color
+from ikde.cli.output import is_live, layout, note_console, print_json, print_note, print_result
 
 if TYPE_CHECKING:
     from ikde.solver.warmup import Stage
@@ -30,19 +30,18 @@ def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_
     for stage in done:
         table.add_row(plain(stage.name), f"{stage.seconds:.1f} s" if stage.seconds else "was ready")
     table.add_row("together", f"{sum(stage.seconds for stage in done):.1f} s")
-    print_result(render(table, color=use_color()))
+    print_result(render(table, **layout()))
 
 
 @contextmanager
 def _progress(count: int) -> Iterator[Callable[[int, "Stage"], None]]:
     """A bar in a terminal, else a line a stage."""
-    if not sys.stderr.isatty():
+    if not is_live(sys.stderr):
         yield lambda number, stage: print_note(f"{number + 1} of {count}: {stage.name}")
         return
-    from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True)) as bars:
+    with Progress(console=note_console()) as bars:
         bar = bars.add_task("compiling", total=count)
         yield lambda number, stage: bars.update(bar, completed=number, description=f"compiling {stage.name}")
         bars.update(bar, completed=count, description="compiled")

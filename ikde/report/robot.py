@@ -21,13 +21,13 @@ def robots_json(robots: Iterable[Robot]) -> list[dict[str, Any]]:
     ]
 
 
-def format_robots(robots: Iterable[Robot], *, color: bool = False) -> str:
+def format_robots(robots: Iterable[Robot], *, color: bool = False, width: int = 100) -> str:
     """A line a robot."""
     table = make_table("robot", ">joints", "detectors", "title")
     for robot in robots:
         names = ", ".join(robot.detectors) or "none"
         table.add_row(plain(robot.name), str(len(robot.joints)), plain(names), plain(robot.title))
-    return render(table, color=color)
+    return render(table, color=color, width=width)
 
 
 def robot_json(collision: CollisionModel) -> dict[str, Any]:

@@ -177,7 +177,7 @@ def test_a_robot_is_exported(cli, tmp_path, any_robot, option, function):
     assert printed.out == function(any_robot)
     path = tmp_path / "robot.xml"
     written = cli("robots", "export", any_robot.name, option, "--detector", "none", "--out", path)
-    assert (written.code, written.out, written.err) == (0, "", "")
+    assert (written.code, written.out, written.err) == (0, f"wrote {path}\n", "")
     assert path.read_text(encoding="utf-8") == function(any_robot, collision="none")
 
 
