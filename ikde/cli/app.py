@@ -81,8 +81,8 @@ def run(arguments: list[str]) -> int:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return ExitCode.OK
         code, line = explain_error(error)
-        if line:
-            print_note(line)
+        for each in filter(None, (line, *getattr(error, "__notes__", ()))):
+            print_note(each if each == line else f"ikde: {each}")
         return code
     if code == ExitCode.INTERRUPTED:  # typer has turned Ctrl-C into this code already
         print_note(INTERRUPTED)

@@ -25,12 +25,11 @@ def check(
 
     Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
     """
-    from ikde.io.robots import load_robot
     from ikde.report.geometry import check_json, format_check
     from ikde.report.numbers import Units
     from ikde.solver.check import check as check_configuration
 
-    model = load_robot(robot)
+    model = options.read_robot(robot)
     values = options.read_q(model, q, unit, angles, convention)
     collision = options.read_collision(model, detector, pairs, safe_distance, unit)
     result = check_configuration(model, values, collision)

@@ -18,14 +18,13 @@ def fk(
 
     Example: ikde fk --q '0 0 0 90 0 0 0 0 0' --angles deg --unit mm
     """
-    from ikde.io.robots import load_robot
     from ikde.model.collision_model import CollisionModel
     from ikde.report.geometry import format_forward, forward_json
     from ikde.report.numbers import Units
     from ikde.solver.forward import forward
     from ikde.solver.joints import joints_outside
 
-    model = load_robot(robot)
+    model = options.read_robot(robot)
     values = options.read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
     options.check_drawable(plot)

@@ -1,5 +1,6 @@
 """Options that several commands share, and how they become objects."""
 
+import os
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -36,13 +37,18 @@ class AngleUnit(StrEnum):
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 OUTPUT = "Units and output"
+ROBOT = "IKDE_ROBOT"
+"""Environment variable: the robot where none is named."""
 of_target = partial(typer.Option, rich_help_panel="Target")  # headings of the help, in the order of the options
 of_robot = partial(typer.Option, rich_help_panel="Robot")
 of_collision = partial(typer.Option, rich_help_panel="Collision")
 of_search = partial(typer.Option, rich_help_panel="Search")
 of_output = partial(typer.Option, rich_help_panel=OUTPUT)
 
-RobotOption = Annotated[str, of_robot(metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")]
+RobotOption = Annotated[str, of_robot(metavar="NAME|FILE", envvar=ROBOT, help="A robot of `ikde robots`, or its file.")]
+RobotArgument = Annotated[
+    str, typer.Argument(metavar="NAME|FILE", envvar=ROBOT, help="A robot of `ikde robots list`, or its file.")
+]
 QOption = Annotated[
     str | None,
     of_robot(
@@ -74,6 +80,21 @@ class Command(TyperCommand):
         if option is not None:
             option.rich_help_panel = OUTPUT
         return option
+
+
+def read_robot(name: str) -> "Robot":
+    """The robot that an option names; an error about one that the environment names says so."""
+    from ikde.errors import FileError, InputError
+    from ikde.io.robots import load_robot
+
+    try:
+        return load_robot(name)
+    except FileError:
+        raise
+    except InputError as error:
+        if name != os.environ.get(ROBOT):
+            raise
+        raise InputError(error.message, (f"${ROBOT}",)) from None
 
 
 def read_q(

@@ -5,7 +5,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import AnglesOption, AngleUnit, Command, DetectorOption, JsonOption, LengthUnit, UnitOption
+from ikde.cli.options import (
+    AnglesOption,
+    AngleUnit,
+    Command,
+    DetectorOption,
+    JsonOption,
+    LengthUnit,
+    RobotArgument,
+    UnitOption,
+    read_robot,
+)
 from ikde.cli.output import layout, print_json, print_line, print_result, print_written
 
 if TYPE_CHECKING:
@@ -23,7 +33,10 @@ def default(context: typer.Context, as_json: JsonOption = False) -> None:
 
 @robots.command("list", cls=Command)
 def list_robots(as_json: JsonOption = False) -> None:
-    """List the robots that ship with ikde."""
+    """List the robots that ship with ikde.
+
+    Example: ikde robots list
+    """
     from ikde.io.robots import load_robot, robot_names
     from ikde.report.robot import format_robots, robots_json
 
@@ -36,24 +49,33 @@ def list_robots(as_json: JsonOption = False) -> None:
 
 @robots.command("show", cls=Command)
 def show(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
+    name: RobotArgument,
     kernels: Annotated[bool, typer.Option("--kernels", help="Print the kernels written for it instead.")] = False,
+    pairs: Annotated[
+        bool, typer.Option("--pairs", help="Print which pairs are compared and left out instead.")
+    ] = False,
     kind: Annotated[str, typer.Option(help="Of which targets: position, axis or pose.")] = "pose",
     detector: DetectorOption = None,
     unit: UnitOption = LengthUnit.mm,
     angles: AnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
 ) -> None:
-    """Show a robot: joints, frames, detectors, pairs, and where its numbers come from; or the kernels written for it.
+    """Show a robot: joints, frames, detectors, and where its numbers come from; or its pairs; or its kernels.
 
-    Every pair of components is listed: those that the detector compares, and those that it leaves out with the reason.
+    --pairs lists every pair of components: those that the detector compares, with their clearance at home, and those
+    that it leaves out, each with the reason.
+
+    Example: ikde robots show qiao2021 --pairs
     """
-    from ikde.io.robots import load_robot
+    from ikde.errors import InputError
     from ikde.model.collision_model import CollisionModel
     from ikde.report.numbers import Units
+    from ikde.report.pairs import format_pairs, pairs_json
     from ikde.report.robot import format_robot, robot_json
 
-    model = load_robot(name)
+    if kernels and pairs:
+        raise InputError("expected one of --kernels and --pairs, got both")
+    model = read_robot(name)
     chosen = CollisionModel.of(model, detector)
     if kernels:
         source = _format_kernels(chosen, kind)
@@ -62,7 +84,10 @@ def show(
         else:
             print_result(source)
     elif as_json:
-        print_json(robot_json(chosen))
+        print_json({"robot": model.name, "collision": pairs_json(chosen)} if pairs else robot_json(chosen))
+    elif pairs:
+        print_line(f"robot {model.name}")
+        print_result(format_pairs(chosen, Units(unit, angles), **layout()))
     else:
         print_result(format_robot(chosen, Units(unit, angles), **layout()))
 
@@ -106,7 +131,7 @@ def validate(
 
 @robots.command("export", cls=Command)
 def export(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
+    name: RobotArgument,
     urdf: Annotated[bool, typer.Option("--urdf", help="Write URDF.")] = False,
     mjcf: Annotated[bool, typer.Option("--mjcf", help="Write MJCF, MuJoCo's format.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Where it goes (default: printed).")] = None,
@@ -118,13 +143,12 @@ def export(
     """
     from ikde.errors import InputError
     from ikde.io.mjcf import format_mjcf
-    from ikde.io.robots import load_robot
     from ikde.io.urdf import format_urdf
     from ikde.io.xml_file import write_xml
 
     if urdf == mjcf:
         raise InputError(f"expected one of --urdf and --mjcf, got {'both' if urdf else 'none'}")
-    text = (format_urdf if urdf else format_mjcf)(load_robot(name), collision=detector)
+    text = (format_urdf if urdf else format_mjcf)(read_robot(name), collision=detector)
     if out is None:
         print_result(text)
     else:

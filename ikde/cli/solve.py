@@ -109,7 +109,6 @@ def solve(
     """
     skip_blas_probe()
     from ikde.io.joint_text import parse_weights
-    from ikde.io.robots import load_robot
     from ikde.io.target import make_target
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
@@ -119,7 +118,7 @@ def solve(
     from ikde.solver.grade import confirm
     from ikde.solver.solve import solve as solve_one
 
-    model, units = load_robot(robot), Units(unit, angles)
+    model, units = options.read_robot(robot), Units(unit, angles)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
     checked = options.read_collision(model, detector, pairs, safe_distance, unit)

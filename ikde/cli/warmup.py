@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ikde.cli.options import DetectorOption, JsonOption, RobotOption
+from ikde.cli.options import DetectorOption, JsonOption, RobotOption, read_robot
 from ikde.cli.output import is_live, layout, note_console, print_json, print_note, print_result
 
 if TYPE_CHECKING:
@@ -13,13 +13,15 @@ if TYPE_CHECKING:
 
 
 def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_json: JsonOption = False) -> None:
-    """Compile the kernels of a robot ahead: all engines and kinds of target, and tracks; seconds if that is done."""
-    from ikde.io.robots import load_robot
+    """Compile the kernels of a robot ahead: all engines and kinds of target, and tracks; seconds if that is done.
+
+    Example: ikde warmup --robot ur5
+    """
     from ikde.report.render import make_table, plain, render
     from ikde.solver.warmup import list_stages, warm_up
     from ikde.track.run import list_track_stages
 
-    model = load_robot(robot)
+    model = read_robot(robot)
     stages = [*list_stages(model, detector), *list_track_stages(model, detector)]
     with _progress(len(stages)) as tell:
         done = warm_up(stages, tell)

@@ -12,7 +12,6 @@ from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
 from ikde.solver.check import CheckResult
 
-
 BESIDE = 95  # columns in which a frame's axes stand beside its origin
 
 
@@ -43,7 +42,7 @@ def format_forward(
     color: bool = False,
     width: int = 100,
 ) -> str:
-    """Frames for the terminal: origin, and the directions of their x and z axes, beside it or, in few columns, below."""
+    """Frames for the terminal: origin, and the directions of their x and z axes: beside it, or below."""
     unit = units.length
     names, axes = [f">{axis} [{unit}]" for axis in "xyz"], ["x axis", "z axis"]
     if width >= BESIDE:
@@ -53,14 +52,14 @@ def format_forward(
     for name, T in Ts_world.items():
         digits = 1 if unit == "mm" else 4
         origin = [format_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
-        turned = [_direction(T[:3, k]) for k in (0, 2)]
+        turned = [_direction(T[:3, k], 3 if width >= BESIDE else 2) for k in (0, 2)]
         for table, cells in zip(tables, [[*origin, *turned]] if len(tables) == 1 else [origin, turned], strict=True):
             table.add_row(plain(name), *cells)
     return render(f"robot {plain(robot.name)}", *tables, *_outside_line(outside), color=color, width=width)
 
 
-def _direction(axis: Floats) -> str:
-    return " ".join(f"{format_fixed(value, 3):>6}" for value in axis)
+def _direction(axis: Floats, digits: int) -> str:
+    return " ".join(format_fixed(value, digits).rjust(digits + 3) for value in axis)
 
 
 def _outside_line(outside: tuple[str, ...]) -> list[str]:

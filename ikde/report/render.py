@@ -22,16 +22,8 @@ def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
     from rich.table import Table
 
     buffer = StringIO()
-    system = "standard" if color else None
-    console = Console(
-        file=buffer,
-        force_terminal=color,
-        color_system=system,
-        width=width,
-        highlight=False,
-        emoji=False,
-        no_color=False,
-    )
+    colors: dict[str, Any] = {"force_terminal": color, "color_system": "standard" if color else None, "no_color": False}
+    console = Console(file=buffer, width=width, highlight=False, emoji=False, **colors)
     for renderable in renderables:
         if isinstance(renderable, Table):
             _narrow(renderable, console)
@@ -73,7 +65,7 @@ def _narrow(table: Any, console: Any) -> None:
         return Measurement.get(console, wide, table).maximum > console.width
 
     if is_too_wide():
-        table.collapse_padding, table.show_edge = True, False
+        table.collapse_padding = True
     if is_too_wide():
         table.columns = [column for column in table.columns if column.ratio is None]
     if is_too_wide():
