@@ -42,7 +42,7 @@ def batch(
 ) -> None:
     """Solve a batch. Kill it at any moment: the same command goes on, and the answers are the same bits.
 
-    Exits with 1 if some solve did not reach its target.
+    `ikde report FOLDER` then makes a page of its answers. Exits with 1 if some solve did not reach its target.
 
     Example: ikde batch configs/runs/first_run.yaml --out runs/first
     """

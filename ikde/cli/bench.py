@@ -9,13 +9,13 @@ import typer
 
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import Command, JsonOption, read_choices
+from ikde.cli.options import Command, Group, JsonOption, read_choices
 from ikde.cli.output import print_json, print_line, print_written
 from ikde.cli.progress import show_benchmark
 
 TAKES = "about a minute"  # compiling all kernels
 
-bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
+bench = typer.Typer(cls=Group, help="Benchmarks that compare with published results.", no_args_is_help=True)
 
 
 @bench.callback()

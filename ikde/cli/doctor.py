@@ -44,9 +44,7 @@ def judge(facts: Mapping[str, Any]) -> str:
     if not facts["solve_reached"]:
         return "not good: a target within easy reach was not reached; please report it, with what stands below"
     if not facts["cache_is_writable"]:
-        return (
-            "not good: the cache folder cannot be used, so every process compiles anew; set IKDE_CACHE_DIR to another"
-        )
+        return "not good: the cache folder cannot be used, so every process compiles anew; set IKDE_CACHE_DIR"
     compiled = "is compiled now, and need not be again" if facts["compile_seconds"] else "was compiled before"
     return f"all good: what this solve needs {compiled}, and the next one takes {seconds(facts['solve_seconds'])}"
 

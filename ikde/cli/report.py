@@ -17,7 +17,7 @@ def report(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Show a batch as a page for the browser, and as Markdown.
+    """Make a page of the answers of `ikde batch`, for the browser and as Markdown.
 
     Example: ikde report runs/first
     """

@@ -10,10 +10,12 @@ from ikde.cli.options import (
     AngleUnit,
     Command,
     DetectorOption,
+    Group,
     JsonOption,
     LengthUnit,
     RobotArgument,
     UnitOption,
+    check_environment,
     read_robot,
 )
 from ikde.cli.output import layout, print_json, print_line, print_result, print_written
@@ -21,13 +23,14 @@ from ikde.cli.output import layout, print_json, print_line, print_result, print_
 if TYPE_CHECKING:
     from ikde.model.collision_model import CollisionModel
 
-robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
+robots = typer.Typer(cls=Group, help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 
 
 @robots.callback(invoke_without_command=True)
 def default(context: typer.Context, as_json: JsonOption = False) -> None:
     """List the robots if nothing else is asked for."""
     if context.invoked_subcommand is None:
+        check_environment()
         list_robots(as_json)
 
 
@@ -51,9 +54,7 @@ def list_robots(as_json: JsonOption = False) -> None:
 def show(
     name: RobotArgument,
     kernels: Annotated[bool, typer.Option("--kernels", help="Print the kernels written for it instead.")] = False,
-    pairs: Annotated[
-        bool, typer.Option("--pairs", help="Print which pairs are compared and left out instead.")
-    ] = False,
+    pairs: Annotated[bool, typer.Option("--pairs", help="Print the pairs that are compared and left out.")] = False,
     kind: Annotated[str, typer.Option(help="Of which targets: position, axis or pose.")] = "pose",
     detector: DetectorOption = None,
     unit: UnitOption = LengthUnit.mm,

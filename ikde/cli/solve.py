@@ -125,7 +125,7 @@ def solve(
     start = None if near is None else options.read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = options.read_freeze(model, freeze, unit, angles, convention)
-    weighed = None if weights is None else parse_weights(weights)
+    weighed = None if weights is None else parse_weights(model, weights)
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)

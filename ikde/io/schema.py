@@ -98,13 +98,8 @@ def _describe(complaint: _Complaint, model: type[BaseModel]) -> str:
     if kind == UNKNOWN:
         keys = _keys_at(model, where[:-1])
         return f"unknown key{nearest(complaint.key, keys) or '; expected one of ' + ', '.join(keys)}"
-    if kind == "too_short" and "actual_length" in context:
-        least = context["min_length"]
-        return f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {context['actual_length']}"
-    if kind == "too_long" and "actual_length" in context:
-        most, length = context["max_length"], context["actual_length"]
-        got = "more" if length is None else f"{length:,}"  # pydantic stops counting keys
-        return f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
+    if "actual_length" in context:
+        return _describe_length(kind, context)
     if kind == "literal_error":
         return f"expected {context['expected']}, got {quoted(details['input'])}"
     if kind in LIMITS:
@@ -115,6 +110,15 @@ def _describe(complaint: _Complaint, model: type[BaseModel]) -> str:
         got = "" if kind == "missing" or not where else f", got {quoted(details['input'])}"
         return f"{EXPECTED[kind]}{got}"
     return details["msg"][0].lower() + details["msg"][1:]
+
+
+def _describe_length(kind: str, context: Mapping[str, Any]) -> str:
+    length = context["actual_length"]
+    if kind == "too_short":
+        least = context["min_length"]
+        return f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {length}"
+    most, got = context["max_length"], "more" if length is None else f"{length:,}"  # pydantic stops counting keys
+    return f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
 
 
 def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:

@@ -143,7 +143,8 @@ def _arm_table(arms: Iterable[ArmSummary]) -> Any:
 
 
 def _collision_table(arms: Iterable[ArmSummary]) -> Any:
-    table = make_table("arm", "graded by", ">in collision", ">rate (95 %)", title="reached solutions, graded again")
+    columns = ("arm", "detector", ">in collision", ">rate (95 %)")
+    table = make_table(*columns, title="reached solutions, checked by other detectors")
     for arm in arms:
         for grader, rate in arm.collisions.items():
             table.add_row(plain(arm.name), plain(grader), _format_count(rate), format_rate(rate))

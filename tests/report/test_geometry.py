@@ -97,7 +97,7 @@ def test_the_verdict_comes_first(qiao):
     q = qiao.home
     q[4:6] = 2.6, 2.6
     colliding = format_check(qiao, ikde.check(qiao, q), MM_DEG)
-    assert colliding.startswith("self-collision: clearance -")
+    assert colliding.startswith("self-collision: robot qiao2021, clearance -")
     assert "collides" in colliding
     assert "collides" not in free
 
