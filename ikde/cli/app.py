@@ -14,7 +14,7 @@ from ikde.cli.check import check
 from ikde.cli.doctor import doctor
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.fk import fk
-from ikde.cli.options import Command
+from ikde.cli.options import Command, Group
 from ikde.cli.output import print_note, print_result
 from ikde.cli.report import report
 from ikde.cli.robots import robots
@@ -22,6 +22,7 @@ from ikde.cli.schema import schema
 from ikde.cli.solve import solve
 from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread, warn_in_one_line
 from ikde.cli.track import track
+from ikde.cli.typed_forms import regroup
 from ikde.cli.warmup import warmup
 from ikde.errors import InputError, printable
 
@@ -31,6 +32,7 @@ INTERRUPTED = "ikde: interrupted"
 
 app = typer.Typer(
     name="ikde",
+    cls=Group,
     add_completion=False,
     pretty_exceptions_enable=False,
     no_args_is_help=True,
@@ -75,14 +77,14 @@ def run_and_exit() -> NoReturn:
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code and turns every error into one line on stderr."""
     try:
-        code = int(app(arguments, prog_name="ikde", standalone_mode=False) or ExitCode.OK)
+        code = int(app(regroup(arguments), prog_name="ikde", standalone_mode=False) or ExitCode.OK)
     except BaseException as error:
         if _reader_has_gone(error):  # `ikde check | head` has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return ExitCode.OK
         code, line = explain_error(error)
-        if line:
-            print_note(line)
+        for each in filter(None, (line, *getattr(error, "__notes__", ()))):
+            print_note(each if each == line else f"ikde: {each}")
         return code
     if code == ExitCode.INTERRUPTED:  # typer has turned Ctrl-C into this code already
         print_note(INTERRUPTED)

@@ -9,7 +9,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import JsonOption, note_unchecked
-from ikde.cli.output import print_json, print_note, print_result, use_color, working
+from ikde.cli.output import layout, print_json, print_note, print_result, working
 from ikde.cli.progress import show_progress
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def batch(
 ) -> None:
     """Solve a batch. Kill it at any moment: the same command goes on, and the answers are the same bits.
 
-    Exits with 1 if some solve did not reach its target.
+    `ikde report FOLDER` then makes a page of its answers. Exits with 1 if some solve did not reach its target.
 
     Example: ikde batch configs/runs/first_run.yaml --out runs/first
     """
@@ -62,7 +62,7 @@ def batch(
     if as_json:
         print_json(run_json(summary))
     else:
-        print_result(format_run(summary, color=use_color()))
+        print_result(format_run(summary, **layout(160)))
     raise typer.Exit(ExitCode.NOT_REACHED if summary.unreached else ExitCode.OK)
 
 
@@ -84,7 +84,7 @@ def _preview(
     if as_json:
         print_json(preview_json(preview))
     else:
-        print_result(format_preview(preview, color=use_color()))
+        print_result(format_preview(preview, **layout(160)))
 
 
 def _note_compile(plan: "Batch") -> AbstractContextManager[Any]:

@@ -9,13 +9,13 @@ import typer
 
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.options import Command, JsonOption, read_choices
-from ikde.cli.output import print_json, print_line
+from ikde.cli.options import Command, Group, JsonOption, read_choices
+from ikde.cli.output import print_json, print_line, print_written
 from ikde.cli.progress import show_benchmark
 
 TAKES = "about a minute"  # compiling all kernels
 
-bench = typer.Typer(help="Benchmarks that compare with published results.", no_args_is_help=True)
+bench = typer.Typer(cls=Group, help="Benchmarks that compare with published results.", no_args_is_help=True)
 
 
 @bench.callback()
@@ -74,11 +74,10 @@ def _make(out: Path, quick: bool, sections: tuple[str, ...], as_json: bool) -> N
         progress.begin("page")
         page = make_paper_page(results, inputs)
         texts = {"report.html": render_html(page), "report.md": render_markdown(page)}
-        write_report(out, {RESULTS: format_results(data), **texts})
+        files = write_report(out, {RESULTS: format_results(data), **texts})
     if as_json:
         print_json(data)
-    else:
-        print_line(f"{out / 'report.html'}  (report.md and {RESULTS} beside it)")
+    print_written(*files, as_json=as_json)
 
 
 def _name_work() -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import JsonOption, note_unchecked, read_choices, repeat_command
-from ikde.cli.output import print_json, print_line
+from ikde.cli.output import print_json, print_written
 from ikde.cli.progress import show_benchmark
 
 if TYPE_CHECKING:
@@ -54,8 +54,7 @@ def bench_track(
         progress.begin("page")
         page = make_comparison_page(compared, budget, repeat_command(["bench", "track", *map(str, tracks)], given))
         data = compare_json(compared, budget)
-        write_report(out, {RESULTS: format_results(data), "report.html": render_html(page)})
+        files = write_report(out, {RESULTS: format_results(data), "report.html": render_html(page)})
     if as_json:
         print_json(data)
-    else:
-        print_line(f"{out / 'report.html'}  ({RESULTS} beside it)")
+    print_written(*files, as_json=as_json)

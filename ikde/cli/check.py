@@ -4,7 +4,7 @@ import typer
 
 from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import layout, print_json, print_result
 
 
 def check(
@@ -25,12 +25,11 @@ def check(
 
     Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
     """
-    from ikde.io.robots import load_robot
     from ikde.report.geometry import check_json, format_check
     from ikde.report.numbers import Units
     from ikde.solver.check import check as check_configuration
 
-    model = load_robot(robot)
+    model = options.read_robot(robot)
     values = options.read_q(model, q, unit, angles, convention)
     collision = options.read_collision(model, detector, pairs, safe_distance, unit)
     result = check_configuration(model, values, collision)
@@ -39,6 +38,6 @@ def check(
     if as_json:
         print_json(check_json(model, result, convention))
     else:
-        print_result(format_check(result, Units(unit, angles), color=use_color()))
-    options.draw(plot, collision, values)
+        print_result(format_check(model, result, Units(unit, angles), **layout()))
+    options.draw(plot, collision, values, as_json=as_json)
     raise typer.Exit(ExitCode.NOT_REACHED if result.collision else ExitCode.OK)

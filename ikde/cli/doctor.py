@@ -7,14 +7,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from ikde.cli.options import JsonOption
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import layout, print_json, print_result
 
 PACKAGES = ("numpy", "numba", "pydantic", "pyarrow", "matplotlib", "typer", "rich")
 
 
 def doctor(as_json: JsonOption = False) -> None:
-    """Say what ikde runs on, and time one solve."""
-    from ikde.report.numbers import seconds
+    """Say whether ikde works here, what it runs on, and how long a solve takes.
+
+    Example: ikde doctor
+    """
     from ikde.report.render import make_table, plain, render
 
     facts = describe_machine()
@@ -23,9 +25,16 @@ def doctor(as_json: JsonOption = False) -> None:
         return
     table = make_table("ikde doctor", "")
     for name, value in facts.items():
-        words = seconds(value) if isinstance(value, float) else str(value)
-        table.add_row(name.removesuffix("_seconds").replace("_", " "), plain(words))
-    print_result(render(table, judge(facts), color=use_color(), width=140))
+        table.add_row(name.removesuffix("_seconds").replace("_", " "), plain(_write_fact(value)))
+    print_result(render(judge(facts), table, **layout(140)))
+
+
+def _write_fact(value: Any) -> str:
+    from ikde.report.numbers import seconds
+
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return seconds(value) if isinstance(value, float) else str(value)
 
 
 def judge(facts: Mapping[str, Any]) -> str:
@@ -33,11 +42,11 @@ def judge(facts: Mapping[str, Any]) -> str:
     from ikde.report.numbers import seconds
 
     if not facts["solve_reached"]:
-        return "not well: a target that every robot of this kind reaches was not reached; please report it"
+        return "not good: a target within easy reach was not reached; please report it, with what stands below"
     if not facts["cache_is_writable"]:
-        return "works, but the cache folder cannot be used: every process compiles anew; set IKDE_CACHE_DIR"
+        return "not good: the cache folder cannot be used, so every process compiles anew; set IKDE_CACHE_DIR"
     compiled = "is compiled now, and need not be again" if facts["compile_seconds"] else "was compiled before"
-    return f"all well: what this solve needs {compiled}, and the next one takes {seconds(facts['solve_seconds'])}"
+    return f"all good: what this solve needs {compiled}, and the next one takes {seconds(facts['solve_seconds'])}"
 
 
 def describe_machine() -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """`ikde fk`: where every frame is."""
 
 from ikde.cli import options
-from ikde.cli.output import print_json, print_result, use_color
+from ikde.cli.output import layout, print_json, print_result
 
 
 def fk(
@@ -18,14 +18,13 @@ def fk(
 
     Example: ikde fk --q '0 0 0 90 0 0 0 0 0' --angles deg --unit mm
     """
-    from ikde.io.robots import load_robot
     from ikde.model.collision_model import CollisionModel
     from ikde.report.geometry import format_forward, forward_json
     from ikde.report.numbers import Units
     from ikde.solver.forward import forward
     from ikde.solver.joints import joints_outside
 
-    model = load_robot(robot)
+    model = options.read_robot(robot)
     values = options.read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
     options.check_drawable(plot)
@@ -33,5 +32,5 @@ def fk(
     if as_json:
         print_json(forward_json(model, values, frames, outside, convention))
     else:
-        print_result(format_forward(frames, outside, Units(unit, angles), color=use_color()))
-    options.draw(plot, collision, values)
+        print_result(format_forward(model, frames, outside, Units(unit, angles), **layout()))
+    options.draw(plot, collision, values, as_json=as_json)

@@ -1,17 +1,19 @@
 """Options that several commands share, and how they become objects."""
 
+import os
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
-from ikde.cli.output import print_note
+from ikde.cli.output import print_note, print_written, use_color
 
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
@@ -33,20 +35,27 @@ class AngleUnit(StrEnum):
     deg = "deg"
 
 
+FRAMED = 70  # columns from which on a command's help has frames
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 OUTPUT = "Units and output"
+ROBOT = "IKDE_ROBOT"
+"""Environment variable: the robot where none is named."""
 of_target = partial(typer.Option, rich_help_panel="Target")  # headings of the help, in the order of the options
 of_robot = partial(typer.Option, rich_help_panel="Robot")
 of_collision = partial(typer.Option, rich_help_panel="Collision")
 of_search = partial(typer.Option, rich_help_panel="Search")
 of_output = partial(typer.Option, rich_help_panel=OUTPUT)
 
-RobotOption = Annotated[str, of_robot(metavar="NAME|FILE", help="A robot of `ikde robots`, or its file.")]
+RobotOption = Annotated[str, of_robot(metavar="NAME|FILE", envvar=ROBOT, help="A robot of `ikde robots`, or its file.")]
+RobotArgument = Annotated[
+    str, typer.Argument(metavar="NAME|FILE", envvar=ROBOT, help="A robot of `ikde robots list`, or its file.")
+]
 QOption = Annotated[
     str | None,
     of_robot(
-        metavar="Q", help="Joint values: numbers in one string, name=value pairs, or a YAML/JSON file (default: home)."
+        metavar="Q",
+        help="Joint values: numbers, name=value pairs (joints left out are at home), or a file (default: home).",
     ),
 ]
 DetectorOption = Annotated[
@@ -65,7 +74,30 @@ JsonOption = Annotated[bool, of_output("--json", help="Print JSON, always in m, 
 PlotOption = Annotated[Path | None, of_output(metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")]
 
 
-class Command(TyperCommand):
+class _Helpful:
+    """What a command and a group have in common: the look of their `--help`, where a flag has no type."""
+
+    def get_params(self, ctx: Any) -> Any:
+        """The parameters, `--help` among them."""
+        parameters: Any = super().get_params(ctx)  # type: ignore[misc]
+        for parameter in parameters:
+            if getattr(parameter, "is_flag", False):
+                parameter.metavar = ""
+        return parameters
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write it, in colours where results have them."""
+        from typer import rich_utils
+
+        rich_utils.COLOR_SYSTEM = "standard" if use_color() else None
+        super().format_help(ctx, formatter)  # type: ignore[misc]
+
+
+class Group(_Helpful, TyperGroup):
+    """Commands under one name."""
+
+
+class Command(_Helpful, TyperCommand):
     """A command whose `--help` stands beside `--json`: options without a heading would come before all others."""
 
     def get_help_option(self, ctx: Any) -> Any:
@@ -74,6 +106,39 @@ class Command(TyperCommand):
         if option is not None:
             option.rich_help_panel = OUTPUT
         return option
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write it, without frames where they would leave no room for the names of options."""
+        self.rich_markup_mode = "rich" if get_terminal_size().columns >= FRAMED else None
+        super().format_help(ctx, formatter)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run it, unless the environment is wrong."""
+        check_environment()
+        return super().invoke(ctx)
+
+
+def check_environment() -> None:
+    """Raise `InputError` for a word in `$IKDE_COMPILE` that is none; nothing is imported unless there is one."""
+    if os.environ.get("IKDE_COMPILE"):
+        from ikde.solver.background import choose_way
+
+        choose_way()
+
+
+def read_robot(name: str) -> "Robot":
+    """The robot that an option names; an error about one that the environment names says so."""
+    from ikde.errors import FileError, InputError
+    from ikde.io.robots import load_robot
+
+    try:
+        return load_robot(name)
+    except FileError:
+        raise
+    except InputError as error:
+        if name != os.environ.get(ROBOT):
+            raise
+        raise InputError(error.message, (f"${ROBOT}",)) from None
 
 
 def read_q(
@@ -217,8 +282,10 @@ def check_positive(value: float | None, option: str, most: float | None = None) 
         raise InputError(f"expected at most {most:g}, half a turn, got {value:g}", (option,))
 
 
-def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None) -> None:
-    """Draw a configuration if a path is given."""
+def draw(
+    path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None, *, as_json: bool = False
+) -> None:
+    """Draw a configuration if a path is given, and say so."""
     if path is None:
         return
     from ikde.plot.pose import plot_pose, save_figure
@@ -226,3 +293,4 @@ def draw(path: Path | None, collision: "CollisionModel", q: "Floats", target: ob
 
     pose = draw_pose(collision, q, target=target)  # type: ignore[arg-type]
     save_figure(plot_pose(pose), path)
+    print_written(path, as_json=as_json)

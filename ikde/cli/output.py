@@ -1,11 +1,13 @@
 """Where words go: results to stdout, everything else to stderr."""
 
 import json
+import os
 import sys
 import time
 from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
 from shutil import get_terminal_size
-from typing import Any
+from typing import Any, TextIO
 
 from ikde.errors import printable
 
@@ -32,23 +34,47 @@ def print_note(text: str) -> None:
     sys.stderr.flush()
 
 
-def use_color() -> bool:
-    """Colour only for a terminal."""
-    return sys.stdout.isatty()
+def print_written(*files: Path, as_json: bool = False) -> None:
+    """Say which files were written, a line each; beside JSON on stderr."""
+    for file in files:
+        (print_note if as_json else print_line)(f"wrote {file}")
 
 
-def page_width() -> int:
-    """Columns of the terminal, within what tables need and can use; 100 outside a terminal."""
-    return min(max(get_terminal_size().columns, 60), 120) if sys.stdout.isatty() else 100
+def is_live(stream: TextIO) -> bool:
+    """True for a terminal in which a line can be written over: bars and spinners may move there."""
+    return stream.isatty() and os.environ.get("TERM", "").lower() not in ("dumb", "unknown")
+
+
+def use_color(stream: TextIO | None = None) -> bool:
+    """Colour only for such a terminal (default: stdout), unless `$NO_COLOR` or else `$FORCE_COLOR` says otherwise."""
+    if os.environ.get("NO_COLOR"):
+        return False
+    forced = os.environ.get("FORCE_COLOR")
+    return forced != "0" if forced else is_live(stream or sys.stdout)
+
+
+def page_width(usual: int = 100) -> int:
+    """Columns of the terminal, or of `$COLUMNS`, within what tables need and can use; `usual` outside a terminal."""
+    if not sys.stdout.isatty() and not os.environ.get("COLUMNS"):
+        return usual
+    return min(max(get_terminal_size().columns, 60), max(usual, 120))
+
+
+def layout(usual: int = 100) -> dict[str, Any]:
+    """How a result is laid out on stdout: with colours or without, and how wide."""
+    return {"color": use_color(), "width": page_width(usual)}
+
+
+def note_console() -> Any:
+    """Rich's console on stderr, for what moves there."""
+    from rich.console import Console
+
+    return Console(stderr=True, color_system="standard" if use_color(sys.stderr) else None)
 
 
 def working(text: str) -> AbstractContextManager[Any]:
     """A spinner on stderr while the block runs, in a terminal, with the seconds that it has taken."""
-    if not sys.stderr.isatty():
-        return nullcontext()
-    from rich.console import Console
-
-    return Console(stderr=True).status(Working(text))
+    return note_console().status(Working(text)) if is_live(sys.stderr) else nullcontext()
 
 
 class Working:

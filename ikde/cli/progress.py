@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Any
 
-from ikde.cli.output import print_note
+from ikde.cli.output import is_live, note_console, print_note
 from ikde.errors import printable
 
 if TYPE_CHECKING:
@@ -20,12 +20,11 @@ LINE_SECONDS = 60.0
 
 def show_progress(title: str) -> AbstractContextManager["Tell"]:
     """What `run_batch` tells its progress to."""
-    return _show_bar(title) if sys.stderr.isatty() else _show_lines(title)
+    return _show_bar(title) if is_live(sys.stderr) else _show_lines(title)
 
 
 @contextmanager
 def _show_bar(title: str) -> Iterator["Tell"]:
-    from rich.console import Console
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -48,7 +47,7 @@ def _show_bar(title: str) -> Iterator["Tell"]:
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    with Bars(*columns, console=Console(stderr=True), speed_estimate_period=600.0) as bars:
+    with Bars(*columns, console=note_console(), speed_estimate_period=600.0) as bars:
         bar = bars.add_task(printable(title), parts="", rate="")
 
         def tell(now: "Progress") -> None:
@@ -121,13 +120,12 @@ class Lines:
 @contextmanager
 def show_benchmark(solves: int) -> Iterator["BenchProgress"]:
     """A bar of so many solves, or motions, with what is being computed; for a log the names alone."""
-    if not sys.stderr.isatty():
+    if not is_live(sys.stderr):
         yield Lines()
         return
-    from rich.console import Console
     from rich.progress import Progress as Bars
     from rich.progress import SpinnerColumn, TimeElapsedColumn
 
     columns = (SpinnerColumn(), *Bars.get_default_columns(), TimeElapsedColumn())
-    with Bars(*columns, console=Console(stderr=True)) as bars:
+    with Bars(*columns, console=note_console()) as bars:
         yield Bar(bars, solves)

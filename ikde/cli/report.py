@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ikde.cli.options import JsonOption
-from ikde.cli.output import print_json, print_line
+from ikde.cli.output import print_json, print_written
 
 
 def report(
@@ -17,7 +17,7 @@ def report(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Show a batch as a page for the browser, and as Markdown.
+    """Make a page of the answers of `ikde batch`, for the browser and as Markdown.
 
     Example: ikde report runs/first
     """
@@ -39,5 +39,4 @@ def report(
     write_report(folder, {html.name: render_html(page), markdown.name: render_markdown(page)})
     if as_json:
         print_json({"html": str(html), "markdown": str(markdown), "finished": answers.finished})
-    else:
-        print_line(f"{html}  ({markdown.name} beside it)")
+    print_written(html, markdown, as_json=as_json)

@@ -5,15 +5,27 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import AnglesOption, AngleUnit, Command, DetectorOption, JsonOption, LengthUnit, UnitOption
-from ikde.cli.output import page_width, print_json, print_line, print_result, use_color
+from ikde.cli.options import (
+    AnglesOption,
+    AngleUnit,
+    Command,
+    DetectorOption,
+    Group,
+    JsonOption,
+    LengthUnit,
+    RobotArgument,
+    UnitOption,
+    check_environment,
+    read_robot,
+)
+from ikde.cli.output import layout, print_json, print_line, print_result, print_written
 from ikde.cli.robots_compose import compose_robot
 from ikde.cli.robots_import import import_robot
 
 if TYPE_CHECKING:
     from ikde.model.collision_model import CollisionModel
 
-robots = typer.Typer(help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
+robots = typer.Typer(cls=Group, help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 robots.command("import", cls=Command)(import_robot)
 robots.command("compose", cls=Command)(compose_robot)
 
@@ -22,12 +34,16 @@ robots.command("compose", cls=Command)(compose_robot)
 def default(context: typer.Context, as_json: JsonOption = False) -> None:
     """List the robots if nothing else is asked for."""
     if context.invoked_subcommand is None:
+        check_environment()
         list_robots(as_json)
 
 
 @robots.command("list", cls=Command)
 def list_robots(as_json: JsonOption = False) -> None:
-    """List the robots that ship with ikde."""
+    """List the robots that ship with ikde.
+
+    Example: ikde robots list
+    """
     from ikde.io.robots import load_robot, robot_names
     from ikde.report.robot import format_robots, robots_json
 
@@ -35,29 +51,36 @@ def list_robots(as_json: JsonOption = False) -> None:
     if as_json:
         print_json(robots_json(loaded))
     else:
-        print_result(format_robots(loaded, color=use_color()))
+        print_result(format_robots(loaded, **layout()))
 
 
 @robots.command("show", cls=Command)
 def show(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
+    name: RobotArgument,
     kernels: Annotated[bool, typer.Option("--kernels", help="Print the kernels written for it instead.")] = False,
+    pairs: Annotated[bool, typer.Option("--pairs", help="Print the pairs that are compared and left out.")] = False,
     kind: Annotated[str, typer.Option(help="Of which targets: position, axis or pose.")] = "pose",
     detector: DetectorOption = None,
     unit: UnitOption = LengthUnit.mm,
     angles: AnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
 ) -> None:
-    """Show a robot: joints, frames, detectors, pairs, and where its numbers come from; or the kernels written for it.
+    """Show a robot: joints, frames, detectors, and where its numbers come from; or its pairs; or its kernels.
 
-    Every pair of components is listed: those that the detector compares, and those that it leaves out with the reason.
+    --pairs lists every pair of components: those that the detector compares, with their clearance at home, and those
+    that it leaves out, each with the reason.
+
+    Example: ikde robots show qiao2021 --pairs
     """
-    from ikde.io.robots import load_robot
+    from ikde.errors import InputError
     from ikde.model.collision_model import CollisionModel
     from ikde.report.numbers import Units
+    from ikde.report.pairs import format_pairs, pairs_json
     from ikde.report.robot import format_robot, robot_json
 
-    model = load_robot(name)
+    if kernels and pairs:
+        raise InputError("expected one of --kernels and --pairs, got both")
+    model = read_robot(name)
     chosen = CollisionModel.of(model, detector)
     if kernels:
         source = _format_kernels(chosen, kind)
@@ -66,9 +89,12 @@ def show(
         else:
             print_result(source)
     elif as_json:
-        print_json(robot_json(chosen))
+        print_json({"robot": model.name, "collision": pairs_json(chosen)} if pairs else robot_json(chosen))
+    elif pairs:
+        print_line(f"robot {model.name}")
+        print_result(format_pairs(chosen, Units(unit, angles), **layout()))
     else:
-        print_result(format_robot(chosen, Units(unit, angles), color=use_color(), width=page_width()))
+        print_result(format_robot(chosen, Units(unit, angles), **layout()))
 
 
 def _format_kernels(collision: "CollisionModel", kind: str) -> str:
@@ -105,12 +131,12 @@ def validate(
         print_json({"valid": True, "name": model.name, **counts, "collision": pairs_json(chosen)})
     else:
         print_line(f"{file}: valid, robot {model.name} with {len(model.joints)} joints and {len(model.frames)} frames")
-        print_result(format_pairs(chosen, Units(unit), color=use_color(), width=page_width()))
+        print_result(format_pairs(chosen, Units(unit), **layout()))
 
 
 @robots.command("export", cls=Command)
 def export(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A robot of `ikde robots list`, or its file.")],
+    name: RobotArgument,
     urdf: Annotated[bool, typer.Option("--urdf", help="Write URDF.")] = False,
     mjcf: Annotated[bool, typer.Option("--mjcf", help="Write MJCF, MuJoCo's format.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Where it goes (default: printed).")] = None,
@@ -122,14 +148,14 @@ def export(
     """
     from ikde.errors import InputError
     from ikde.io.mjcf import format_mjcf
-    from ikde.io.robots import load_robot
     from ikde.io.urdf import format_urdf
     from ikde.io.xml_file import write_xml
 
     if urdf == mjcf:
         raise InputError(f"expected one of --urdf and --mjcf, got {'both' if urdf else 'none'}")
-    text = (format_urdf if urdf else format_mjcf)(load_robot(name), collision=detector)
+    text = (format_urdf if urdf else format_mjcf)(read_robot(name), collision=detector)
     if out is None:
         print_result(text)
     else:
         write_xml(out, text)
+        print_written(out)

@@ -8,7 +8,7 @@ import typer
 from ikde.cli import options
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
-from ikde.cli.output import print_json, print_note, print_result, use_color, working
+from ikde.cli.output import layout, print_json, print_note, print_result, working
 from ikde.cli.startup import skip_blas_probe
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
@@ -109,7 +109,6 @@ def solve(
     """
     skip_blas_probe()
     from ikde.io.joint_text import parse_weights
-    from ikde.io.robots import load_robot
     from ikde.io.target import make_target
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
@@ -119,14 +118,14 @@ def solve(
     from ikde.solver.grade import confirm
     from ikde.solver.solve import solve as solve_one
 
-    model, units = load_robot(robot), Units(unit, angles)
+    model, units = options.read_robot(robot), Units(unit, angles)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
     checked = options.read_collision(model, detector, pairs, safe_distance, unit)
     start = None if near is None else options.read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = options.read_freeze(model, freeze, unit, angles, convention)
-    weighed = None if weights is None else parse_weights(weights)
+    weighed = None if weights is None else parse_weights(model, weights)
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
@@ -143,7 +142,7 @@ def solve(
     else:
         _print_several(model, results, units, convention, as_json, **spent)
         _note_fewer(results, count)
-    options.draw(plot, checked, results[0].q, target)
+    options.draw(plot, checked, results[0].q, target, as_json=as_json)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)
 
 
@@ -181,7 +180,7 @@ def _print(robot: "Robot", result: "SolveResult", units: "Units", convention: st
     if as_json:
         print_json(solve_json(robot, result, convention))
     else:
-        print_result(format_solve(robot, result, units, convention=convention, color=use_color()))
+        print_result(format_solve(robot, result, units, convention=convention, **layout()))
 
 
 def _print_several(
@@ -197,7 +196,7 @@ def _print_several(
     if as_json:
         print_json(solutions_json(robot, results, Spent(**spent), convention))
     else:
-        page = format_solutions(robot, results, units, Spent(**spent), convention=convention, color=use_color())
+        page = format_solutions(robot, results, units, Spent(**spent), convention=convention, **layout())
         print_result(page)
 
 

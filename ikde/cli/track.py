@@ -11,7 +11,7 @@ import typer
 
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
-from ikde.cli.output import Working, print_json, print_result, use_color, working
+from ikde.cli.output import Working, layout, print_json, print_result, print_written, working
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -74,7 +74,8 @@ def track(
     if as_json:
         print_json({**data, "files": [str(file) for file in files]})
     else:
-        print_result(format_track(plan, motion, files, color=use_color()))
+        print_result(format_track(plan, motion, **layout(120)))
+    print_written(*files, as_json=as_json)
     raise typer.Exit(ExitCode.OK if data["reached"] else ExitCode.NOT_REACHED)
 
 

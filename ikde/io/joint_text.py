@@ -3,18 +3,25 @@
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.formats.units import ANGLES_RAD, LENGTHS_M
-from ikde.model.robot import Robot
+
+if TYPE_CHECKING:
+    from ikde.model.robot import Robot
 
 MINUS_SIGNS = str.maketrans("−–—‐‑", "-----")  # a row pasted from a paper carries a typographer's minus
 SEPARATORS = re.compile(r"[\s,;()\[\]]+")
 FILE_ENDINGS = (".yaml", ".yml", ".json")
 
 
-def parse_joints(robot: Robot, text: str, unit: str, angles: str, key: str = "q") -> list[float] | dict[str, float]:
+def split_values(text: str) -> list[str]:
+    """The values in a text: between blanks, commas, semicolons and brackets."""
+    return list(filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS))))
+
+
+def parse_joints(robot: "Robot", text: str, unit: str, angles: str, key: str = "q") -> list[float] | dict[str, float]:
     """Parse joint values into m and rad: a list in the robot's order, or a dict by joint name.
 
     `text` is `"0 0 0.1 ..."`, `"q1=0.5 q_z=0"`, or the path of a YAML or JSON file with a list or a mapping; prismatic
@@ -32,10 +39,10 @@ def parse_joints(robot: Robot, text: str, unit: str, angles: str, key: str = "q"
     return [value * factor for value, factor in zip(values, scale.values(), strict=True)]
 
 
-def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, float | None]:
+def parse_freeze(robot: "Robot", text: str, unit: str, angles: str) -> dict[str, float | None]:
     """Parse `d_x=0.2,q_z` into joints with their frozen value in m or rad, or None."""
     frozen: dict[str, float | None] = {}
-    for word in _split(text):
+    for word in split_values(text):
         name, equals, value = word.partition("=")
         if _known(name, robot.joint_names, "freeze") in frozen:
             raise InputError("this joint is given twice", ("freeze", name))
@@ -46,22 +53,18 @@ def parse_freeze(robot: Robot, text: str, unit: str, angles: str) -> dict[str, f
     return frozen
 
 
-def parse_weights(text: str) -> dict[str, float]:
+def parse_weights(robot: "Robot", text: str) -> dict[str, float]:
     """Parse `q1=2,d_x=0.5`, or a file, into weights by joint name, per m or rad."""
     weights = _read(text, "weights")
     if not isinstance(weights, Mapping):
         raise InputError("expected name=value", ("weights",))
-    return dict(weights)
-
-
-def _split(text: str) -> list[str]:
-    return list(filter(None, SEPARATORS.split(text.translate(MINUS_SIGNS))))
+    return {_known(name, robot.joint_names, "weights"): value for name, value in weights.items()}
 
 
 def _read(text: str, key: str) -> list[float] | dict[str, float]:
     if text.strip().lower().endswith(FILE_ENDINGS):
         return _read_file(Path(text.strip()))
-    words = _split(text)
+    words = split_values(text)
     if not any("=" in word for word in words):
         return [_number(word, (key,)) for word in words]
     pairs = {}

@@ -38,9 +38,9 @@ def open_folder(folder: Path) -> Iterator[None]:
         raise
 
 
-def write_report(folder: Path, files: Mapping[str, str]) -> None:
+def write_report(folder: Path, files: Mapping[str, str]) -> tuple[Path, ...]:
     """Write files by name in place of an earlier report's, all or none; raises `FileError` as `replace_all`."""
-    replace_all(folder, {name: text.encode() for name, text in files.items()})
+    return replace_all(folder, {name: text.encode() for name, text in files.items()})
 
 
 def format_results(results: Mapping[str, Any]) -> str:

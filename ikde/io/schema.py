@@ -1,7 +1,8 @@
-"""Pydantic's complaints as ikde says them: one line, with the file, the line, the key and what was expected."""
+"""Pydantic's complaints as ikde says them: a line each, with the file, the line, the key and what was expected."""
 
+from collections.abc import Mapping, Sequence
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -24,6 +25,8 @@ EXPECTED = {
     "finite_number": "expected a finite number",
     "string_too_short": "expected text that is not empty",
 }
+UNKNOWN = "extra_forbidden"  # what pydantic calls a key that is none
+MOST = 10  # errors of a file that are listed
 FEW = 4  # values: where there may not be more, there may not be fewer either
 LIMITS = {
     "greater_than_equal": ("at least", "ge"),
@@ -41,39 +44,81 @@ class Given:
     def __init__(self, data: Any) -> None:
         self.data = data
 
+    def line(self, where: Where) -> None:
+        """Data that came from no file has no lines."""
+
     def error(self, message: str, where: Where = ()) -> InputError:
         """An error at a path of the data."""
         return InputError(message, where)
 
 
 def as_file_error(document: Document | Given, error: ValidationError, model: type[BaseModel]) -> InputError:
-    """The first complaint of pydantic, placed in the file; a misspelt key before the key that it left missing."""
-    first = min(error.errors(), key=lambda complaint: complaint["type"] != "extra_forbidden")
-    where = _real_path(document.data, first["loc"])
-    kind, context = first["type"], first.get("ctx", {})
-    if kind == "extra_forbidden":
-        key = str(first["loc"][-1])
+    """Pydantic's complaints, placed in the file: the first one with the others as its notes, in order of lines.
+
+    The first `MOST` are listed, the others counted.
+    """
+    complaints = [_place(document.data, complaint) for complaint in error.errors()]
+    told = [complaint for complaint in complaints if not _is_misspelt(complaint, complaints, model)]
+    told.sort(key=lambda it: (document.line(it.where) or 0, it.kind != UNKNOWN))
+    first, *others = (document.error(_describe(complaint, model), complaint.where) for complaint in told[:MOST])
+    for other in others:
+        first.add_note(str(other))
+    if len(told) > MOST:
+        first.add_note(f"and {len(told) - MOST} more")
+    return first
+
+
+class _Complaint(NamedTuple):
+    """What is wrong with one value."""
+
+    kind: str
+    where: Where
+    key: str
+    """The last step to it, also where the file has no such key."""
+    details: Mapping[str, Any]
+    """As pydantic gives them."""
+
+
+def _place(data: Any, complaint: Mapping[str, Any]) -> _Complaint:
+    steps = complaint["loc"]
+    return _Complaint(complaint["type"], _real_path(data, steps), str(steps[-1]) if steps else "", complaint)
+
+
+def _is_misspelt(complaint: _Complaint, all_of_them: Sequence[_Complaint], model: type[BaseModel]) -> bool:
+    """True for a key that is missing because it was misspelt: the unknown key beside it says so."""
+    beside = [c for c in all_of_them if c.kind == UNKNOWN and c.where[:-1] == complaint.where[:-1]]
+    hint = quoted(complaint.key)
+    return complaint.kind == "missing" and any(hint in nearest(c.key, _keys_at(model, c.where[:-1])) for c in beside)
+
+
+def _describe(complaint: _Complaint, model: type[BaseModel]) -> str:
+    """What is said of a complaint."""
+    kind, where, details = complaint.kind, complaint.where, complaint.details
+    context = details.get("ctx", {})
+    if kind == UNKNOWN:
         keys = _keys_at(model, where[:-1])
-        return document.error(f"unknown key{nearest(key, keys) or '; expected one of ' + ', '.join(keys)}", where)
-    if kind == "too_short" and "actual_length" in context:
-        least = context["min_length"]
-        message = f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {context['actual_length']}"
-    elif kind == "too_long" and "actual_length" in context:
-        most, length = context["max_length"], context["actual_length"]
-        got = "more" if length is None else f"{length:,}"  # pydantic stops counting keys
-        message = f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
-    elif kind == "literal_error":
-        message = f"expected {context['expected']}, got {quoted(first['input'])}"
-    elif kind in LIMITS:
+        return f"unknown key{nearest(complaint.key, keys) or '; expected one of ' + ', '.join(keys)}"
+    if "actual_length" in context:
+        return _describe_length(kind, context)
+    if kind == "literal_error":
+        return f"expected {context['expected']}, got {quoted(details['input'])}"
+    if kind in LIMITS:
         words, key = LIMITS[kind]
         limit = context[key]
-        message = f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {quoted(first['input'])}"
-    elif kind in EXPECTED:  # a whole file that is something else is not quoted
-        got = "" if kind == "missing" or not where else f", got {quoted(first['input'])}"
-        message = f"{EXPECTED[kind]}{got}"
-    else:
-        message = first["msg"][0].lower() + first["msg"][1:]
-    return document.error(message, where)
+        return f"expected {words} {limit:{'g' if isinstance(limit, float) else ','}}, got {quoted(details['input'])}"
+    if kind in EXPECTED:  # a whole file that is something else is not quoted
+        got = "" if kind == "missing" or not where else f", got {quoted(details['input'])}"
+        return f"{EXPECTED[kind]}{got}"
+    return details["msg"][0].lower() + details["msg"][1:]
+
+
+def _describe_length(kind: str, context: Mapping[str, Any]) -> str:
+    length = context["actual_length"]
+    if kind == "too_short":
+        least = context["min_length"]
+        return f"expected {'at least 1 value' if least == 1 else f'{least} values'}, got {length}"
+    most, got = context["max_length"], "more" if length is None else f"{length:,}"  # pydantic stops counting keys
+    return f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
 
 
 def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:

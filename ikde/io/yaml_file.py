@@ -24,6 +24,11 @@ _WHOLE = re.compile(r"^[-+]?[0-9][0-9_]*$")
 _BOOLEAN = re.compile(r"^(true|True|TRUE|false|False|FALSE)$")
 _NULL = re.compile(r"^(~|null|Null|NULL|)$")
 
+XML_KINDS = {
+    "<mujoco": "this is MJCF; expected YAML (convert it to URDF, which `ikde robots import FILE.urdf` reads)",
+    "xmlns:xacro": "this is xacro; expected YAML (`xacro FILE > robot.urdf`, then `ikde robots import robot.urdf`)",
+    "<robot": "this is a URDF; expected YAML (`ikde robots import FILE.urdf` makes a robot file of it)",
+}
 
 _Safe: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml's parser is seven times faster
 
@@ -47,11 +52,13 @@ class Document:
         self.aliases: dict[Where, Where] = {}
         """Path of an alias -> path of what it stands for."""
         self.data: Any = None
+        _refuse_other_kinds(path, text)
         try:
             self.data = _Reader(self, text).read()
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
-            raise FileError(path, f"not YAML: {error.problem}", line=mark.line + 1 if mark else None) from None
+            problem = "a tab; YAML wants spaces" if mark and _is_tab(text, mark) else f"not YAML: {error.problem}"
+            raise FileError(path, problem, line=mark.line + 1 if mark else None) from None
         except yaml.YAMLError as error:
             raise FileError(path, f"not YAML: {' '.join(str(error).split())}") from None
         except MemoryError:
@@ -69,6 +76,23 @@ class Document:
     def error(self, message: str, where: Where = ()) -> FileError:
         """An error at a path of this file."""
         return FileError(self.path, message, where, self.line(where))
+
+
+def _refuse_other_kinds(path: Path, text: str) -> None:
+    """Say of an empty file and of XML what they are."""
+    start = text.lstrip("\ufeff \t\r\n")
+    if not start:
+        raise FileError(path, "the file is empty")
+    if start.startswith("<"):
+        kind = next((said for mark, said in XML_KINDS.items() if mark in start), "this is XML; expected YAML")
+        raise FileError(path, kind)
+
+
+def _is_tab(text: str, mark: Any) -> bool:
+    """True if a tab stands where the parser gave up, or before the first word of that line."""
+    line = text.splitlines()[mark.line] if mark.line < len(text.splitlines()) else ""
+    blank = line[: len(line) - len(line.lstrip())]
+    return "\t" in blank or line[mark.column : mark.column + 1] == "\t"
 
 
 class _Anchored(NamedTuple):

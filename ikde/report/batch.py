@@ -25,7 +25,7 @@ def preview_json(preview: Preview) -> dict[str, Any]:
     return asdict(preview) | {"columns": list(preview.columns), **sums}
 
 
-def format_preview(preview: Preview, *, color: bool = False) -> str:
+def format_preview(preview: Preview, *, color: bool = False, width: int = WIDTH) -> str:
     """What would run, for the terminal."""
     from rich.filesize import decimal
 
@@ -53,7 +53,7 @@ def format_preview(preview: Preview, *, color: bool = False) -> str:
         f"columns    {', '.join(preview.columns)}",
         "nothing was written",
     ]
-    return render(head, table, *map(plain, lines), color=color, width=WIDTH)
+    return render(head, table, *map(plain, lines), color=color, width=width)
 
 
 def _tell_compiling(preview: Preview) -> str:
@@ -99,13 +99,13 @@ def _rate_json(rate: Rate) -> dict[str, Any]:
     return {"count": rate.count, "total": rate.total, "share": share, "interval_95": list(rate.interval)}
 
 
-def format_run(summary: RunSummary, *, color: bool = False) -> str:
+def format_run(summary: RunSummary, *, color: bool = False, width: int = WIDTH) -> str:
     """What came of a run, for the terminal: the verdict, a line an arm, unreached targets and reasons, what is next."""
     solves = sum(arm.reached.total for arm in summary.arms)
     if summary.unreached:
-        verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/]"
+        verdict = f"[bold red]{summary.unreached:,} of {solves:,} solves not reached[/] by {plain(summary.robot)}"
     else:
-        verdict = f"[bold green]all reached[/]: {count_of(solves, 'solve')}"
+        verdict = f"[bold green]all reached[/] by {plain(summary.robot)}: {count_of(solves, 'solve')}"
     unchecked = [plain(arm.name) for arm in summary.arms if arm.collision_checked < arm.reached.total]
     if unchecked:
         verdict += f"\n[yellow]self-collision not checked[/]: {_name_arms(unchecked)}"
@@ -118,8 +118,8 @@ def format_run(summary: RunSummary, *, color: bool = False) -> str:
     if 0 < few <= MAX_TARGETS:
         tables.append(_target_table(summary.arms))
     path = plain(str(summary.folder))
-    tail = [f"answers    {path}", f"next       ikde report {path}"]
-    return render(verdict, *tables, *_list_unreached(summary), *tail, color=color, width=WIDTH)
+    tail = [f"wrote {path} ({count_of(summary.parts, 'part')})", f"next: ikde report {path}"]
+    return render(verdict, *tables, *_list_unreached(summary), *tail, color=color, width=width)
 
 
 def _name_arms(names: Sequence[str]) -> str:
@@ -143,7 +143,8 @@ def _arm_table(arms: Iterable[ArmSummary]) -> Any:
 
 
 def _collision_table(arms: Iterable[ArmSummary]) -> Any:
-    table = make_table("arm", "graded by", ">in collision", ">rate (95 %)", title="reached solutions, graded again")
+    columns = ("arm", "detector", ">in collision", ">rate (95 %)")
+    table = make_table(*columns, title="reached solutions, checked by other detectors")
     for arm in arms:
         for grader, rate in arm.collisions.items():
             table.add_row(plain(arm.name), plain(grader), _format_count(rate), format_rate(rate))

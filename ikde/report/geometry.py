@@ -12,6 +12,8 @@ from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
 from ikde.solver.check import CheckResult
 
+BESIDE = 95  # columns in which a frame's axes stand beside its origin
+
 
 def joints_json(robot: Robot, q: Floats, convention: str | None) -> dict[str, Any]:
     """A configuration by joint in the convention asked for, with its name."""
@@ -32,20 +34,32 @@ def forward_json(
 
 
 def format_forward(
-    Ts_world: Mapping[str, Floats], outside: tuple[str, ...], units: Units, *, color: bool = False
+    robot: Robot,
+    Ts_world: Mapping[str, Floats],
+    outside: tuple[str, ...],
+    units: Units,
+    *,
+    color: bool = False,
+    width: int = 100,
 ) -> str:
-    """Frames for the terminal: origin, and the directions of their x and z axes."""
+    """Frames for the terminal: origin, and the directions of their x and z axes: beside it, or below."""
     unit = units.length
-    table = make_table("frame", f">x [{unit}]", f">y [{unit}]", f">z [{unit}]", "x axis", "z axis")
+    names, axes = [f">{axis} [{unit}]" for axis in "xyz"], ["x axis", "z axis"]
+    if width >= BESIDE:
+        tables = [make_table("frame", *names, *axes)]
+    else:
+        tables = [make_table("frame", *names), make_table("frame", *axes)]
     for name, T in Ts_world.items():
         digits = 1 if unit == "mm" else 4
         origin = [format_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
-        table.add_row(plain(name), *origin, _direction(T[:3, 0]), _direction(T[:3, 2]))
-    return render(table, *_outside_line(outside), color=color)
+        turned = [_direction(T[:3, k], 3 if width >= BESIDE else 2) for k in (0, 2)]
+        for table, cells in zip(tables, [[*origin, *turned]] if len(tables) == 1 else [origin, turned], strict=True):
+            table.add_row(plain(name), *cells)
+    return render(f"robot {plain(robot.name)}", *tables, *_outside_line(outside), color=color, width=width)
 
 
-def _direction(axis: Floats) -> str:
-    return " ".join(f"{format_fixed(value, 3):>6}" for value in axis)
+def _direction(axis: Floats, digits: int) -> str:
+    return " ".join(format_fixed(value, digits).rjust(digits + 3) for value in axis)
 
 
 def _outside_line(outside: tuple[str, ...]) -> list[str]:
@@ -66,17 +80,20 @@ def check_json(robot: Robot, result: CheckResult, convention: str | None = None)
     }
 
 
-def format_check(result: CheckResult, units: Units, *, color: bool = False) -> str:
-    """A check for the terminal: the verdict and every pair, worst first."""
+def format_check(robot: Robot, result: CheckResult, units: Units, *, color: bool = False, width: int = 100) -> str:
+    """A check for the terminal: the verdict with the robot, and every pair, worst first."""
     if result.clearance_m is None:
-        verdict = f"[bold yellow]self-collision not checked[/]: detector {plain(result.detector)}"
-        return render(verdict, *_outside_line(result.outside_limits), color=color)
+        verdict = (
+            f"[bold yellow]self-collision not checked[/]: robot {plain(robot.name)}, detector {plain(result.detector)}"
+        )
+        return render(verdict, *_outside_line(result.outside_limits), color=color, width=width)
     verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
-    head = f"{verdict}: clearance {units.format_length(result.clearance_m)}, detector {plain(result.detector)}"
+    head = f"{verdict}: robot {plain(robot.name)}, clearance {units.format_length(result.clearance_m)}"
+    head += f", detector {plain(result.detector)}"
     if result.safe_distance_m:
         head += f", safe distance {units.format_length(result.safe_distance_m)}"
     table = make_table("pair", f">clearance [{units.length}]", "")
     for pair in result.pairs:
         gap = f"{pair.clearance_m / LENGTHS_M[units.length]:.{2 if units.length == 'mm' else 5}f}"
         table.add_row(plain(f"{pair.a} - {pair.b}"), gap, "[red]collides[/]" if pair.collides else "")
-    return render(head, *_outside_line(result.outside_limits), table, color=color)
+    return render(head, *_outside_line(result.outside_limits), table, color=color, width=width)

@@ -30,6 +30,12 @@ def pairs_json(collision: CollisionModel) -> dict[str, Any] | None:
     }
 
 
+def describe_pairs(collision: CollisionModel) -> str:
+    """How many pairs are compared and left out, what always touches, and how to see which they are."""
+    seen = ["ikde robots show --pairs names them all, with the reasons"] if collision.pairs else []
+    return "\n".join([_describe(collision), *_touching_lines(collision), *seen])
+
+
 def format_pairs(collision: CollisionModel, units: Units, *, color: bool = False, width: int = 100) -> str:
     """What is checked, what always touches, and a table each of the pairs compared, worst first, and of those left out.
 
@@ -54,7 +60,7 @@ def _describe(collision: CollisionModel) -> str:
 
 
 def _touching_lines(collision: CollisionModel) -> list[str]:
-    touching = find_always_touching(collision)
+    touching = find_always_touching(collision) if collision.pairs else None
     if touching is None:
         return []
     meant = f"if that is meant, {touching.remedy}{':' if touching.lines else ''}"

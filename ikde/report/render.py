@@ -10,14 +10,23 @@ from ikde.errors import printable
 _MARKS = {ord("["): "\ue000", ord("\\"): "\ue001"}
 _BACK = {ord(stand_in): chr(mark) for mark, stand_in in _MARKS.items()}
 
+MAX_WIDTH = 10_000  # columns of a page that is as wide as it likes
+
 
 def render(*renderables: Any, color: bool = False, width: int = 100) -> str:
-    """Lay renderables out as text of at most `width` columns, with ANSI colours only if asked."""
+    """Lay renderables out as text of at most `width` columns, with ANSI colours only if asked.
+
+    A table of `make_table` that is too wide moves together, leaves out what may be left out, and folds its texts.
+    """
     from rich.console import Console
+    from rich.table import Table
 
     buffer = StringIO()
-    console = Console(file=buffer, force_terminal=color, no_color=not color, width=width, highlight=False, emoji=False)
+    colors: dict[str, Any] = {"force_terminal": color, "color_system": "standard" if color else None, "no_color": False}
+    console = Console(file=buffer, width=width, highlight=False, emoji=False, **colors)
     for renderable in renderables:
+        if isinstance(renderable, Table):
+            _narrow(renderable, console)
         console.print(renderable)
     lines = [line.rstrip() for line in buffer.getvalue().translate(_BACK).splitlines()]
     return "\n".join(line for line, before in zip(lines, ["x", *lines], strict=False) if line or before).strip("\n")
@@ -29,7 +38,11 @@ def plain(text: str) -> str:
 
 
 def make_table(*columns: str, title: str | None = None) -> Any:
-    """A table with a line under its header; a column whose name starts with `>` is right-aligned."""
+    """A table with a line under its header.
+
+    A column whose name starts with `>` is right-aligned, and its words are whole; one that starts with `?` is left out
+    where there is no room for it.
+    """
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
@@ -37,5 +50,32 @@ def make_table(*columns: str, title: str | None = None) -> Any:
         title=plain(title) if title else None, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False
     )
     for column in columns:
-        table.add_column(plain(column.removeprefix(">")), justify="right" if column.startswith(">") else "left")
+        right, spare = column.startswith(">"), column.startswith("?")
+        justify = "right" if right else "left"
+        table.add_column(plain(column[right or spare :]), justify=justify, overflow="fold", ratio=0 if spare else None)
     return table
+
+
+def _narrow(table: Any, console: Any) -> None:
+    """Make a table fit: smaller gaps, then without its columns to spare, then with its texts alone folded."""
+    from rich.measure import Measurement
+
+    def is_too_wide() -> bool:
+        wide = console.options.update(max_width=MAX_WIDTH)
+        return Measurement.get(console, wide, table).maximum > console.width
+
+    if is_too_wide():
+        table.collapse_padding = True
+    if is_too_wide():
+        table.columns = [column for column in table.columns if column.ratio is None]
+    if is_too_wide():
+        for column in table.columns:
+            if column.justify == "right":
+                column.width = max(_longest_word(cell) for cell in (column.header, *column.cells))
+
+
+def _longest_word(cell: Any) -> int:
+    """Columns that the longest word of a cell takes up."""
+    from rich.text import Text
+
+    return max((Text(word).cell_len for word in Text.from_markup(str(cell)).plain.split()), default=1)

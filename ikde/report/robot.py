@@ -9,7 +9,7 @@ from ikde.formats.units import LENGTHS_M
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Joint, Robot, Wheels
 from ikde.report.numbers import Units
-from ikde.report.pairs import format_pairs, pairs_json
+from ikde.report.pairs import describe_pairs, pairs_json
 from ikde.report.render import make_table, plain, render
 
 
@@ -21,13 +21,13 @@ def robots_json(robots: Iterable[Robot]) -> list[dict[str, Any]]:
     ]
 
 
-def format_robots(robots: Iterable[Robot], *, color: bool = False) -> str:
+def format_robots(robots: Iterable[Robot], *, color: bool = False, width: int = 100) -> str:
     """A line a robot."""
     table = make_table("robot", ">joints", "detectors", "title")
     for robot in robots:
         names = ", ".join(robot.detectors) or "none"
         table.add_row(plain(robot.name), str(len(robot.joints)), plain(names), plain(robot.title))
-    return render(table, color=color)
+    return render(table, color=color, width=width)
 
 
 def robot_json(collision: CollisionModel) -> dict[str, Any]:
@@ -69,13 +69,13 @@ def _joint_json(joint: Joint) -> dict[str, Any]:
 
 
 def format_robot(collision: CollisionModel, units: Units, *, color: bool = False, width: int = 100) -> str:
-    """A robot for the terminal: joints, frames, detectors, the pairs of one, and the provenance of its numbers."""
+    """A robot for the terminal: joints, frames, detectors, how many pairs one compares, where its numbers come from."""
     robot = collision.robot
     head = f"[bold]{plain(robot.name)}[/]: {plain(robot.title)}"
     wheels = [_wheel_table(robot, robot.wheels, units)] if robot.wheels else []
     detectors = [_detector_table(robot, units)] if robot.detectors else []
     parts = [_joint_table(robot, units), _frame_table(robot, units), *wheels, *detectors]
-    pairs = format_pairs(collision, units, color=color, width=width)
+    pairs = describe_pairs(collision)
     above, below = render(head, "", *parts, color=color, width=width), render(_sources(robot), color=color, width=width)
     return "\n\n".join([above, pairs, below])
 

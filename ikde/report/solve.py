@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ikde.errors import printable
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
 from ikde.report.geometry import joints_json
@@ -74,12 +75,19 @@ def format_solutions(
     *,
     convention: str | None = None,
     color: bool = False,
+    width: int = 100,
 ) -> str:
     """Several solutions for the terminal, one below the other, and what they took together."""
-    pages = [format_solve(robot, result, units, convention=convention, color=color, timed=False) for result in results]
-    numbered = [f"solution {number} of {len(results)}\n{page}" for number, page in enumerate(pages, 1)]
+    look: dict[str, Any] = {"convention": convention, "color": color, "width": width}
+    pages = [format_solve(robot, result, units, timed=False, **look) for result in results]
+    numbered = [f"{_count_solution(robot, k, len(results))}\n{page}" for k, page in enumerate(pages, 1)]
     compiled = f", after {seconds(spent.compile_seconds)} of compiling" if spent.compile_seconds else ""
-    return "\n\n".join([*numbered, f"together {seconds(spent.solve_seconds)}, with loading and grading{compiled}"])
+    together = f"together {seconds(spent.solve_seconds)}, with loading and grading{compiled}"
+    return "\n\n".join([*numbered, together])
+
+
+def _count_solution(robot: Robot, number: int, count: int) -> str:
+    return f"solution {number} of {count}, robot {printable(robot.name)}"
 
 
 def format_solve(
@@ -89,6 +97,7 @@ def format_solve(
     *,
     convention: str | None = None,
     color: bool = False,
+    width: int = 100,
     timed: bool = True,
 ) -> str:
     """A result for the terminal: the verdict, the joints within their ranges, the graded figures, the cost.
@@ -96,16 +105,16 @@ def format_solve(
     `timed`: with the seconds that it took.
     """
     mark, style = ("reached", "bold green") if result.reached else ("not reached", "bold red")
-    lines = [f"[{style}]{mark}[/]: {plain(result.reason)}"]
+    lines = [f"[{style}]{mark}[/] by {plain(robot.name)}: {plain(result.reason)}"]
     if result.hint:
         lines.append(f"[yellow]what would help[/]: {plain(result.hint)}")
     tables = _joint_table(robot, result, units, convention), _grade_table(result, units, timed)
-    return render(*lines, *tables, color=color)
+    return render(*lines, *tables, color=color, width=width)
 
 
 def _joint_table(robot: Robot, result: SolveResult, units: Units, convention: str | None) -> Any:
     name = f" ({convention} convention)" if convention not in (None, robot.convention) else ""
-    table = make_table(f"joint{name}", ">value", "unit", ">lower", "", ">upper")
+    table = make_table(f"joint{name}", ">value", "unit", ">lower", "?", ">upper")
     offsets = convention_offsets(robot, convention)
     shown = to_convention(robot, result.q, convention)
     for joint, value, own, offset in zip(robot.joints, shown, result.q, offsets, strict=True):

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -72,20 +71,20 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
     }
 
 
-def format_track(plan: TrackPlan, motion: TrackSummary, files: tuple[Path, ...] = (), *, color: bool = False) -> str:
-    """A motion for the terminal: the verdict, what was measured beside what was asked, where the files are."""
+def format_track(plan: TrackPlan, motion: TrackSummary, *, color: bool = False, width: int = WIDTH) -> str:
+    """A motion for the terminal: the verdict, what was measured beside what was asked."""
     verdict = _verdict(plan, motion)
     if not motion.started:
-        return render(verdict, *_list_files(files), color=color, width=WIDTH)
+        return render(verdict, color=color, width=width)
     table = make_table("measured by plain numpy", ">", "asked for")
     for row in list_figures(motion):
         table.add_row(*map(plain, row))
-    return render(verdict, table, *_list_files(files), color=color, width=WIDTH)
+    return render(verdict, table, color=color, width=width)
 
 
 def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
     trajectory, graded = motion.trajectory, motion.grade
-    of = f"of {trajectory.path.samples} points of {plain(plan.name)}"
+    of = f"of {trajectory.path.samples} points of {plain(plan.name)} by {plain(motion.robot.name)}"
     if trajectory.stop is not None:
         return f"[bold red]stopped after {trajectory.reached_points} {of}[/]\n{plain(trajectory.stop.text)}"
     of = f"{motion.met_points} {of}"
@@ -167,13 +166,6 @@ def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe
     if motion.certificate is not None:
         yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", "above 0 mm"
-
-
-def _list_files(files: tuple[Path, ...]) -> list[str]:
-    if not files:
-        return []
-    names = ", ".join(file.name for file in files)
-    return [plain(f"files   {files[0].parent}: {names}")]
 
 
 def largest_wheel_speed(motion: TrackSummary) -> float | None:

@@ -9,6 +9,7 @@ from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.asker import find_asker
+from ikde.solver.background import choose_way
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, Problem, make_problem
@@ -104,6 +105,7 @@ def solve_many(
     Returns:
         A sequence of `SolveResult` whose columns are arrays: `q` [T, N], `reached` [T], `clearance_m` [T] and so on.
     """
+    choose_way()  # a wrong word is found before anything else
     if not isinstance(bulk, BulkOptions | None):
         raise InputError(f"expected BulkOptions, got {bulk!r}", ("bulk",))
     chosen = choose_settings(settings, method)

@@ -48,8 +48,8 @@ def test_a_run_is_summarised_and_what_is_next_is_said(cli, spec, tmp_path):
     out = tmp_path / "run"
     outcome = cli("batch", spec, "--out", out)
     assert outcome.code == 0
-    assert outcome.out.startswith("all reached: 6 solves\n")
-    assert outcome.out.endswith(f"answers    {out}\nnext       ikde report {out}\n")
+    assert outcome.out.startswith("all reached by qiao2021: 6 solves\n")
+    assert outcome.out.endswith(f"wrote {out} (1 part)\nnext: ikde report {out}\n")
     assert outcome.err == f"two → {out}: 6 solves, 0 of 2 parts done before\n"
     assert len(ikde.read_batch(out)) == 6
 
@@ -74,7 +74,7 @@ def test_the_same_command_goes_on(cli, spec, tmp_path):
 def test_a_target_that_is_not_reached_is_named_and_exits_with_1(cli, spec, tmp_path):
     outcome = cli("batch", far(spec), "--out", tmp_path / "run")
     assert outcome.code == 1
-    assert outcome.out.startswith("3 of 6 solves not reached\n")
+    assert outcome.out.startswith("3 of 6 solves not reached by qiao2021\n")
     assert outcome.out.count("  auto, target 1, 3 of 3 repeats, first repeat 0: out of reach: at least") == 1
 
 

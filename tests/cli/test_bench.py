@@ -24,7 +24,7 @@ def report(cli, tmp_path, monkeypatch, substitute):
 def test_a_report_is_a_page_its_markdown_and_its_data_and_the_data_checks(cli, report):
     folder, outcome = report
     assert sorted(path.name for path in folder.iterdir()) == ["report.html", "report.md", "results.json"]
-    assert outcome.out.startswith(str(folder / "report.html"))
+    assert outcome.out.startswith(f"wrote {folder / 'results.json'}\n")
     assert "computing: rejection" in outcome.err
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "Table 4" in page

@@ -22,7 +22,7 @@ def test_methods_are_compared_on_a_page(cli, spec, tmp_path, monkeypatch):
     told = ("--quick", "--methods", "continuation", "--drive", "omnidirectional")
     outcome = cli("bench", "track", spec, *told, "--out", out)
     assert outcome.code == 0, outcome
-    assert outcome.out == f"{out / 'report.html'}  (results.json beside it)\n"
+    assert outcome.out == f"wrote {out / 'results.json'}\nwrote {out / 'report.html'}\n"
     assert "computing: short: continuation" in outcome.err
     data = json.loads((out / "results.json").read_text(encoding="utf-8"))
     run = data["tracks"][0]["runs"][0]

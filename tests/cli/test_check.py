@@ -33,7 +33,7 @@ def test_json_has_the_promised_keys_and_pairs_worst_first(cli, qiao):
 def test_a_row_of_the_paper_is_free(cli):
     outcome = cli("check", "--q", ROW, *ROW_OPTIONS)
     assert (outcome.code, outcome.err) == (0, "")
-    assert outcome.out.startswith("free of self-collision: clearance")
+    assert outcome.out.startswith("free of self-collision: robot qiao2021, clearance")
     assert "[mm]" in outcome.out
 
 
@@ -44,7 +44,7 @@ def test_a_collision_exits_with_1_and_names_the_pairs(cli):
     assert outcome.data["pairs"][0]["collides"] is True
     text = cli("check", "--q", FOLDED, "--angles", "deg")
     assert text.code == 1
-    assert text.out.startswith("self-collision: clearance -")
+    assert text.out.startswith("self-collision: robot qiao2021, clearance -")
     assert "collides" in text.out
 
 
@@ -53,7 +53,7 @@ def test_without_a_detector_the_output_says_not_checked(cli):
     assert outcome.code == 0
     assert (outcome.data["collision"], outcome.data["clearance_m"], outcome.data["pairs"]) == (None, None, [])
     text = cli("check", "--detector", "none")
-    assert (text.code, text.out) == (0, "self-collision not checked: detector none\n")
+    assert (text.code, text.out) == (0, "self-collision not checked: robot qiao2021, detector none\n")
 
 
 def test_a_robot_without_spheres_is_not_called_free(cli):

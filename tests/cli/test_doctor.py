@@ -39,7 +39,8 @@ def test_text_names_every_fact(cli):
     assert outcome.code == 0
     for name in FACTS:
         assert f"\n {name.removesuffix('_seconds').replace('_', ' ')} " in outcome.out
-    assert outcome.out.splitlines()[-1].startswith("all well: what this solve needs was compiled before, and the next")
+    assert outcome.out.startswith("all good: what this solve needs was compiled before, and the next")
+    assert re.search(r"^ cache is writable +yes$", outcome.out, re.MULTILINE)
     assert re.search(r"^ solve +[\d.]+ [µm]s$", outcome.out, re.MULTILINE)
 
 
@@ -49,13 +50,16 @@ WELL = {"solve_reached": True, "cache_is_writable": True, "compile_seconds": 0.0
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, "all well: what this solve needs was compiled before, and the next one takes 23.0 µs"),
-        ({"compile_seconds": 8.0}, "all well: what this solve needs is compiled now, and need not be again, and"),
-        ({"cache_is_writable": False}, "works, but the cache folder cannot be used: every process compiles anew"),
-        ({"solve_reached": False, "cache_is_writable": False}, "not well: "),
+        ({}, "all good: what this solve needs was compiled before, and the next one takes 23.0 µs"),
+        ({"compile_seconds": 8.0}, "all good: what this solve needs is compiled now, and need not be again, and"),
+        (
+            {"cache_is_writable": False},
+            "not good: the cache folder cannot be used, so every process compiles anew; set IKDE_CACHE_DIR",
+        ),
+        ({"solve_reached": False, "cache_is_writable": False}, "not good: a target"),
     ],
 )
-def test_the_last_line_is_a_verdict(changes, words):
+def test_the_first_line_is_a_verdict(changes, words):
     assert judge(WELL | changes).startswith(words)
 
 

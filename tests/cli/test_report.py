@@ -37,7 +37,7 @@ def test_the_page_goes_beside_the_answers(cli, run):
     before = contents(run)
     outcome = cli("report", run)
     assert (outcome.code, outcome.err) == (0, "")
-    assert outcome.out == f"{run / 'report' / 'report.html'}  (report.md beside it)\n"
+    assert outcome.out == f"wrote {run / 'report' / 'report.html'}\nwrote {run / 'report' / 'report.md'}\n"
     assert names(run / "report") == FILES
     assert "</html>" in (run / "report" / "report.html").read_text(encoding="utf-8")
     assert (run / "report" / "report.md").read_text(encoding="utf-8").startswith("# small\n")
@@ -75,7 +75,7 @@ def test_out_is_where_it_goes_and_other_files_stay(cli, run, tmp_path):
     (out / "notes.txt").write_text("mine")
     (out / "report.md").write_text("an earlier one")
     outcome = cli("report", run, "--out", out)
-    assert outcome.out.startswith(str(out / "report.html"))
+    assert outcome.out.startswith(f"wrote {out / 'report.html'}\n")
     assert names(out) == ["notes.txt", *FILES]
     assert (out / "notes.txt").read_text() == "mine"
     assert (out / "report.md").read_text(encoding="utf-8").startswith("# small\n")

@@ -1,5 +1,7 @@
 """`ikde robots`: list, show, validate; what is wrong with a file is one line."""
 
+import re
+
 import pytest
 
 import ikde
@@ -95,11 +97,23 @@ def test_a_good_file_is_valid(cli, tmp_path):
     assert data["collision"]["compared"] == [{"a": "box", "b": "bar", "clearance_at_home_m": pytest.approx(0.28)}]
 
 
-@pytest.mark.parametrize("command", ["show", "validate"])
-def test_pairs_are_those_of_the_detector_asked_for(cli, command):
+def test_a_robot_is_shown_with_the_number_of_its_pairs_and_how_to_see_them(cli):
+    text = cli("robots", "show", "qiao2021").out
+    assert "compares 35 pairs, 20 left out\nikde robots show --pairs names them all" in text
+    assert "M - G" not in text
+    listed = cli("robots", "show", "qiao2021", "--pairs").out
+    assert listed.startswith("robot qiao2021\ncollision: detector improved compares 35 pairs, 20 left out\n")
+    assert re.search(r"^ M - G +one body$", listed, re.MULTILINE)
+    assert "joints, " not in listed
+    assert set(cli("robots", "show", "qiao2021", "--pairs", "--json").data) == {"robot", "collision"}
+    assert "--kernels and --pairs" in cli("robots", "show", "qiao2021", "--pairs", "--kernels").err
+
+
+@pytest.mark.parametrize(("command", "options"), [("show", ()), ("show", ("--pairs",)), ("validate", ())])
+def test_pairs_are_those_of_the_detector_asked_for(cli, command, options):
     path = robot_path("qiao2021")
     for name in ("improved", "typical"):
-        asked = ("robots", command, path, *(("--detector", name) if name != "improved" else ()))
+        asked = ("robots", command, path, *options, *(("--detector", name) if name != "improved" else ()))
         assert f"collision: detector {name} compares 35 pairs, 20 left out" in cli(*asked).out
         assert cli(*asked, "--json").data["collision"]["detector"] == name
     assert cli("robots", command, path, "--detector", "none", "--json").data["collision"] is None
@@ -177,7 +191,7 @@ def test_a_robot_is_exported(cli, tmp_path, any_robot, option, function):
     assert printed.out == function(any_robot)
     path = tmp_path / "robot.xml"
     written = cli("robots", "export", any_robot.name, option, "--detector", "none", "--out", path)
-    assert (written.code, written.out, written.err) == (0, "", "")
+    assert (written.code, written.out, written.err) == (0, f"wrote {path}\n", "")
     assert path.read_text(encoding="utf-8") == function(any_robot, collision="none")
 
 

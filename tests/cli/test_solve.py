@@ -92,7 +92,7 @@ def test_the_same_seed_gives_the_same_answer_and_another_another(cli):
 def test_text_shows_verdict_joints_and_figures(cli, qiao):
     outcome = cli(*SOLVE_MM, "--angles", "deg")
     assert (outcome.code, outcome.err) == (0, "")
-    assert outcome.out.startswith("reached: within tolerance")
+    assert outcome.out.startswith("reached by qiao2021: within tolerance")
     for words in (*qiao.joint_names, "position error", "clearance", "mm", "deg", "seed 0"):
         assert words in outcome.out
     assert "\x1b" not in outcome.out
@@ -213,7 +213,9 @@ def test_fewer_solutions_than_asked_for_exit_with_1(cli, qiao):
 def test_where_no_joint_may_move_the_answer_says_so(cli, qiao):
     outcome = cli(*SOLVE, "--freeze", ",".join(qiao.joint_names))
     assert outcome.code == 1
-    assert outcome.out.startswith("not reached: no joint may move: the tool stays 0.703 m off\nwhat would help: free ")
+    assert outcome.out.startswith(
+        "not reached by qiao2021: no joint may move: the tool stays 0.703 m off\nwhat would help: free "
+    )
     assert "none: no joint may move" in outcome.out
     data = cli(*SOLVE, "--freeze", ",".join(qiao.joint_names), "--json").data
     assert (data["method"], data["attempts"], data["evaluations"]) == ("none", 1, 1)
@@ -244,7 +246,7 @@ def test_an_unreachable_target_exits_with_1_and_says_why(cli):
     assert outcome.data["hint"]
     text = cli("solve", "--position", 0, 0, 5)
     assert text.code == 1
-    assert text.out.startswith("not reached: out of reach")
+    assert text.out.startswith("not reached by qiao2021: out of reach")
     assert "what would help" in text.out
 
 

@@ -36,8 +36,8 @@ def test_a_path_is_followed_into_a_folder(cli, spec, tmp_path):
     out = tmp_path / "runs" / "a"
     outcome = cli("track", spec, "--out", out)
     assert outcome.code == 0, outcome
-    assert outcome.out.startswith("followed: 6 of 6 points of short, 0.12 s, differential\n")
-    assert f"files   {out}: report.html, summary.json" in outcome.out
+    assert outcome.out.startswith("followed: 6 of 6 points of short by qiao2021, 0.12 s, differential\n")
+    assert [f"wrote {out / name}" in outcome.out for name in ("report.html", "summary.json", "base.yaml")] == [True] * 3
     assert names(out) == FILES
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "</html>" in page
@@ -74,7 +74,7 @@ def cart(spec):
 def test_a_robot_of_ones_own_needs_no_wheels(cli, cart, tmp_path):
     outcome = cli("track", cart, "--out", tmp_path / "a")
     assert outcome.code == 0, outcome
-    assert outcome.out.startswith("followed: 6 of 6 points of short, 0.12 s, differential\n")
+    assert outcome.out.startswith("followed: 6 of 6 points of short by qiao2021, 0.12 s, differential\n")
     assert "wheel" not in outcome.out
     assert names(tmp_path / "a") == FILES
     for file in ("base.yaml", "trajectory.csv"):
@@ -105,7 +105,7 @@ def test_a_first_pose_out_of_reach_leaves_a_page_without_a_motion(cli, spec, tmp
     spec.write_text(SPEC.replace("z: 0.9", "z: 9"))
     outcome = cli("track", spec, "--out", tmp_path / "a")
     assert outcome.code == 1
-    assert outcome.out.startswith("stopped after 0 of 6 points of short\nsample 0 (0 s): at least ")
+    assert outcome.out.startswith("stopped after 0 of 6 points of short by qiao2021\nsample 0 (0 s): at least ")
     assert names(tmp_path / "a") == ["report.html", "summary.json"]
 
 

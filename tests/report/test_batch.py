@@ -77,8 +77,8 @@ PREVIEW = Preview(
 
 def test_a_run_opens_with_the_verdict_and_ends_with_what_is_next():
     text = format_run(SUMMARY)
-    assert text.startswith("1 of 2,000 solves not reached\n")
-    assert text.endswith("answers    runs/a\nnext       ikde report runs/a")
+    assert text.startswith("1 of 2,000 solves not reached by qiao2021\n")
+    assert text.endswith("wrote runs/a (2 parts)\nnext: ikde report runs/a")
 
 
 def test_each_arm_has_its_figures():
@@ -143,7 +143,7 @@ def test_without_a_reason_the_word_for_it_is_given():
 def test_all_reached_is_said_in_a_line():
     arm = replace(ARM, reached=Rate(1, 1), collisions={}, attempts=None, milliseconds=None, listed=())
     text = format_run(replace(SUMMARY, arms=(arm,)))
-    assert text.startswith("all reached: 1 solve\n")
+    assert text.startswith("all reached by qiao2021: 1 solve\n")
     assert "not reached" not in text
     assert "graded" not in text
 

@@ -13,7 +13,7 @@ M_RAD, MM_DEG = Units(), Units("mm", "deg")
 
 
 def frames_text(robot, q, units, outside=()):
-    return format_forward(ikde.forward(robot, q), outside, units)
+    return format_forward(robot, ikde.forward(robot, q), outside, units)
 
 
 def rows(text):
@@ -52,15 +52,15 @@ def test_there_is_no_minus_zero(any_robot):
 @pytest.mark.parametrize("units", [M_RAD, MM_DEG])
 def test_headers_name_the_unit(qiao, units):
     assert f"x [{units.length}]" in frames_text(qiao, qiao.home, units)
-    assert f"clearance [{units.length}]" in format_check(ikde.check(qiao, qiao.home), units)
+    assert f"clearance [{units.length}]" in format_check(qiao, ikde.check(qiao, qiao.home), units)
 
 
 def test_joints_outside_are_named(qiao):
     q = qiao.home
     q[0] = 6.0
     assert "outside the limits: d_x" in frames_text(qiao, q, M_RAD, ("d_x",))
-    assert "outside the limits: d_x" in format_check(ikde.check(qiao, q), M_RAD)
-    assert "outside the limits: d_x" in format_check(ikde.check(qiao, q, "none"), M_RAD)
+    assert "outside the limits: d_x" in format_check(qiao, ikde.check(qiao, q), M_RAD)
+    assert "outside the limits: d_x" in format_check(qiao, ikde.check(qiao, q, "none"), M_RAD)
 
 
 def test_a_tool_of_another_name_is_called_tool():
@@ -84,7 +84,7 @@ def test_a_check_without_a_detector_has_nulls(qiao):
 
 def test_every_pair_is_a_line_worst_first(qiao):
     result = ikde.check(qiao, qiao.home)
-    lines = [line.split() for line in format_check(result, MM_DEG).splitlines() if " - " in line]
+    lines = [line.split() for line in format_check(qiao, result, MM_DEG).splitlines() if " - " in line]
     assert [(words[0], words[2]) for words in lines] == [(pair.a, pair.b) for pair in result.pairs]
     assert [float(words[3]) for words in lines] == pytest.approx(
         [pair.clearance_m * 1e3 for pair in result.pairs], abs=0.0051
@@ -92,21 +92,21 @@ def test_every_pair_is_a_line_worst_first(qiao):
 
 
 def test_the_verdict_comes_first(qiao):
-    free = format_check(ikde.check(qiao, qiao.home), MM_DEG)
-    assert free.startswith("free of self-collision: clearance ")
+    free = format_check(qiao, ikde.check(qiao, qiao.home), MM_DEG)
+    assert free.startswith("free of self-collision: robot qiao2021, clearance ")
     q = qiao.home
     q[4:6] = 2.6, 2.6
-    colliding = format_check(ikde.check(qiao, q), MM_DEG)
-    assert colliding.startswith("self-collision: clearance -")
+    colliding = format_check(qiao, ikde.check(qiao, q), MM_DEG)
+    assert colliding.startswith("self-collision: robot qiao2021, clearance -")
     assert "collides" in colliding
     assert "collides" not in free
 
 
 def test_a_safe_distance_is_named(qiao):
     judge = ikde.Detector(name="mine", spheres="typical", pairs="arm_arm", safe_distance_m=0.025)
-    assert "safe distance 25 mm" in format_check(ikde.check(qiao, qiao.home, judge), MM_DEG)
+    assert "safe distance 25 mm" in format_check(qiao, ikde.check(qiao, qiao.home, judge), MM_DEG)
 
 
 def test_no_detector_is_not_called_free(qiao):
-    text = format_check(ikde.check(qiao, qiao.home, "none"), M_RAD)
-    assert text == "self-collision not checked: detector none"
+    text = format_check(qiao, ikde.check(qiao, qiao.home, "none"), M_RAD)
+    assert text == "self-collision not checked: robot qiao2021, detector none"

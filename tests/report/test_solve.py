@@ -89,9 +89,9 @@ def test_what_graded_is_said_as_it_was(qiao, result, verified, words):
 
 
 def test_text_says_the_verdict_first(qiao, result, blocked):
-    assert format_solve(qiao, result, Units()).startswith("reached: ")
+    assert format_solve(qiao, result, Units()).startswith("reached by qiao2021: ")
     text = format_solve(qiao, blocked, Units())
-    assert text.startswith("not reached: only colliding solutions")
+    assert text.startswith("not reached by qiao2021: only colliding solutions")
     helped, helpless = (format_solve(qiao, blocked.with_changes(hint=hint), Units()) for hint in ("free d_x: so", None))
     assert "what would help: free d_x: so" in helped
     assert "what would help" not in helpless
@@ -160,7 +160,7 @@ def test_several_solutions_tell_once_what_they_took_together(qiao, result):
     results, spent = [result.with_changes(compile_seconds=3.0)] * 3, Spent(solve_seconds=0.0123, compile_seconds=3.0)
     text = format_solutions(qiao, results, Units(), spent)
     assert [line for line in text.splitlines() if line.startswith("solution ")] == [
-        f"solution {k} of 3" for k in (1, 2, 3)
+        f"solution {k} of 3, robot qiao2021" for k in (1, 2, 3)
     ]
     assert text.endswith("\n\ntogether 12.3 ms, with loading and grading, after 3.0 s of compiling")
     assert "compiled first" not in text

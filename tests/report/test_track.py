@@ -29,7 +29,7 @@ def plan():
 
 def test_a_followed_path_is_green_with_its_figures(qiao, plan):
     text = format_track(plan, make_measured(qiao))
-    assert text.startswith("followed: 20 of 20 points of wave [1], 0.4 s, differential\n")
+    assert text.startswith("followed: 20 of 20 points of wave [1] by qiao2021, 0.4 s, differential\n")
     rows = {name: (value, asked) for name, value, asked in list_figures(make_measured(qiao))}
     assert rows["points reached"] == ("20", "20")
     assert rows["largest error along x / y / z"] == ("0 / 0 / 0 mm", "0.001 mm")
@@ -42,7 +42,7 @@ def test_a_followed_path_is_green_with_its_figures(qiao, plan):
 def test_a_stop_is_the_second_line(qiao, plan):
     motion = make_measured(qiao, further=5, stop=STOP)
     lines = format_track(plan, motion).splitlines()
-    assert lines[:2] == ["stopped after 20 of 25 points of wave [1]", STOP.text]
+    assert lines[:2] == ["stopped after 20 of 25 points of wave [1] by qiao2021", STOP.text]
     data = track_json(plan, motion)
     assert (data["reached"], data["stop"]["reason"], data["stop"]["pair"]) == (False, "collision", ("J4", "J6"))
 
@@ -50,7 +50,7 @@ def test_a_stop_is_the_second_line(qiao, plan):
 def test_broken_limits_are_counted(qiao, plan):
     motion = make_measured(qiao, amplitude=2.6)
     text = format_track(plan, motion)
-    assert text.startswith("followed 20 of 20 points of wave [1], against its limits: ")
+    assert text.startswith("followed 20 of 20 points of wave [1] by qiao2021, against its limits: ")
     assert f"collision {motion.grade.violations.collision} times" in text
     assert track_json(plan, motion)["accepted"] is False
 
@@ -179,7 +179,9 @@ def test_a_base_whose_wheels_are_not_known_still_drives_on_arcs(qiao, plan):
 
 def test_a_robot_that_stands_still_has_a_fixed_base(plan):
     motion = make_still(ikde.load_robot("ur5"), detector="none", speed=None)
-    assert format_track(plan, motion).startswith("followed: 20 of 20 points of wave [1], 0.4 s, fixed base, self")
+    assert format_track(plan, motion).startswith(
+        "followed: 20 of 20 points of wave [1] by ur5, 0.4 s, fixed base, self"
+    )
 
 
 @pytest.mark.parametrize(("value", "told"), [(0.1749, "0.175"), (2e-12, "2.00e-12"), (1.8e-18, "0"), (0.0, "0")])
