@@ -5,11 +5,11 @@ from typing import Annotated, Literal, get_args
 from pydantic import ConfigDict, Field
 
 from ikde.formats.entries import (
+    AnyTarget,
     Count,
     DetectorChoice,
     Entry,
     FileEntry,
-    InlineTarget,
     Interval,
     Number,
     OrientationEntry,
@@ -84,7 +84,7 @@ class TargetsEntry(Entry):
     """Where targets come from: exactly one key."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
-    inline: Annotated[list[InlineTarget], Field(min_length=1)] | None = None
+    inline: Annotated[list[AnyTarget], Field(min_length=1)] | None = None
     """A list, written here."""
     file: FileEntry | None = None
     """A table: CSV, Parquet or NPZ."""

@@ -11,6 +11,7 @@ from ikde import __version__
 from ikde.cli.batch import batch
 from ikde.cli.bench import bench
 from ikde.cli.check import check
+from ikde.cli.completion import completion, prepare_completion
 from ikde.cli.doctor import doctor
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.fk import fk
@@ -58,7 +59,7 @@ def root(
     """
 
 
-for command in (solve, fk, check, batch, report, track, schema, warmup, doctor):
+for command in (solve, fk, check, batch, report, track, schema, warmup, doctor, completion):
     app.command(cls=Command)(command)
 app.add_typer(robots, name="robots")
 app.add_typer(bench, name="bench")
@@ -76,12 +77,15 @@ def run_and_exit() -> NoReturn:
 
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code and turns every error into one line on stderr."""
+    prepare_completion()
     try:
         code = int(app(regroup(arguments), prog_name="ikde", standalone_mode=False) or ExitCode.OK)
     except BaseException as error:
         if _reader_has_gone(error):  # `ikde check | head` has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return ExitCode.OK
+        if isinstance(error, SystemExit):  # a shell has its answer
+            return int(error.code or ExitCode.OK)
         code, line = explain_error(error)
         for each in filter(None, (line, *getattr(error, "__notes__", ()))):
             print_note(each if each == line else f"ikde: {each}")

@@ -9,7 +9,7 @@ from ikde.cli.output import layout, print_json, print_result
 
 def check(
     q: options.QOption = None,
-    robot: options.RobotOption = "qiao2021",
+    robot: options.RobotOption = options.DEFAULT_ROBOT,
     detector: options.DetectorOption = None,
     pairs: options.PairsOption = None,
     safe_distance: options.SafeDistanceOption = None,

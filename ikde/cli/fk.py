@@ -6,7 +6,7 @@ from ikde.cli.output import layout, print_json, print_result
 
 def fk(
     q: options.QOption = None,
-    robot: options.RobotOption = "qiao2021",
+    robot: options.RobotOption = options.DEFAULT_ROBOT,
     detector: options.DetectorOption = None,
     unit: options.UnitOption = options.LengthUnit.m,
     angles: options.AnglesOption = options.AngleUnit.rad,

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from ikde.cli.candidates import DEFAULT_ROBOT as DEFAULT_ROBOT
+from ikde.cli.candidates import ROBOT, offer_joints, offer_robots, offer_section
 from ikde.cli.output import print_note, print_written, use_color
 
 if TYPE_CHECKING:
@@ -39,36 +41,61 @@ FRAMED = 70  # columns from which on a command's help has frames
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 OUTPUT = "Units and output"
-ROBOT = "IKDE_ROBOT"
-"""Environment variable: the robot where none is named."""
 of_target = partial(typer.Option, rich_help_panel="Target")  # headings of the help, in the order of the options
 of_robot = partial(typer.Option, rich_help_panel="Robot")
 of_collision = partial(typer.Option, rich_help_panel="Collision")
 of_search = partial(typer.Option, rich_help_panel="Search")
 of_output = partial(typer.Option, rich_help_panel=OUTPUT)
 
-RobotOption = Annotated[str, of_robot(metavar="NAME|FILE", envvar=ROBOT, help="A robot of `ikde robots`, or its file.")]
+RobotOption = Annotated[
+    str,
+    of_robot(
+        metavar="NAME|FILE", envvar=ROBOT, autocompletion=offer_robots, help="A robot of `ikde robots`, or its file."
+    ),
+]
 RobotArgument = Annotated[
-    str, typer.Argument(metavar="NAME|FILE", envvar=ROBOT, help="A robot of `ikde robots list`, or its file.")
+    str,
+    typer.Argument(
+        metavar="NAME|FILE",
+        envvar=ROBOT,
+        autocompletion=offer_robots,
+        help="A robot of `ikde robots list`, or its file.",
+    ),
 ]
 QOption = Annotated[
     str | None,
     of_robot(
         metavar="Q",
+        autocompletion=offer_joints("="),
         help="Joint values: numbers, name=value pairs (joints left out are at home), or a file (default: home).",
     ),
 ]
 DetectorOption = Annotated[
-    str | None, of_collision(metavar="NAME|none", help="What counts as self-collision (default: the robot's).")
+    str | None,
+    of_collision(
+        metavar="NAME|none",
+        autocompletion=offer_section("detectors", "none"),
+        help="What counts as self-collision (default: the robot's).",
+    ),
 ]
 PairsOption = Annotated[
-    str | None, of_collision(metavar="LIST", help="Pair list instead of the detector's, e.g. non_adjacent.")
+    str | None,
+    of_collision(
+        metavar="LIST",
+        autocompletion=offer_section("pairs", "non_adjacent"),
+        help="Pair list instead of the detector's, e.g. non_adjacent.",
+    ),
 ]
 SafeDistanceOption = Annotated[float | None, of_collision(help="Clearance at which collision begins, in --unit.")]
 UnitOption = Annotated[LengthUnit, of_output(help="Unit of lengths, in and out.")]
 AnglesOption = Annotated[AngleUnit, of_output(help="Unit of angles, in and out.")]
 ConventionOption = Annotated[
-    str | None, of_output(metavar="NAME", help="Convention of joint values, in and out (default: the robot's own).")
+    str | None,
+    of_output(
+        metavar="NAME",
+        autocompletion=offer_section("conventions"),
+        help="Convention of joint values, in and out (default: the robot's own).",
+    ),
 ]
 JsonOption = Annotated[bool, of_output("--json", help="Print JSON, always in m, rad and s.")]
 PlotOption = Annotated[Path | None, of_output(metavar="FILE", help="Draw robot and spheres (.png, .svg, .pdf).")]

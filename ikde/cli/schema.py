@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from ikde.cli.candidates import offer
 from ikde.cli.output import print_json
 
 MODELS = {
@@ -14,7 +15,11 @@ MODELS = {
 }
 
 
-def schema(name: Annotated[str | None, typer.Argument(metavar="|".join(MODELS), show_default=False)] = None) -> None:
+def schema(
+    name: Annotated[
+        str | None, typer.Argument(metavar="|".join(MODELS), show_default=False, autocompletion=offer(*MODELS))
+    ] = None,
+) -> None:
     """Print the JSON schema of a kind of file: editors complete its keys and explain them.
 
     Example: ikde schema batch > batch.schema.json

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli import options
+from ikde.cli.candidates import offer, offer_joints
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import layout, print_json, print_note, print_result, working
@@ -39,15 +40,27 @@ OrientationToleranceOption = Annotated[
     float | None, of_target(help="Orientation tolerance, in --angles (default: 1e-4 rad).")
 ]
 NearOption = Annotated[
-    str | None, of_robot(metavar="Q", help="Stay near these joint values (as --q of check): no small change is nearer.")
+    str | None,
+    of_robot(
+        metavar="Q",
+        autocompletion=offer_joints("="),
+        help="Stay near these joint values (as --q of check): no small change is nearer.",
+    ),
 ]
 FreezeOption = Annotated[
-    str | None, of_robot(metavar="J=V,J", help="Joints that must not move; without a value: from --near, else home.")
+    str | None,
+    of_robot(
+        metavar="J=V,J",
+        autocompletion=offer_joints(),
+        help="Joints that must not move; without a value: from --near, else home.",
+    ),
 ]
 WeightsOption = Annotated[
     str | None,
     of_robot(
-        metavar="J=W,..", help="Weights of joints in the motion, per m or rad (default: 1 / range; 1 / m of a base)."
+        metavar="J=W,..",
+        autocompletion=offer_joints("="),
+        help="Weights of joints in the motion, per m or rad (default: 1 / range; 1 / m of a base).",
     ),
 ]
 SeedOption = Annotated[int, of_search(help="Same seed, same answer.")]
@@ -55,10 +68,12 @@ CountOption = Annotated[int, of_search(metavar="K", help="Distinct solutions to 
 RankOption = Annotated[
     str,
     of_search(
-        metavar="ORDER", help="Order of several: motion (least from --near, else home), clearance, limits, found."
+        metavar="ORDER",
+        autocompletion=offer("motion", "clearance", "limits", "found"),
+        help="Order of several: motion (least from --near, else home), clearance, limits, found.",
     ),
 ]
-MethodOption = Annotated[str, of_search(metavar="NAME", help=f"{METHODS}.")]
+MethodOption = Annotated[str, of_search(metavar="NAME", autocompletion=offer("auto", *ENGINES), help=f"{METHODS}.")]
 RestartsOption = Annotated[int | None, of_search(metavar="N", help="Attempts before the budget is spent.")]
 TimeoutOption = Annotated[
     float | None,
@@ -83,7 +98,7 @@ def solve(
     axis: AxisOption = None,
     tolerance: ToleranceOption = None,
     orientation_tolerance: OrientationToleranceOption = None,
-    robot: options.RobotOption = "qiao2021",
+    robot: options.RobotOption = options.DEFAULT_ROBOT,
     near: NearOption = None,
     freeze: FreezeOption = None,
     weights: WeightsOption = None,

@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ikde.cli.options import DetectorOption, JsonOption, RobotOption, read_robot
+from ikde.cli.options import DEFAULT_ROBOT, DetectorOption, JsonOption, RobotOption, read_robot
 from ikde.cli.output import is_live, layout, note_console, print_json, print_note, print_result
 
 if TYPE_CHECKING:
     from ikde.solver.warmup import Stage
 
 
-def warmup(robot: RobotOption = "qiao2021", detector: DetectorOption = None, as_json: JsonOption = False) -> None:
+def warmup(robot: RobotOption = DEFAULT_ROBOT, detector: DetectorOption = None, as_json: JsonOption = False) -> None:
     """Compile the kernels of a robot ahead: all engines and kinds of target, and tracks; seconds if that is done.
 
     Example: ikde warmup --robot ur5

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from ikde.errors import InputError
 from ikde.formats.names import Name, Text
@@ -80,6 +80,14 @@ class InlineTarget(OrientationEntry):
     """Where the tool should be."""
     name: Name | None = None
     """What to call it in the results."""
+
+
+def _as_target(value: Any) -> Any:
+    return {"position": value} if isinstance(value, list) else value
+
+
+AnyTarget = Annotated[InlineTarget, BeforeValidator(_as_target, json_schema_input_type=InlineTarget | Vector)]
+"""A target, or its position alone: `[x, y, z]`."""
 
 
 class ColumnsEntry(Entry):

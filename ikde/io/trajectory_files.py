@@ -17,6 +17,7 @@ from ikde.errors import InputError
 from ikde.formats.atomic import replace_all
 from ikde.io.report_folder import prepare_folder
 from ikde.kernels.arrays import Floats
+from ikde.model.robot import WORLD
 from ikde.track.trajectory import Trajectory
 
 Format = Literal["csv", "parquet", "yaml", "json"]
@@ -35,7 +36,7 @@ def write_trajectory(
     trajectory: Trajectory,
     formats: Sequence[Format] = FORMATS,
     *,
-    velocities: bool = False,
+    velocities: bool = True,
 ) -> tuple[Path, ...]:
     """Write a motion into a folder; what an earlier one left there in these formats is replaced or removed.
 
@@ -118,14 +119,16 @@ def trajectory_table(trajectory: Trajectory) -> pa.Table:
     return pa.table({name: np.ascontiguousarray(column) for name, column in columns.items()})
 
 
-def joint_trajectory(trajectory: Trajectory, *, velocities: bool = False) -> dict[str, Any]:
+def joint_trajectory(trajectory: Trajectory, *, velocities: bool = True) -> dict[str, Any]:
     """The arm's motion as a `trajectory_msgs/JointTrajectory`, plain data.
 
-    Without velocities ROS's joint_trajectory_controller interpolates linearly between points: that is the motion of a
-    `Trajectory`. With them, each the even speed to the next point, it bends a cubic through the points.
+    With velocities ROS's joint_trajectory_controller runs a cubic through the points: each is the mean of the steps
+    before and after the point, that of the first one is its step's, and the last one is 0. Without them it runs linearly
+    between the points, as a `Trajectory` does. Accelerations are unknown: those of linear steps are jumps. The frame is
+    the one in which `base_motion` has the base.
     """
     arm = [index for index, name in enumerate(trajectory.joint_names) if name not in trajectory.base_joints]
-    speeds = _until_next(trajectory.joint_speeds)
+    speeds = _at_samples(trajectory.joint_speeds)
     points = [
         {
             "positions": q.tolist(),
@@ -136,7 +139,7 @@ def joint_trajectory(trajectory: Trajectory, *, velocities: bool = False) -> dic
         }
         for k, (q, speed) in enumerate(zip(trajectory.q[:, arm], speeds[:, arm], strict=True))
     ]
-    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}
+    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": WORLD}
     return {"header": header, "joint_names": [trajectory.joint_names[index] for index in arm], "points": points}
 
 
@@ -166,6 +169,13 @@ def _twist(trajectory: Trajectory) -> dict[str, Floats]:
 def _until_next(speeds: Floats) -> Floats:
     """Speeds of the M steps as rows of M + 1 samples: after the last one the robot stands."""
     return np.concatenate([speeds, np.zeros_like(speeds[:1], shape=(1, *speeds.shape[1:]))])
+
+
+def _at_samples(speeds: Floats) -> Floats:
+    """Speeds at the M + 1 samples, from those of the M steps between them."""
+    rows = _until_next(speeds)
+    rows[1:-1] = 0.5 * (speeds[:-1] + speeds[1:])
+    return rows
 
 
 def _duration(k: int, dt_s: float) -> dict[str, int]:

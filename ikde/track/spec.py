@@ -5,10 +5,10 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from ikde.formats.entries import (
+    AnyTarget,
     DetectorChoice,
     Entry,
     FileEntry,
-    InlineTarget,
     Interval,
     Number,
     OrientationEntry,
@@ -115,8 +115,8 @@ class PathEntry(Entry):
     """Formulas over k and N."""
     curve: CurveEntry | None = None
     """Lines, arcs and splines."""
-    waypoints: Annotated[list[InlineTarget], Field(min_length=2)] | None = None
-    """A list of poses, written here: straight lines between them, shortest rotations between them."""
+    waypoints: Annotated[list[AnyTarget], Field(min_length=2)] | None = None
+    """A list of poses, or [x, y, z] each, written here: straight lines between them, turns on the shortest way."""
     file: FileEntry | None = None
     """A table of waypoints: CSV, Parquet or NPZ."""
 

@@ -174,3 +174,18 @@ def test_nothing_that_is_written_ends_in_a_traceback(whole, data, value):
         load_track(changed)
     except InputError as error:
         assert "\n" not in str(error)
+
+
+def test_waypoints_may_be_positions_alone(tmp_path):
+    head = "robot: qiao2021\nunits: {length: mm}\ndt_s: 0.02\nsamples: 4\npath:\n  waypoints:\n"
+    paths = []
+    for name, rows in {
+        "plain": ("[900, 0, 920]", "[900, 100, 920]"),
+        "named": ("{position: [900, 0, 920]}", "{position: [900, 100, 920]}"),
+    }.items():
+        file = tmp_path / f"{name}.yaml"
+        file.write_text(head + "".join(f"    - {row}\n" for row in rows))
+        paths.append(load_track(file).path.p_world_tool)
+    np.testing.assert_array_equal(*paths)
+    bad = complaint(f"{head}    - [900, 0, 920]\n    - [900, x, 920]\n", tmp_path)
+    assert bad == "track.yaml:8 → path.waypoints[1][1]: expected a number, got 'x'"

@@ -92,10 +92,19 @@ def test_the_arm_is_a_ros_message():
     keys = ["positions", "velocities", "accelerations", "effort", "time_from_start"]
     assert [list(point) for point in message["points"]] == [keys] * 5
     assert message["points"][3]["time_from_start"] == {"sec": 0, "nanosec": 60_000_000}
-    assert message["points"][1]["velocities"] == []
-    with_speeds = joint_trajectory(make_motion(), velocities=True)["points"]
-    assert with_speeds[0]["velocities"][0] == pytest.approx(0.5)
-    assert with_speeds[-1]["velocities"] == [0.0, 0.0]
+    assert message["header"]["frame_id"] == "world"
+    assert message["points"][0]["velocities"][0] == pytest.approx(0.5)
+    assert message["points"][-1]["velocities"] == [0.0, 0.0]
+    assert {tuple(point["accelerations"]) for point in message["points"]} == {()}
+    assert joint_trajectory(make_motion(), velocities=False)["points"][1]["velocities"] == []
+
+
+def test_a_velocity_is_the_mean_of_the_steps_around_it():
+    motion = make_motion()
+    q = motion.q.copy()
+    q[:, motion.joint_names.index("q1")] = [0.0, 0.02, 0.06, 0.06, 0.08]
+    points = joint_trajectory(replace(motion, q=q))["points"]
+    assert [point["velocities"][0] for point in points] == pytest.approx([1.0, 1.5, 1.0, 0.5, 0.0])
 
 
 @pytest.mark.parametrize("dt_s", [0.02, 1 / 3, 0.7, 1e-3])

@@ -1,0 +1,41 @@
+"""`ikde completion`: commands, options and names, completed by the shell."""
+
+import os
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from ikde.cli.output import print_result
+
+VARIABLE = "_IKDE_COMPLETE"
+"""What a shell sets when it asks."""
+
+
+class Shell(StrEnum):
+    """Shells that ask."""
+
+    bash = "bash"
+    zsh = "zsh"
+    fish = "fish"
+
+
+def completion(shell: Annotated[Shell, typer.Argument(show_default=False)]) -> None:
+    """Print what makes a shell complete commands, options, and names of robots, joints and detectors.
+
+    bash, in ~/.bashrc: eval "$(ikde completion bash)". zsh, in ~/.zshrc after compinit: eval "$(ikde completion zsh)".
+    fish: ikde completion fish > ~/.config/fish/completions/ikde.fish
+
+    Example: ikde completion bash >> ~/.bashrc
+    """
+    from typer.completion import get_completion_script
+
+    print_result(get_completion_script(prog_name="ikde", complete_var=VARIABLE, shell=shell.value))
+
+
+def prepare_completion() -> None:
+    """Make typer answer shells, if one is asking."""
+    if VARIABLE in os.environ:
+        from typer.completion import completion_init
+
+        completion_init()
