@@ -11,7 +11,11 @@ from typing import Literal
 Align = Literal["left", "right"]
 Mark = Literal["", "published", "ours", "off"]
 
+TimeBox = tuple[float, float, float, float, float, float]
+"""A chart over time: left, right, top and bottom in units of its SVG, and the times in s at its left and right."""
+
 MAX_ROOMY_COLUMNS = 12
+TEXT_WIDTH, CELL_PADDING, WRAPPED = 78, 4, 24  # letters of a line of text, between columns, and in a cell that wraps
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +118,18 @@ class Table:
         """True if it is shown in small print, to fit."""
         return len(self.columns) > MAX_ROOMY_COLUMNS
 
+    @property
+    def is_wide(self) -> bool:
+        """True if it takes more than the width of the text: all that there is then."""
+        heads = [len(column.head.removeprefix(f"{column.group}: ")) for column in self.columns]
+        longest = [max(map(len, column)) for column in zip(*self.texts(), strict=True)] or [0] * len(heads)
+        widths = [max(head, min(cell, WRAPPED)) for head, cell in zip(heads, longest, strict=True)]
+        return sum(widths) + CELL_PADDING * len(widths) > TEXT_WIDTH
+
+    def texts(self) -> list[list[str]]:
+        """What all cells say."""
+        return [[cell if isinstance(cell, str) else cell.text for cell in row] for row in self.rows]
+
     def cells(self) -> list[list[Cell]]:
         """All cells, each with the mark it is shown with."""
         marks: list[Mark] = [column.mark for column in self.columns]
@@ -135,6 +151,8 @@ class Figure:
     image: str | bytes = field(repr=False)
     alt: str
     caption: str = ""
+    time_boxes: tuple[TimeBox, ...] = ()
+    """Of an SVG: the charts over time in it, in which the moment of an animation is marked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
