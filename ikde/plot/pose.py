@@ -16,7 +16,13 @@ MESH = 24  # facets around a sphere
 MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
 GRID_M = 0.5
 LINK_PT, BASE_ALPHA = 6.0, 0.05
-VIEWS = {"right": (16.0, -68.0), "left": (16.0, 68.0), "front": (12.0, 15.0), "side": (0.0, -90.0), "top": (90.0, -90.0)}
+VIEWS = {
+    "right": (16.0, -68.0),
+    "left": (16.0, 68.0),
+    "front": (12.0, 15.0),
+    "side": (0.0, -90.0),
+    "top": (90.0, -90.0),
+}
 """Elevation in deg, and the azimuth from the base's heading."""
 SOLID = "-", "-", "-"
 DASHES = ":", "-", "--"  # of the x, y and z axes, so that they differ without colour

@@ -4,6 +4,7 @@ Fields that hold *markup* (`markup.py`) say so; titles, labels and table cells a
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import chain, count, groupby
 from typing import Literal
@@ -173,7 +174,15 @@ class Gallery:
     """Three to a row instead of two."""
 
 
-Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery
+@dataclass(frozen=True, slots=True)
+class Details:
+    """Blocks below a line of text, shown when it is opened."""
+
+    summary: str
+    blocks: tuple[Text | Facts | Code | Table | Figure | Animation, ...]
+
+
+Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery | Details
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,8 +208,7 @@ class Page:
     def moves(self) -> bool:
         """True if it holds an animation."""
         blocks = chain(self.lead, *(section.blocks for section in self.sections))
-        shown = chain.from_iterable(block.figures if isinstance(block, Gallery) else (block,) for block in blocks)
-        return any(isinstance(block, Animation) for block in shown)
+        return any(isinstance(block, Animation) for block in chain.from_iterable(map(_unfold, blocks)))
 
     def anchors(self) -> list[str]:
         """One anchor a section, each of them once: given, or made from the title."""
@@ -210,6 +218,15 @@ class Page:
             choices = chain([anchor], (f"{anchor}-{number}" for number in count(2)))
             taken.append(next(choice for choice in choices if choice not in taken))
         return taken
+
+
+def _unfold(block: Block) -> Sequence[Block]:
+    match block:
+        case Gallery(figures):
+            return figures
+        case Details(_, blocks):
+            return blocks
+    return (block,)
 
 
 def slug(title: str) -> str:

@@ -200,7 +200,9 @@ def _tell_error(motion: TrackSummary) -> list[Block]:
     if graded.largest_axis_error_m >= NEGLIGIBLE_M:
         return []
     asked = length(motion.limits.position_error_m)
-    return [Text(f"At every sample the tool is on the path: less than 1 nm off along each axis, {asked} being allowed.")]
+    return [
+        Text(f"At every sample the tool is on the path: less than 1 nm off along each axis, {asked} being allowed.")
+    ]
 
 
 def _make_measured(motion: TrackSummary) -> Table:

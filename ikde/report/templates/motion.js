@@ -84,6 +84,7 @@ function drawView(c, motion, view, frame, ink, soft) {
   drawBody(c, motion, view, frame, ink);
   c.globalAlpha = 1; stroke(c, path.slice(0, motion.done[frame]), motion.colors.target, 2.2);
   dot(c, view.at(motion.links_mm[frame].at(-1)), 3.5, motion.colors.target);
+  if (path.length === 1) { c.beginPath(); c.arc(...path[0], 7, 0, 7); c.strokeStyle = motion.colors.target; c.lineWidth = 2.5; c.stroke(); }
 }
 // Lines that mark the moment in charts over time; a drag in such a chart moves all to another.
 const players = [], cursors = [];
@@ -118,7 +119,7 @@ function setUp(figure) {
   const [canvas, button, slider, speed, clock] = ["canvas", "button", "input", "select", "output"].map((name) => figure.querySelector(name));
   const last = motion.times_s.length - 1, home = [-.9, .4];
   let layout, playing = 0, fitted = 0, eye = [...home];
-  slider.max = last;
+  slider.max = last; figure.querySelector(".player").hidden = !last;
   SPEEDS.forEach((times) => speed.add(new Option(`${times}×`, times, times === 1, times === 1)));
   const draw = () => {
     if (!layout) return;
