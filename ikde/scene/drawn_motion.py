@@ -48,7 +48,7 @@ def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp])
 
 
 def draw_still(collision: CollisionModel, q: Floats, target_m: Sequence[float]) -> DrawnMotion:
-    """The robot at one configuration [N], as a motion that takes no time; its path is the target [3], if there is one."""
+    """The robot at one configuration [N], as a motion that takes no time; its path is the target [3], or empty."""
     return DrawnMotion(
         robot=draw_robot(collision, q[None], compute_gaps(collision, q)[None]),
         samples=np.zeros(1, np.intp),

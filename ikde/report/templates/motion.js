@@ -57,10 +57,10 @@ function dot(c, [x, y], radius, color) {
 }
 const roleOf = (motion, frame, part) => Object.keys(motion.colors)[motion.roles[frame][part]];
 function drawGround(c, view, soft) {
-  const [low, high] = [Math.floor, Math.ceil].map((round, k) => [view.low, view.high][k].map((x) => GRID_MM * round(x / GRID_MM)));
+  const {low, high} = view, first = (k) => GRID_MM * Math.ceil(low[k] / GRID_MM);
   c.globalAlpha = .35;
-  for (let x = low[0]; x <= high[0]; x += GRID_MM) stroke(c, [[x, low[1], 0], [x, high[1], 0]].map((p) => view.at(p)), soft, .6);
-  for (let y = low[1]; y <= high[1]; y += GRID_MM) stroke(c, [[low[0], y, 0], [high[0], y, 0]].map((p) => view.at(p)), soft, .6);
+  for (let x = first(0); x <= high[0]; x += GRID_MM) stroke(c, [[x, low[1], 0], [x, high[1], 0]].map((p) => view.at(p)), soft, .6);
+  for (let y = first(1); y <= high[1]; y += GRID_MM) stroke(c, [[low[0], y, 0], [high[0], y, 0]].map((p) => view.at(p)), soft, .6);
 }
 // Spheres and the links as capsules, far ones first.
 function drawBody(c, motion, view, frame, ink) {
