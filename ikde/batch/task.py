@@ -9,10 +9,11 @@ import pyarrow as pa
 from ikde.batch.columns import keep_own_words, make_solutions, make_timing
 from ikde.batch.parts import Part
 from ikde.batch.plan import Arm, Batch
+from ikde.kernels.arrays import Ints
 from ikde.model.robot import Detector
 from ikde.model.target import Targets
 from ikde.solver.background import WAIT, compile_way
-from ikde.solver.results import solve_rows
+from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions
 
 
@@ -60,22 +61,36 @@ def make_task(batch: Batch, part: Part) -> Task:
 
 def solve_task(task: Task, threads: int | None = None) -> Answer:
     """Solve, grade and tabulate one part; the solutions are the same bits wherever this runs."""
-    numbers = np.arange(task.part.first, task.part.last)
-    local = numbers // task.repeats - numbers[0] // task.repeats
+    return tabulate(task, search_task(task, threads))
+
+
+def search_task(task: Task, threads: int | None = None) -> SolveResults:
+    """Solve and grade one part."""
     with compile_way(WAIT):  # others follow, for which it is compiled at last
-        rows = solve_rows(
+        return solve_rows(
             task.arm.problem,
-            task.targets.take(local),
+            task.targets.take(_places(task)),
             BulkOptions(threads=threads, explain=task.explain),
             seed=task.seed,
             first_stream=task.part.first,
         )
+
+
+def _places(task: Task) -> Ints:
+    """The place of each solve's target among those of the task."""
+    numbers = np.arange(task.part.first, task.part.last)
+    return numbers // task.repeats - numbers[0] // task.repeats
+
+
+def tabulate(task: Task, rows: SolveResults) -> Answer:
+    """The tables of a part that has been solved."""
+    numbers = np.arange(task.part.first, task.part.last)
     solutions = make_solutions(
         task.arm.name,
         rows,
         numbers=numbers,
         repeats=task.repeats,
-        names=pa.array(task.names, pa.string()).take(pa.array(local)) if task.names else None,
+        names=pa.array(task.names, pa.string()).take(pa.array(_places(task))) if task.names else None,
         groups=task.groups,
         graders=task.graders,
     )

@@ -31,6 +31,12 @@ def batch(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what would run and how long, by solving a sample; write nothing.")
     ] = False,
+    row: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ARM/TARGET/REPEAT", help="Solve this one row again, print it, and compare it with the run's."
+        ),
+    ] = None,
     dask: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS|local", help="Let a Dask cluster do the work.", rich_help_panel=CLUSTER),
@@ -50,11 +56,13 @@ def batch(
     from ikde.report.batch import format_run, run_json
 
     gc.enable()
-    if out is None and not dry_run:
-        raise typer.BadParameter("a run needs a folder; only --dry-run needs none", param_hint="--out")
+    if out is None and not dry_run and row is None:
+        raise typer.BadParameter("a run needs a folder; only --dry-run and --row need none", param_hint="--out")
     plan, solving = load_batch(spec), {"threads": threads, "dask": dask, "workers": workers}
     if not all(arm.problem.collision.pairs for arm in plan.arms):
         note_unchecked(plan.robot)
+    if row is not None:
+        raise typer.Exit(_solve_again(plan, out, row, as_json))
     if out is None or dry_run:
         _preview(plan, out, as_json, overwrite=overwrite, **solving)
         return
@@ -64,6 +72,27 @@ def batch(
     else:
         print_result(format_run(summary, **layout(160)))
     raise typer.Exit(ExitCode.NOT_REACHED if summary.unreached else ExitCode.OK)
+
+
+def _solve_again(plan: "Batch", out: Path | None, row: str, as_json: bool) -> ExitCode:
+    """Print one row as `ikde solve` prints its answer, and say whether the run holds the same bits."""
+    from ikde.batch.one_row import compare_row, parse_row, solve_row
+    from ikde.report.numbers import Units
+    from ikde.report.solve import format_solve, solve_json
+    from ikde.solver.grade import confirm
+
+    asked = parse_row(row)
+    with working("solving ..."), _note_compile(plan):
+        result, solution = solve_row(plan, asked)
+    result = confirm(plan.robot, result)
+    same = out is not None and compare_row(out, plan, asked, solution)
+    if as_json:
+        print_json({"row": str(asked), "same_as_run": same, **solve_json(plan.robot, result)})
+    else:
+        print_result(format_solve(plan.robot, result, Units(), color=use_color()))
+        if same:
+            print_note(f"the same bits as in {out}")
+    return ExitCode.OK if result.reached else ExitCode.NOT_REACHED
 
 
 def _preview(

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from ikde.cli.candidates import DEFAULT_ROBOT as DEFAULT_ROBOT
 from ikde.cli.candidates import ROBOT, offer_joints, offer_robots, offer_section
 from ikde.cli.output import print_note, print_written, use_color
 

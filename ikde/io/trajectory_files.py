@@ -123,8 +123,8 @@ def joint_trajectory(trajectory: Trajectory, *, velocities: bool = True) -> dict
     """The arm's motion as a `trajectory_msgs/JointTrajectory`, plain data.
 
     With velocities ROS's joint_trajectory_controller runs a cubic through the points: each is the mean of the steps
-    before and after the point, that of the first one is its step's, and the last one is 0. Without them it runs linearly
-    between the points, as a `Trajectory` does. Accelerations are unknown: those of linear steps are jumps. The frame is
+    before and after the point, that of the first one is its step's, and the last one is 0. Without them it
+    interpolates linearly, as a `Trajectory` does. Accelerations are unknown: those of linear steps are jumps. The frame is
     the one in which `base_motion` has the base.
     """
     arm = [index for index, name in enumerate(trajectory.joint_names) if name not in trajectory.base_joints]

@@ -20,7 +20,7 @@ def make_animation(motion: DrawnMotion) -> dict[str, Any]:
         name, and their `roles` [F, C], each the place of a role in `colors`.
     """
     robot, path = motion.robot, motion.path_m
-    shown = np.unique(np.linspace(0, len(path) - 1, MAX_PATH_POINTS).round().astype(int))
+    shown = np.unique(np.linspace(0, len(path) - 1, min(len(path), MAX_PATH_POINTS)).round().astype(int))
     return {
         "times_s": motion.times_s.round(4).tolist(),
         "duration_s": round(motion.duration_s, 4),

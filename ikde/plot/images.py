@@ -53,6 +53,17 @@ def to_svg(figure: Any) -> str:
     return _TAG.sub(lambda tag: _clean(tag[0], used), svg)
 
 
+def find_boxes(figure: Any) -> tuple[tuple[float, float, float, float, float, float], ...]:
+    """The charts of a figure that has been drawn: left, right, top, bottom in units of its SVG, and the ends of x."""
+    width, height = 72.0 * figure.get_size_inches()
+    boxes = []
+    for axes in figure.axes:
+        place, (first, last) = axes.get_position(), axes.get_xlim()
+        edges = place.x0 * width, place.x1 * width, (1.0 - place.y1) * height, (1.0 - place.y0) * height
+        boxes.append((*(round(float(edge), 2) for edge in edges), float(f"{first:.6g}"), float(f"{last:.6g}")))
+    return tuple(boxes)
+
+
 def to_png(figure: Any, *, dpi: float = 160) -> bytes:
     """A figure as PNG on white."""
     buffer = BytesIO()

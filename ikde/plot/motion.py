@@ -1,4 +1,4 @@
-"""Figures of a motion: its path in space; over time its errors, joints and base with their limits, clearance."""
+"""Figures of a motion: its path in space; over time what is left before its limits, errors, joints and base."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from ikde.plot.style import COLORS, Axis, drawing_space, set_box
 from ikde.track.summary import TrackSummary
 
 MM, DEG = 1e3, 180.0 / np.pi
-MIN_MM, MIN_DEG = 1e-12, 1e-12  # what a logarithmic axis shows an error of 0 as
+NEGLIGIBLE_M, NEGLIGIBLE_RAD = 1e-9, 1e-9  # an error that stays below is no curve: it is rounding
 MAX_STAIRS = 200  # more cannot be seen
 MIN_PLACE_MM, MIN_ROTATION_DEG, MIN_RATE = 1.0, 1.0, 0.1  # what an axis spans at least; rates in mm/s and deg/s
 MAX_NAME_LENGTH = 26  # letters of a joint's name for which there is room above half a figure
@@ -47,21 +47,46 @@ def plot_path(motion: TrackSummary) -> Any:
     return figure
 
 
+def plot_margins(motion: TrackSummary) -> Any:
+    """What is left before a limit, of the worst pair or joint: clearance, range, and share of the speed limit used."""
+    times, robot = motion.trajectory.times_s, motion.robot
+    panels = [] if (clearance := _clearance_panel(motion)) is None else [clearance]
+    width = robot.upper - robot.lower
+    counted = (width > 0.0) & np.isfinite(width) & ~np.isin(robot.joint_names, motion.trajectory.base_joints[:2])
+    if counted.any():
+        q = motion.trajectory.q[:, counted]
+        left = np.minimum(q - robot.lower[counted], robot.upper[counted] - q) / width[counted]
+        line = Line(label="", x=times, y=100.0 * left.min(axis=1))
+        panels.append(Panel(y=Axis(label="range left", unit="%"), lines=[line], bounds=[0.0]))
+    limit = motion.limits.speed
+    if limit is not None and len(motion.grade.driven) and (bound := (limit > 0.0) & np.isfinite(limit)).any():
+        share = (np.abs(motion.grade.driven[:, bound]) / limit[bound]).max(axis=1)
+        steps, used = _in_steps(motion, 100.0 * share[:, None])
+        line = Line(label="", x=steps, y=used[:, 0])
+        panels.append(Panel(y=Axis(label="speed", unit="% of limit"), lines=[line], bounds=[100.0]))
+    return plot_panels(panels, x=TIME) if panels else None
+
+
 def plot_errors(motion: TrackSummary) -> Any:
-    """How far the tool is from its path: along each axis at the samples, its orientation, and half-way between them."""
-    graded, times = motion.grade, motion.trajectory.times_s
-    sizes = np.maximum(MM * np.abs(graded.error_m), MIN_MM)
-    lines = [Line(label=axis, x=times, y=sizes[:, k]) for k, axis in enumerate("xyz")]
-    limit = MM * motion.limits.position_error_m
-    panels = [Panel(y=Axis(label="error", unit="mm", log=True), lines=lines, bounds=[limit], bound="tolerance")]
-    if motion.trajectory.path.orientation != "free":
-        turn = np.maximum(DEG * graded.orientation_error_rad, MIN_DEG)
-        limit = DEG * motion.limits.orientation_error_rad
-        y = Axis(label="turned by", unit="deg", log=True)
-        panels.append(Panel(y=y, lines=[Line(label="", x=times, y=turn)], bounds=[limit], bound="tolerance"))
-    between = Line(label="", x=_middles(motion), y=MM * motion.trajectory.deviation_m)
-    panels.append(Panel(y=Axis(label="off path", unit="mm", limits=(0.0, None)), lines=[between]))
-    return plot_panels(panels, x=TIME)
+    """How far the tool is from its path: along each axis at the samples, its orientation, and half-way between them.
+
+    Errors at the samples that stay negligible are left out; None if nothing else is there.
+    """
+    graded, times, limits = motion.grade, motion.trajectory.times_s, motion.limits
+    panels = []
+    if graded.largest_axis_error_m >= NEGLIGIBLE_M:
+        sizes = MM * np.maximum(np.abs(graded.error_m), NEGLIGIBLE_M)
+        lines = [Line(label=axis, x=times, y=sizes[:, k]) for k, axis in enumerate("xyz")]
+        y, bounds = Axis(label="error", unit="mm", log=True), [MM * limits.position_error_m]
+        panels.append(Panel(y=y, lines=lines, bounds=bounds, bound="tolerance"))
+    if motion.trajectory.path.orientation != "free" and graded.largest_orientation_error_rad >= NEGLIGIBLE_RAD:
+        turn = DEG * np.maximum(graded.orientation_error_rad, NEGLIGIBLE_RAD)
+        y, bounds = Axis(label="turned by", unit="deg", log=True), [DEG * limits.orientation_error_rad]
+        panels.append(Panel(y=y, lines=[Line(label="", x=times, y=turn)], bounds=bounds, bound="tolerance"))
+    if len(motion.trajectory.deviation_m):
+        between = Line(label="", x=_middles(motion), y=MM * motion.trajectory.deviation_m)
+        panels.append(Panel(y=Axis(label="off path", unit="mm", limits=(0.0, None)), lines=[between]))
+    return plot_panels(panels, x=TIME) if panels else None
 
 
 def plot_joints(motion: TrackSummary) -> Any:
@@ -112,7 +137,7 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     return panels
 
 
-def plot_clearance(motion: TrackSummary) -> Any:
+def _clearance_panel(motion: TrackSummary) -> Panel | None:
     """Clearance at the samples, and what it is certain not to fall below between them; None without a detector."""
     collision, gaps, proof = motion.collision, motion.grade.gaps_m, motion.certificate
     if not gaps.size:
@@ -123,8 +148,7 @@ def plot_clearance(motion: TrackSummary) -> Any:
         lines.append(Line(label="certified between them", x=times, y=MM * between[:, 0]))
     wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
     y = Axis(label="clearance", unit="mm")
-    panel = Panel(y=y, lines=lines, bounds=[MM * collision.limit_m], bound="safe distance", marks=wrong)
-    return plot_panels([panel], x=TIME, height_in=2.6)
+    return Panel(y=y, lines=lines, bounds=[MM * collision.limit_m], bound="safe distance", marks=wrong)
 
 
 def _plot_arm(

@@ -14,14 +14,26 @@ from ikde.scene.drawn_pose import AXIS_COLORS, COLORS, DrawnPose, DrawnRobot, Ma
 
 MESH = 24  # facets around a sphere
 MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
+GRID_M = 0.5
+LINK_PT, BASE_ALPHA = 6.0, 0.05
+VIEWS = {
+    "right": (16.0, -68.0),
+    "left": (16.0, 68.0),
+    "front": (12.0, 15.0),
+    "side": (0.0, -90.0),
+    "top": (90.0, -90.0),
+}
+"""Elevation in deg, and the azimuth from the base's heading."""
 SOLID = "-", "-", "-"
 DASHES = ":", "-", "--"  # of the x, y and z axes, so that they differ without colour
 LABEL_OFFSET_M = np.array([0.03, 0.03, 0.02])
 FRAMES_MARGIN_M = 0.15
 
 
-def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0)) -> Any:
-    """Draw a pose seen from the robot's right, a little from the front and from above.
+def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0), view: str = "right") -> Any:
+    """Draw a pose, seen from one of `VIEWS`: `right` is the robot's right, a little from the front and from above.
+
+    What is fixed to the base is drawn as outlines, so that it hides nothing.
 
     Returns:
         A matplotlib `Figure`; axes in metres, world frame.
@@ -30,8 +42,10 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0)) -> 
 
     figure = Figure(figsize=size_in, dpi=130)
     axes: Any = figure.add_axes(MARGINS, projection="3d", computed_zorder=False)
-    axes.view_init(elev=16, azim=float(np.degrees(pose.heading_rad)) - 68)
-    axes.plot(*pose.robot.links_m.T, "o-", color=COLORS[Role.LINK], linewidth=2.0, markersize=3.5, zorder=5)
+    elevation_deg, azimuth_deg = VIEWS[view]
+    axes.view_init(elev=elevation_deg, azim=float(np.degrees(pose.heading_rad)) + azimuth_deg)
+    look = {"solid_capstyle": "round", "solid_joinstyle": "round", "alpha": 0.75}
+    axes.plot(*pose.robot.links_m.T, color=COLORS[Role.LINK], linewidth=LINK_PT, zorder=5, label="links", **look)
     _draw_axes(axes, pose.Ts_world_frame, length_m=0.15, dashes=SOLID, width=2.5)
     _draw_spheres(axes, pose.robot)
     for mark in pose.marks:
@@ -39,7 +53,9 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0)) -> 
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=pose.title)
     box_m = pose.compute_box()
     half_m = 0.51 * float(np.ptp(box_m, axis=0).max())
+    box_m[0, 2] = min(box_m[0, 2], 0.0)
     _set_box(axes, box_m, half_m, 2.0 * half_m)
+    _draw_ground(axes)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
     return show_as_text(figure)
@@ -83,17 +99,50 @@ def _draw_axes(axes: Any, Ts_world_frame: Floats, *, length_m: float, dashes: Se
             axes.plot(*ends_m.T, color=color, linestyle=dash, linewidth=width, zorder=6)
 
 
+def _draw_ground(axes: Any) -> None:
+    """A grid on the floor, z = 0, as far as the axes reach."""
+    (left, right), (front, back) = axes.get_xlim(), axes.get_ylim()
+    look = {"color": "0.8", "linewidth": 0.6, "zorder": 0}
+    for x in _list_grid(left, right):
+        axes.plot([x, x], [front, back], [0.0, 0.0], **look)
+    for y in _list_grid(front, back):
+        axes.plot([left, right], [y, y], [0.0, 0.0], **look)
+
+
+def _list_grid(low: float, high: float) -> Floats:
+    return GRID_M * np.arange(np.ceil(low / GRID_M), np.floor(high / GRID_M) + 1)
+
+
 def _draw_spheres(axes: Any, robot: DrawnRobot) -> None:
     """From far to near, below lines and marks; each role once in the legend."""
     labelled: set[str] = set()
+    eye = find_eye(axes.elev, axes.azim)
     for role, centre, radius in zip(robot.roles[robot.parts], robot.centres_m, robot.radii_m, strict=True):
         label = "_nolegend_" if role in labelled else f"{role} spheres"
         labelled.add(role)
-        u, v = np.meshgrid(np.linspace(0, 2 * np.pi, MESH), np.linspace(0, np.pi, MESH // 2))
-        unit = np.array([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)])
-        look = {"color": COLORS[role], "alpha": 0.4, "linewidth": 0, "antialiased": True, "shade": True}
-        order = 1.0 + 0.01 * float(centre @ find_eye(axes.elev, axes.azim))
-        axes.plot_surface(*(centre[:, None, None] + radius * unit), zorder=order, **look).set_label(label)
+        order = 1.0 + 0.01 * float(centre @ eye)
+        draw = _draw_outline if role == Role.BASE else _draw_sphere
+        draw(axes, centre, float(radius), COLORS[role], order).set_label(label)
+
+
+def _draw_sphere(axes: Any, centre: Floats, radius: float, color: str, order: float) -> Any:
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, MESH), np.linspace(0, np.pi, MESH // 2))
+    unit = np.array([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)])
+    look = {"color": color, "alpha": 0.4, "linewidth": 0, "antialiased": True, "shade": True}
+    return axes.plot_surface(*(centre[:, None, None] + radius * unit), zorder=order, **look)
+
+
+def _draw_outline(axes: Any, centre: Floats, radius: float, color: str, order: float) -> Any:
+    """The circle that a sphere is to the eye."""
+    from matplotlib.colors import to_rgba
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    azimuth, angles = np.radians(axes.azim), np.linspace(0.0, 2.0 * np.pi, 2 * MESH, endpoint=False)
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    up = np.cross(find_eye(axes.elev, axes.azim), right)
+    circle = centre + radius * (np.cos(angles)[:, None] * right + np.sin(angles)[:, None] * up)
+    look = {"facecolor": to_rgba(color, BASE_ALPHA), "edgecolor": to_rgba(color, 0.55), "linewidth": 0.8}
+    return axes.add_collection3d(Poly3DCollection([circle], zorder=order, **look))
 
 
 def _draw_mark(axes: Any, mark: Mark) -> None:

@@ -4,6 +4,7 @@ All text is escaped. A browser that obeys the page's policy runs its own script,
 """
 
 import base64
+import json
 import re
 from functools import cache
 from hashlib import sha256
@@ -86,4 +87,6 @@ def _picture(figure: Figure, number: int) -> Any:
         return Markup('<img src="data:image/png;base64,{}" alt="{}">').format(data, printable(figure.alt))
     drawing = _TAG.sub(lambda tag: _IDS.sub(rf"\g<1>f{number}-", tag[0]), figure.image[figure.image.index("<svg") :])
     label = Markup('<svg role="img" aria-label="{}"').format(printable(figure.alt))
+    if figure.time_boxes:
+        label += Markup(' data-times="{}"').format(json.dumps(figure.time_boxes, separators=(",", ":")))
     return label + Markup(drawing.removeprefix("<svg"))

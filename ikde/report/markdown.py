@@ -6,7 +6,21 @@ from typing import Any
 
 from ikde.errors import printable
 from ikde.report.markup import as_line, parse_line, parse_text
-from ikde.report.page import Animation, Block, Cell, Code, Facts, Figure, Gallery, Notice, Numbers, Page, Table, Text
+from ikde.report.page import (
+    Animation,
+    Block,
+    Cell,
+    Code,
+    Details,
+    Facts,
+    Figure,
+    Gallery,
+    Notice,
+    Numbers,
+    Page,
+    Table,
+    Text,
+)
 
 _RULES = {"left": ":--", "right": "--:"}
 _MARKS = {"": "{}", "published": "_{}_", "ours": "**{}**", "off": "≠ **{}**"}
@@ -103,6 +117,10 @@ def _figure(figure: Figure | Animation) -> str:
     return f"_{type(figure).__name__} in the HTML page: {_plain(figure.alt)}_{caption}"
 
 
+def _details(details: Details) -> str:
+    return "\n\n".join([f"**{_plain(details.summary)}**", *map(_block, details.blocks)])
+
+
 _WRITERS: Mapping[type, Callable[[Any], str]] = {
     Text: lambda text: _text(text.markup),
     Notice: _notice,
@@ -112,5 +130,6 @@ _WRITERS: Mapping[type, Callable[[Any], str]] = {
     Table: _table,
     Figure: _figure,
     Animation: _figure,
+    Details: _details,
     Gallery: lambda gallery: "\n\n".join(map(_figure, gallery.figures)),
 }

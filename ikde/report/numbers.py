@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, pi
 
 from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.model.robot import Joint
@@ -65,11 +65,29 @@ def count_of(number: int, thing: str) -> str:
 
 
 def seconds(value_s: float) -> str:
-    """`23 µs`, `1.4 ms` or `2.1 s`."""
-    for factor, unit in ((1e6, "µs"), (1e3, "ms")):
-        if value_s * factor < 999.5:
-            return f"{significant(value_s * factor)} {unit}"
-    return f"{value_s:.1f} s"
+    """`< 1 ns`, `23 ns`, `7.9 µs`, `1.4 ms`, `2.1 s` or `1,250 s`."""
+    return _in_unit(value_s, ((1e9, "ns"), (1e6, "µs"), (1e3, "ms"), (1.0, "s")), (1e-6, 1e-3, 1.0))
+
+
+def length(value_m: float) -> str:
+    """`0`, `< 1 nm`, `51 nm`, `7.9 µm`, `0.05 mm`, `-1.51 mm`, `1,240 mm` or `12.4 m`."""
+    return _in_unit(value_m, ((1e9, "nm"), (1e6, "µm"), (1e3, "mm"), (1.0, "m")), (1e-6, 1e-5, 10.0))
+
+
+def angle(value_rad: float) -> str:
+    """`0`, `< 1 nrad`, `51 nrad`, `7.9 µrad`, `0.05 deg` or `-120 deg`."""
+    return _in_unit(value_rad, ((1e9, "nrad"), (1e6, "µrad"), (180.0 / pi, "deg")), (1e-6, 1e-5))
+
+
+def _in_unit(value: float, units: Sequence[tuple[float, str]], ends: Sequence[float]) -> str:
+    """At most three digits in the first unit whose end is not reached; below 1 of the least unit nothing is told."""
+    size, (least, smallest) = abs(value), units[0]
+    if size == 0.0:
+        return "0"
+    if size * least < 0.9995:  # what rounds to 1 is 1
+        return f"< 1 {smallest}"
+    factor, unit = units[sum(float(f"{size:.2e}") >= end for end in ends)]
+    return f"{float(f'{value * factor:.2e}'):,.12g} {unit}"
 
 
 def percent(value_pct: float) -> str:

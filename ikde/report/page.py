@@ -4,6 +4,7 @@ Fields that hold *markup* (`markup.py`) say so; titles, labels and table cells a
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import chain, count, groupby
 from typing import Literal
@@ -11,7 +12,11 @@ from typing import Literal
 Align = Literal["left", "right"]
 Mark = Literal["", "published", "ours", "off"]
 
+TimeBox = tuple[float, float, float, float, float, float]
+"""A chart over time: left, right, top and bottom in units of its SVG, and the times in s at its left and right."""
+
 MAX_ROOMY_COLUMNS = 12
+TEXT_WIDTH, CELL_PADDING, WRAPPED = 78, 4, 24  # letters of a line of text, between columns, and in a cell that wraps
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +119,18 @@ class Table:
         """True if it is shown in small print, to fit."""
         return len(self.columns) > MAX_ROOMY_COLUMNS
 
+    @property
+    def is_wide(self) -> bool:
+        """True if it takes more than the width of the text: all that there is then."""
+        heads = [len(column.head.removeprefix(f"{column.group}: ")) for column in self.columns]
+        longest = [max(map(len, column)) for column in zip(*self.texts(), strict=True)] or [0] * len(heads)
+        widths = [max(head, min(cell, WRAPPED)) for head, cell in zip(heads, longest, strict=True)]
+        return sum(widths) + CELL_PADDING * len(widths) > TEXT_WIDTH
+
+    def texts(self) -> list[list[str]]:
+        """What all cells say."""
+        return [[cell if isinstance(cell, str) else cell.text for cell in row] for row in self.rows]
+
     def cells(self) -> list[list[Cell]]:
         """All cells, each with the mark it is shown with."""
         marks: list[Mark] = [column.mark for column in self.columns]
@@ -135,6 +152,8 @@ class Figure:
     image: str | bytes = field(repr=False)
     alt: str
     caption: str = ""
+    time_boxes: tuple[TimeBox, ...] = ()
+    """Of an SVG: the charts over time in it, in which the moment of an animation is marked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,7 +174,15 @@ class Gallery:
     """Three to a row instead of two."""
 
 
-Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery
+@dataclass(frozen=True, slots=True)
+class Details:
+    """Blocks below a line of text, shown when it is opened."""
+
+    summary: str
+    blocks: tuple[Text | Facts | Code | Table | Figure | Animation, ...]
+
+
+Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery | Details
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,8 +208,7 @@ class Page:
     def moves(self) -> bool:
         """True if it holds an animation."""
         blocks = chain(self.lead, *(section.blocks for section in self.sections))
-        shown = chain.from_iterable(block.figures if isinstance(block, Gallery) else (block,) for block in blocks)
-        return any(isinstance(block, Animation) for block in shown)
+        return any(isinstance(block, Animation) for block in chain.from_iterable(map(_unfold, blocks)))
 
     def anchors(self) -> list[str]:
         """One anchor a section, each of them once: given, or made from the title."""
@@ -192,6 +218,15 @@ class Page:
             choices = chain([anchor], (f"{anchor}-{number}" for number in count(2)))
             taken.append(next(choice for choice in choices if choice not in taken))
         return taken
+
+
+def _unfold(block: Block) -> Sequence[Block]:
+    match block:
+        case Gallery(figures):
+            return figures
+        case Details(_, blocks):
+            return blocks
+    return (block,)
 
 
 def slug(title: str) -> str:

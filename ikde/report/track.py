@@ -8,7 +8,7 @@ import numpy as np
 
 from ikde import __version__
 from ikde.kernels.arrays import Floats
-from ikde.report.numbers import fixed, seconds, significant
+from ikde.report.numbers import angle, fixed, length, seconds, significant
 from ikde.report.render import make_table, plain, render
 from ikde.track.plan import TrackPlan
 from ikde.track.summary import TrackSummary, Worst
@@ -102,27 +102,27 @@ def list_figures(motion: TrackSummary) -> Iterator[Row]:
     trajectory, limits = motion.trajectory, motion.limits
     graded = motion.grade
     yield "points reached", str(motion.met_points), f"{trajectory.path.samples}"
-    errors = " / ".join(_mm(error) for error in motion.largest_axis_errors_m)
-    yield "largest error along x / y / z", f"{errors} mm", f"{MM * limits.position_error_m:g} mm"
-    yield "largest error in total", f"{_mm(graded.total_error_m)} mm", ""
+    errors = [length(error) for error in motion.largest_axis_errors_m]
+    along = f"{errors[0]} each" if len(set(errors)) == 1 else " / ".join(errors)
+    yield "largest error along x / y / z", along, length(limits.position_error_m)
+    yield "largest error in total", length(graded.total_error_m), ""
     if trajectory.path.orientation != "free":
-        angle = graded.largest_orientation_error_rad
-        yield "largest orientation error", f"{_tiny(angle)} rad", f"{limits.orientation_error_rad:g} rad"
+        largest = graded.largest_orientation_error_rad
+        yield "largest orientation error", angle(largest), angle(limits.orientation_error_rad)
     yield from _list_limits(motion)
     yield from _list_clearance(motion)
     if len(trajectory.deviation_m):
-        off = f"{significant(MM * float(trajectory.deviation_m.max()))} mm"
+        off = length(float(trajectory.deviation_m.max()))
         if trajectory.path.orientation != "free":
-            off += f", {_tiny(float(trajectory.deviation_rad.max()))} rad"
+            off += f", {angle(float(trajectory.deviation_rad.max()))}"
         yield "largest distance from the path between samples", off, ""
     if trajectory.drive == "differential":
         yield "sideways slip of the base", f"{_tiny(float(np.abs(graded.sideways_m_s).max(initial=0.0)))} m/s", "0"
     if motion.started:
         yield "smallest singular value of the arm", singular(float(motion.singular_values.min())), ""
     if len(trajectory.seconds):
-        times = (1e6 * float(np.quantile(trajectory.seconds, share)) for share in (0.5, 0.99))
-        spread = " / ".join(map(significant, times))
-        yield "time of a single step, median / p99", f"{spread} µs", f"{1e6 * trajectory.path.dt_s:,.0f} µs"
+        spread = " / ".join(seconds(float(np.quantile(trajectory.seconds, share))) for share in (0.5, 0.99))
+        yield "time of a single step, median / p99", spread, seconds(trajectory.path.dt_s)
         yield "time of the whole search", seconds(trajectory.search_seconds), ""
 
 
@@ -165,8 +165,15 @@ def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
     safe = f"above {MM * collision.limit_m:g} mm"
     yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe
     if motion.certificate is not None:
-        asked = "above 0 mm: no contact" if collision.limit_m else "above 0 mm"  # a bound, which the gap is above
-        yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", asked
+        # The samples keep the safe distance; between them what is certified is that nothing touches.
+        yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", "no contact"
+
+
+def _list_files(files: tuple[Path, ...]) -> list[str]:
+    if not files:
+        return []
+    names = ", ".join(file.name for file in files)
+    return [plain(f"files   {files[0].parent}: {names}")]
 
 
 def largest_wheel_speed(motion: TrackSummary) -> float | None:
@@ -221,7 +228,3 @@ def _quantile(values: Any, share: float) -> float | None:
 
 def _tiny(value: float) -> str:
     return f"{value:.1e}" if value else "0"
-
-
-def _mm(value_m: float) -> str:
-    return _tiny(MM * value_m)

@@ -11,16 +11,16 @@ from ikde import __version__
 from ikde.report.numbers import count_of, significant
 from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
 from ikde.report.track import MM, gap_mm, singular
-from ikde.report.track_page import BASE, CLEARANCE, ERRORS, JOINTS, PATH, SPEEDS, animate, draw, draw_moments
+from ikde.report.track_page import BASE, ERRORS, JOINTS, MARGINS, PATH, SPEEDS, animate, draw, draw_moments
 from ikde.track.comparison import Compared, TrackBudget
 from ikde.track.summary import TrackSummary
 
 FRAMES, DPI = 101, 70  # of an animation and of a picture: there are many on this page
 DRAWINGS = (
+    ("Clearance and limits", (MARGINS,)),
     ("Path and error", (PATH, ERRORS)),
     ("Joint angles and speeds", (JOINTS, SPEEDS)),
     ("Base", (BASE,)),
-    ("Clearance", (CLEARANCE,)),
 )
 OURS = "continuation"
 FIGURES = (

@@ -9,11 +9,19 @@ import numpy as np
 
 from ikde import __version__
 from ikde.plot.animation import make_animation
-from ikde.plot.images import to_png, to_svg
+from ikde.plot.images import find_boxes, to_png, to_svg
 from ikde.plot.moments import plot_moments
-from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints, plot_path
+from ikde.plot.motion import (
+    NEGLIGIBLE_M,
+    plot_base,
+    plot_errors,
+    plot_joint_speeds,
+    plot_joints,
+    plot_margins,
+    plot_path,
+)
 from ikde.report.markup import code, verbatim
-from ikde.report.numbers import significant
+from ikde.report.numbers import length, seconds
 from ikde.report.page import (
     Animation,
     Block,
@@ -21,14 +29,16 @@ from ikde.report.page import (
     Column,
     Facts,
     Figure,
+    Gallery,
     Notice,
     Number,
     Numbers,
     Page,
     Section,
     Table,
+    Text,
 )
-from ikde.report.track import FIXED, gap_mm, list_figures
+from ikde.report.track import FIXED, list_figures
 from ikde.scene.drawn_motion import choose_moments, draw_motion, spread_samples
 from ikde.track.summary import TrackSummary
 
@@ -43,25 +53,28 @@ class Drawing:
     make: Callable[[TrackSummary], Any]
     alt: str
     caption: str
+    over_time: bool = True
 
 
-PATH = Drawing(plot_path, "path in space", "Where the tool was asked to go and went, and where the base drove.")
+PATH = Drawing(
+    plot_path, "path in space", "Where the tool was asked to go and went, and where the base drove.", over_time=False
+)
 PATH_ALONE = replace(PATH, caption="Where the tool was asked to go and went.")  # of a robot that stands still
 ERRORS = Drawing(
     plot_errors,
     "tracking errors over time",
-    "At the samples along each axis, and how far the tool leaves the path half-way between them: that is what "
-    "the sampling costs.",
+    "The tool at the samples, and how far it leaves the path half-way between them: that is what the sampling costs.",
 )
 JOINTS = Drawing(plot_joints, "joint values of the arm over time", "Joints of the arm, and the ends of their ranges.")
 SPEEDS = Drawing(
     plot_joint_speeds, "joint speeds of the arm over time", "Their speeds from sample to sample, and their limits."
 )
 BASE = Drawing(plot_base, "the base over time", "The base: its place, all its speeds, and their limits.")
-CLEARANCE = Drawing(
-    plot_clearance,
-    "clearance over time",
-    "The smallest gap of any pair: at the samples, and what is certain between them.",
+MARGINS = Drawing(
+    plot_margins,
+    "what is left before the limits, over time",
+    "The smallest clearance of any pair, at the samples and certified between them; the least share of a joint's range "
+    "that is left to either end; the largest share of a joint's speed limit that is used.",
 )
 
 
@@ -70,7 +83,9 @@ def draw(drawing: Drawing, motion: TrackSummary, prefix: str = "") -> Figure | N
     figure = drawing.make(motion)
     if figure is None:
         return None
-    return Figure(image=to_svg(figure), alt=prefix + drawing.alt, caption=drawing.caption)
+    image = to_svg(figure)
+    boxes = find_boxes(figure) if drawing.over_time else ()
+    return Figure(image=image, alt=prefix + drawing.alt, caption=drawing.caption, time_boxes=boxes)
 
 
 def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DPI) -> Figure:
@@ -85,7 +100,9 @@ def animate(motion: TrackSummary, frames: int = MAX_FRAMES, prefix: str = "", ca
     moving = make_animation(draw_motion(motion, spread_samples(motion, frames)))
     data = json.dumps(moving, separators=(",", ":"), allow_nan=False)
     return Animation(
-        data=data, alt=f"{prefix}the robot moving, from the side, from the front and from above", caption=caption
+        data=data,
+        alt=f"{prefix}the robot moving, from the side, from the front, from above, and in space, to be turned",
+        caption=caption,
     )
 
 
@@ -129,16 +146,14 @@ def _headline(motion: TrackSummary) -> list[Block]:
     trajectory, graded = motion.trajectory, motion.grade
     items = [
         Number(f"{motion.met_points} of {trajectory.path.samples}", "points reached"),
-        Number(f"{1e3 * graded.largest_axis_error_m:.1e} mm", "largest error of any axis", "at the samples"),
+        Number(length(graded.largest_axis_error_m), "largest error of any axis", "at the samples"),
     ]
     items.append(_make_clearance(motion))
     kinds = "all kinds" if graded.violations.collision is not None else "all other kinds"
     items.append(Number(f"{graded.violations.total}", "limits broken", f"of {kinds}, at all samples"))
     if len(trajectory.seconds):
-        most = f"99 % within {significant(1e6 * float(np.quantile(trajectory.seconds, 0.99)))} µs"
-        items.append(
-            Number(f"{significant(1e6 * float(np.median(trajectory.seconds)))} µs", "a single step, median", most)
-        )
+        median_s, most_s = (float(np.quantile(trajectory.seconds, share)) for share in (0.5, 0.99))
+        items.append(Number(seconds(median_s), "a step, median", f"99 % within {seconds(most_s)}"))
     return [Numbers(tuple(items))]
 
 
@@ -147,8 +162,8 @@ def _make_clearance(motion: TrackSummary) -> Number:
     clearance_m, proof = motion.grade.clearance_m, motion.certificate
     if clearance_m is None:
         return Number("not checked", "self-collision", "no detector")
-    certain = f"{gap_mm(proof.clearance_m, 1)} mm certified between" if proof else ""
-    return Number(f"{gap_mm(clearance_m, 1)} mm", "smallest clearance at samples", certain)
+    certain = f"{length(proof.clearance_m)} certified between" if proof else ""
+    return Number(length(clearance_m), "smallest clearance at samples", certain)
 
 
 def _tell_black(motion: TrackSummary) -> str:
@@ -156,23 +171,44 @@ def _tell_black(motion: TrackSummary) -> str:
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:
-    moving = animate(motion, caption=f"Play it, or drag the slider. {_tell_black(motion)}")
+    moving = animate(
+        motion,
+        caption=f"Play it, drag the slider, or drag in a chart below; turn the view in space. {_tell_black(motion)}",
+    )
     path = PATH if motion.trajectory.base_joints else PATH_ALONE
     groups = [
         ("Motion", [moving, draw_moments(motion)]),
-        ("Path and error", [draw(path, motion), draw(ERRORS, motion)]),
-        ("Joints", [draw(JOINTS, motion), draw(SPEEDS, motion)]),
+        ("Clearance and limits", [draw(MARGINS, motion)]),
+        ("Figures", [_make_measured(motion)]),
+        ("Path and error", [*_tell_error(motion), _beside(draw(path, motion), draw(ERRORS, motion))]),
+        ("Joints", [_beside(draw(JOINTS, motion), draw(SPEEDS, motion))]),
         ("Base", [draw(BASE, motion)]),
-        ("Clearance", [draw(CLEARANCE, motion)]),
     ]
     sections = [(title, tuple(block for block in blocks if block is not None)) for title, blocks in groups]
-    return [_make_measured(motion), *(Section(title, blocks) for title, blocks in sections if blocks)]
+    return [Section(title, blocks) for title, blocks in sections if blocks]
 
 
-def _make_measured(motion: TrackSummary) -> Section:
+def _beside(*figures: Figure | None) -> Gallery | None:
+    """Those figures that there are, side by side."""
+    there = tuple(figure for figure in figures if figure is not None)
+    return Gallery(there) if there else None
+
+
+def _tell_error(motion: TrackSummary) -> list[Block]:
+    """In words, what would be a curve of rounding."""
+    graded = motion.grade
+    if graded.largest_axis_error_m >= NEGLIGIBLE_M:
+        return []
+    asked = length(motion.limits.position_error_m)
+    return [
+        Text(f"At every sample the tool is on the path: less than 1 nm off along each axis, {asked} being allowed.")
+    ]
+
+
+def _make_measured(motion: TrackSummary) -> Table:
     columns = Column("figure", align="left"), Column("measured", mark="ours"), Column("asked for", align="left")
     caption = "Measured by plain numpy, not by the kernels that search"
-    return Section("Figures", (Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption),))
+    return Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption)
 
 
 def _make_recipe(motion: TrackSummary, command: str) -> Section:

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
+from ikde.model.collision_model import CollisionModel
 from ikde.scene.drawn_pose import DrawnRobot, Role, draw_robot
+from ikde.solver.plain import compute_gaps
 from ikde.track.summary import TrackSummary
 
 
@@ -42,6 +44,17 @@ def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp])
         times_s=trajectory.times_s[chosen],
         duration_s=trajectory.path.duration_s,
         path_m=trajectory.path.p_world_tool,
+    )
+
+
+def draw_still(collision: CollisionModel, q: Floats, target_m: Sequence[float]) -> DrawnMotion:
+    """The robot at one configuration [N], as a motion that takes no time; its path is the target [3], or empty."""
+    return DrawnMotion(
+        robot=draw_robot(collision, q[None], compute_gaps(collision, q)[None]),
+        samples=np.zeros(1, np.intp),
+        times_s=np.zeros(1),
+        duration_s=0.0,
+        path_m=np.array(target_m, dtype=float).reshape(-1, 3),
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
+from ikde.model.base_motion import base_joints
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import component_bodies
 from ikde.model.robot import WORLD, Robot
@@ -19,6 +20,7 @@ from ikde.model.tree import build_tree
 from ikde.solver.plain import compute_components, compute_frames, compute_gaps, compute_sphere_gaps
 
 NOT_CHECKED = "self-collision not checked"
+BASE_MARK_M = 0.15
 SAME_PLACE_M = 1e-3  # frames nearer than this share their label
 
 
@@ -49,7 +51,7 @@ class DrawnRobot:
     """Links and spheres at one configuration, or at as many as the leading axes `...` hold."""
 
     links_m: Floats
-    """Key points [..., n, 3] from the base to the tool, each joined to the next by a line."""
+    """Key points [..., n, 3] of the arm, from where it stands on its base to the tool, each joined to the next."""
     centres_m: Floats
     """Of all spheres [..., S, 3]; none without a detector."""
     radii_m: Floats
@@ -91,7 +93,7 @@ class DrawnPose:
     """Texts and their places [3]."""
     marks: tuple[Mark, ...] = ()
     heading_rad: float = 0.0
-    """About the world's z axis, of the frame that the links begin with."""
+    """About the world's z axis, of the base."""
 
     def compute_box(self) -> Floats:
         """Lower and upper corner [2, 3] in m around robot and marks."""
@@ -110,13 +112,16 @@ def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = N
         marks.append(_mark_closest(drawn, *collision.pairs[closest], float(gaps_m[closest])))
     if target is not None:
         marks.append(Mark(points_m=target.p_world_tool[None, :], role=Role.TARGET, text="target"))
-    x_axis = Ts_world[_list_links(robot)[0]][:2, 0]
+    base = Ts_world[_list_chain(robot)[0]]
+    heading_rad = float(np.arctan2(base[1, 0], base[0, 0]))
+    if base_joints(robot):
+        marks.append(_mark_base(base[:2, 3], heading_rad))
     return DrawnPose(
         title=f"{robot.name}  ·  {_describe(collision, drawn)}",
         robot=drawn,
         Ts_world_frame=Ts_world[robot.tool][None],
         marks=tuple(marks),
-        heading_rad=float(np.arctan2(x_axis[1], x_axis[0])),
+        heading_rad=heading_rad,
     )
 
 
@@ -160,7 +165,7 @@ def _choose_roles(collision: CollisionModel, components: Sequence[str], gaps_m: 
     return np.where(touching.any(axis=-2), Role.COLLIDING, own)
 
 
-def _list_links(robot: Robot) -> list[str]:
+def _list_chain(robot: Robot) -> list[str]:
     """Frames from the base to the tool, without the rails that a mobile base moves along."""
     frames = {frame.name: frame for frame in robot.frames}
     kinds = {joint.name: joint.kind for joint in robot.joints}
@@ -170,6 +175,16 @@ def _list_links(robot: Robot) -> list[str]:
     while len(chain) > 1 and kinds.get(frames[chain[-1]].joint or "") == "prismatic":
         chain.pop()
     return chain[::-1]
+
+
+def _list_links(robot: Robot) -> list[str]:
+    """Frames of the arm: of a base that drives, the last one alone, so that no line runs through its body."""
+    chain, joints = _list_chain(robot), {frame.name: frame.joint for frame in robot.frames}
+    driven = [k for k, name in enumerate(chain) if joints[name] in base_joints(robot)]
+    if not driven:
+        return chain
+    arm = next((k for k in range(driven[-1] + 1, len(chain)) if joints[chain[k]]), driven[-1] + 1)
+    return chain[max(arm - 1, driven[-1] + 1) :] or chain[-1:]
 
 
 def base_components(collision: CollisionModel) -> set[str]:
@@ -187,6 +202,13 @@ def _describe(collision: CollisionModel, drawn: DrawnRobot) -> str:
         return NOT_CHECKED
     free = "" if Role.COLLIDING in drawn.roles else "free of "
     return f"detector {collision.name}: {free}self-collision"
+
+
+def _mark_base(place_m: Floats, heading_rad: float) -> Mark:
+    """A triangle on the floor where the base is, pointing forward."""
+    angles = heading_rad + np.array([0.0, 2.5, -2.5, 0.0])
+    corners_m = place_m + BASE_MARK_M * np.column_stack([np.cos(angles), np.sin(angles)])
+    return Mark(points_m=np.column_stack([corners_m, np.zeros(4)]), role=Role.BASE, text="base, pointing forward")
 
 
 def _mark_closest(drawn: DrawnRobot, a: str, b: str, gap_m: float) -> Mark:

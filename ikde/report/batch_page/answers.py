@@ -20,15 +20,19 @@ from ikde.solver.verify import MaskedBools
 
 MAX_MISSED = 50  # targets that are listed with a reason
 MAX_NAMED = 10_000  # targets whose names are kept
-ALWAYS = ("target", "reached")
-NUMBERS = (*ALWAYS, "attempts", "position_error_m", "orientation_error_rad", "clearance_m")
+TIMED_ALONE = 0.5  # share of different times, from which on solves have been timed one by one
+MAX_PLACED = 400  # targets that are drawn
+ALWAYS = ("target", "repeat", "reached")
+NUMBERS = (*ALWAYS, "attempts", "evaluations", "position_error_m", "orientation_error_rad", "clearance_m")
 WORDS = ("stop_reason", "pair_a", "pair_b")
 NOTHING = {  # the numbers of an arm of which no part is finished
     "target": np.empty(0, dtype=np.int64),
+    "repeat": np.empty(0, dtype=np.int64),
     "reached": np.empty(0, dtype=bool),
     "solve_seconds": np.empty(0),
 }
-MISSED = ("target_x_m", "target_y_m", "target_z_m", "reason", "hint")
+PLACE = ("target_x_m", "target_y_m", "target_z_m")
+MISSED = (*PLACE, "reason", "hint")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,6 +79,12 @@ class ArmAnswers:
         return values[np.isfinite(values)]
 
     @property
+    def timed_alone(self) -> bool:
+        """Whether each solve was timed by itself; short ones share a call, and its time evenly."""
+        seconds = self.numbers["solve_seconds"]
+        return len(np.unique(seconds)) > TIMED_ALONE * len(seconds)
+
+    @property
     def collision_checked(self) -> bool | None:
         """Whether the arm's detector checked its solves for self-collision; None before there is one."""
         return bool(self.verdicts["collision"].count()) if self.solves else None
@@ -99,6 +109,8 @@ class RunAnswers:
     arms: tuple[ArmAnswers, ...]
     names: Mapping[int, str]
     """By target; empty if targets have no names, or there are very many."""
+    places_m: Mapping[int, tuple[float, ...]]
+    """x, y, z by target, of at most `MAX_PLACED` that are evenly spread; empty if the run does not keep them."""
 
     @property
     def finished(self) -> bool:
@@ -118,12 +130,15 @@ def gather_answers(folder: str | PathLike[str]) -> RunAnswers:
     piles = {arm.name: _Pile() for arm in manifest.arms}
     done = list(list_finished(folder, manifest))
     names: dict[int, str] = {}
+    places: dict[int, tuple[float, ...]] = {}
+    drawn = np.unique(np.linspace(0, manifest.targets - 1, MAX_PLACED).round().astype(np.int64))
     for part in done:
         solutions = piles[part.arm].add(folder, part, manifest)
         if manifest.targets <= MAX_NAMED and "target_name" in solutions.column_names:
             names.update(_find_names(solutions))
+        places.update(_find_places(solutions, drawn))
     arms = tuple(piles[arm.name].answers(folder, arm, manifest.graders) for arm in manifest.arms)
-    return RunAnswers(folder=folder, manifest=manifest, parts_done=len(done), arms=arms, names=names)
+    return RunAnswers(folder=folder, manifest=manifest, parts_done=len(done), arms=arms, names=names, places_m=places)
 
 
 @dataclass(slots=True)
@@ -140,7 +155,7 @@ class _Pile:
         """Put one part on the pile; returns what was read of its solutions."""
         graders = manifest.graders
         listing = MISSED if len(self.missed) < MAX_MISSED else ()
-        wanted = [*NUMBERS, *verdict_columns(graders), *WORDS, "target_name", *listing]
+        wanted = [*NUMBERS, *verdict_columns(graders), *WORDS, "target_name", *PLACE, *listing]
         solutions = read_part(folder, manifest, part, SOLUTIONS, wanted)
         timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
         for table, names in ((solutions, NUMBERS), (timing, ("solve_seconds",))):
@@ -188,6 +203,15 @@ class _Pile:
 def _find_names(solutions: pa.Table) -> dict[int, str]:
     targets, first = np.unique(solutions["target"].to_numpy(), return_index=True)
     return dict(zip(targets.tolist(), solutions["target_name"].take(pa.array(first)).to_pylist(), strict=True))
+
+
+def _find_places(solutions: pa.Table, drawn: np.ndarray) -> dict[int, tuple[float, ...]]:
+    if not set(PLACE) <= set(solutions.column_names):
+        return {}
+    targets = solutions["target"].to_numpy()
+    rows = np.flatnonzero(np.isin(targets, drawn))
+    points = np.column_stack([solutions[name].to_numpy()[rows] for name in PLACE])
+    return dict(zip(targets[rows].tolist(), map(tuple, points.tolist()), strict=True))
 
 
 def _count(table: pa.Table, *columns: str) -> dict[Any, int]:

@@ -9,7 +9,7 @@ from ikde.plot.charts import Sample, plot_histogram
 from ikde.plot.images import to_svg
 from ikde.plot.style import Axis
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
-from ikde.report.batch_page.cost import choose_curves, is_wide
+from ikde.report.batch_page.cost import choose_curves, is_wide, name_curve
 from ikde.report.batch_page.success import CHECKED
 from ikde.report.numbers import fixed, significant
 from ikde.report.page import Column, Figure, Gallery, Section, Table
@@ -42,7 +42,7 @@ def make_clearance(run: RunAnswers) -> Section | None:
     if not measures:
         return None
     pairs = [_make_pairs(run)] if any(arm.closest_pairs for arm in run.arms) else []
-    figures = tuple(_draw(run.arms, measure) for measure in measures)
+    figures = tuple(_draw(run, measure) for measure in measures)
     return Section("Clearance and errors", (_make_table(run, measures), Gallery(figures), *pairs), anchor="clearance")
 
 
@@ -78,9 +78,11 @@ def _format(arm: ArmAnswers, measure: Measure) -> tuple[str, str]:
     return middle, significant(float(values.max()))
 
 
-def _draw(arms: Sequence[ArmAnswers], measure: Measure) -> Figure:
-    shown, few = choose_curves([arm for arm in arms if arm.of_reached(measure.column).size])
-    samples = [Sample(label=arm.name, values=measure.factor * arm.of_reached(measure.column)) for arm in shown]
+def _draw(run: RunAnswers, measure: Measure) -> Figure:
+    shown, few = choose_curves([arm for arm in run.arms if arm.of_reached(measure.column).size])
+    samples = [
+        Sample(label=name_curve(run, arm), values=measure.factor * arm.of_reached(measure.column)) for arm in shown
+    ]
     most = max(np.size(sample.values) for sample in samples)
     log = measure is not CLEARANCE and is_wide(samples)
     axis = Axis(label=measure.title, unit=measure.unit, log=log)

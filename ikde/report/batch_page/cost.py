@@ -18,7 +18,14 @@ WIDE = 30  # from here on, maximum over minimum, an axis is logarithmic
 
 def make_cost(run: RunAnswers) -> Section:
     """Median, 95th percentile and maximum over all solves, and the whole distribution."""
-    return Section("Attempts and time", (_make_table(run), Gallery(tuple(_draw(run)))), anchor="cost")
+    figures = tuple(_draw(run))
+    drawn = (Gallery(figures),) if figures else ()
+    return Section("Attempts and time", (_make_table(run), *drawn), anchor="cost")
+
+
+def name_curve(run: RunAnswers, arm: ArmAnswers) -> str:
+    """What a legend calls an arm; nothing if there is no other."""
+    return arm.name if len(run.arms) > 1 else ""
 
 
 def choose_curves(arms: Sequence[ArmAnswers]) -> tuple[Sequence[ArmAnswers], str]:
@@ -44,13 +51,17 @@ def _make_table(run: RunAnswers) -> Table:
             *(Column(title, "ms", group="time") for title in spreads),
         ),
         rows=tuple(
-            (arm.name, *(_spread(arm, "attempts", 1.0, 0) if kept else ()), *_spread(arm, "solve_seconds", 1e3, None))
-            for arm in run.arms
+            (arm.name, *(_spread(arm, "attempts", 1.0, 0) if kept else ()), *_spread_time(arm)) for arm in run.arms
         ),
         caption="What a solve costs",
         note="Over all solves, also those that did not reach their target. The time is a solve's wall time while all "
-        "threads are busy; very short searches share a call, and its time in equal parts.",
+        "threads are busy. Short solves are timed in calls of several, so that only their median is known.",
     )
+
+
+def _spread_time(arm: ArmAnswers) -> tuple[str, ...]:
+    median, *others = _spread(arm, "solve_seconds", 1e3, None)
+    return median, *(others if arm.timed_alone else ["–"] * len(others))
 
 
 def _spread(arm: ArmAnswers, column: str, factor: float, digits: int | None) -> tuple[str, ...]:
@@ -66,9 +77,9 @@ def _draw(run: RunAnswers) -> list[Figure]:
     arms, few = choose_curves(run.arms)
     for column, factor, label, unit in (("attempts", 1.0, "attempts", ""), ("solve_seconds", 1e3, "time", "ms")):
         samples = [
-            Sample(label=arm.name, values=factor * arm.of_reached(column), total=arm.solves)
+            Sample(label=name_curve(run, arm), values=factor * arm.of_reached(column), total=arm.solves)
             for arm in arms
-            if column in arm.numbers
+            if column in arm.numbers and (not unit or arm.timed_alone)
         ]
         if len(np.unique(np.concatenate([np.empty(0), *(sample.values for sample in samples)]))) < 2:
             continue  # a curve of one value says nothing that the table does not

@@ -5,11 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ikde.report.batch_page.answers import MAX_MISSED, ArmAnswers, RunAnswers
+from ikde.report.batch_page.answers import MAX_MISSED, PLACE, ArmAnswers, RunAnswers
 from ikde.report.numbers import vector
 from ikde.report.page import Column, Section, Table
-
-PLACE = ("target_x_m", "target_y_m", "target_z_m")
 
 
 def make_missed(run: RunAnswers) -> Section | None:

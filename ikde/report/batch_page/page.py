@@ -7,13 +7,16 @@ from ikde.batch.statistics import Rate, compute_spread
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
 from ikde.report.batch_page.clearance import make_clearance
 from ikde.report.batch_page.cost import make_cost
+from ikde.report.batch_page.difference import tell_difference
 from ikde.report.batch_page.graders import make_graders
 from ikde.report.batch_page.missed import make_missed
+from ikde.report.batch_page.places import make_places
 from ikde.report.batch_page.recipe import make_again, make_recipe, run_command
 from ikde.report.batch_page.success import make_success
+from ikde.report.batch_page.worst import make_worst
 from ikde.report.markup import code, verbatim
-from ikde.report.numbers import count_of, fixed, significant
-from ikde.report.page import Block, Notice, Number, Numbers, Page
+from ikde.report.numbers import count_of, fixed, length, seconds
+from ikde.report.page import Block, Notice, Number, Numbers, Page, Text
 
 MAX_NUMBERS = 4  # arms that get large type
 
@@ -21,13 +24,21 @@ MAX_NUMBERS = 4  # arms that get large type
 def make_batch_page(run: RunAnswers) -> Page:
     """What came of a run, finished or not, as a page."""
     manifest = run.manifest
-    sections = [make_success(run), make_cost(run), make_clearance(run), make_graders(run), make_missed(run)]
+    sections = [
+        make_success(run),
+        make_places(run),
+        make_worst(run),
+        make_cost(run),
+        make_clearance(run),
+        make_graders(run),
+        make_missed(run),
+    ]
     shown = [section for section in sections if section] if run.parts_done else []
     return Page(
         title=manifest.name,
         subtitle=_describe(manifest),
         lead=(*_warn(run), *_headline(run)),
-        sections=(*shown, make_recipe(manifest), make_again(run)),
+        sections=(*shown, make_recipe(run), make_again(run)),
         footer=f"Made by ikde {verbatim(manifest.versions.get('ikde', ''))} from the answers in "
         f"{code(str(run.folder))}.",
     )
@@ -64,11 +75,20 @@ def say_how_to_go_on(run: RunAnswers) -> str:
 def _headline(run: RunAnswers) -> list[Block]:
     if not run.parts_done:
         return []
+    difference = [Text(told)] if (told := tell_difference(run)) else []
     if len(run.arms) == 1:
         return [Numbers((_reached("reached", run.rate, run.arms), *_cost(run.arms[0])))]
     if len(run.arms) > MAX_NUMBERS:
-        return [Numbers((_reached("reached, over all arms", run.rate, run.arms),))]
-    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate, [arm]) for arm in run.arms))]
+        return [Numbers((_reached("reached, over all arms", run.rate, run.arms),)), *difference]
+    if len({arm.rate.share for arm in run.arms}) == 1:
+        times = [compute_spread(arm.numbers["solve_seconds"]) for arm in run.arms]
+        solves = [
+            Number(seconds(time.median), f"a solve by {arm.name}", "median")
+            for arm, time in zip(run.arms, times, strict=True)
+            if time
+        ]
+        return [Numbers((_reached("reached, by every arm", run.rate, run.arms), *solves)), *difference]
+    return [Numbers(tuple(_reached(f"reached by {arm.name}", arm.rate, [arm]) for arm in run.arms)), *difference]
 
 
 def _reached(label: str, rate: Rate, arms: Sequence[ArmAnswers]) -> Number:
@@ -83,14 +103,17 @@ def _cost(arm: ArmAnswers) -> list[Number]:
     numbers = []
     time, attempts = (compute_spread(arm.numbers.get(name, ())) for name in ("solve_seconds", "attempts"))
     if time:
-        most = f"95 % within {significant(1e3 * time.p95)} ms"
-        numbers.append(Number(f"{significant(1e3 * time.median)} ms", "a solve, median", most))
+        most = f"95 % within {seconds(time.p95)}" if arm.timed_alone else "timed in calls of several"
+        numbers.append(Number(seconds(time.median), "a solve, median", most))
     if attempts:
         numbers.append(Number(fixed(attempts.median, 0), "attempts, median", f"95 % within {fixed(attempts.p95, 0)}"))
     clearance_m = arm.of_reached("clearance_m")
     if clearance_m.size:
-        least = f"{significant(1e3 * float(clearance_m.min()))} mm"
-        numbers.append(Number(least, "smallest clearance", f"of the reached, detector {arm.facts.detector}"))
+        numbers.append(
+            Number(
+                length(float(clearance_m.min())), "smallest clearance", f"of the reached, detector {arm.facts.detector}"
+            )
+        )
     return numbers
 
 

@@ -10,12 +10,13 @@ from ikde.report.markup import verbatim
 from ikde.report.page import Block, Code, Column, Facts, Section, Table
 
 
-def make_recipe(manifest: Manifest) -> Section:
+def make_recipe(run: RunAnswers) -> Section:
     """Robot, targets, arms and what differs between them, machine and versions."""
+    manifest = run.manifest
     arms = {arm.name: dict(_flatten(_describe(manifest, arm))) for arm in manifest.arms}
     keys = list(dict.fromkeys(key for settings in arms.values() for key in settings))
     differing = [key for key in keys if len({settings.get(key) for settings in arms.values()}) > 1]
-    blocks: list[Block] = [_state_facts(manifest)]
+    blocks: list[Block] = [_state_facts(run)]
     if len(arms) > 1:
         blocks.append(_compare(arms, differing))
     first = next(iter(arms.values()))
@@ -29,15 +30,17 @@ def _describe(manifest: Manifest, arm: ArmFacts) -> Mapping[str, Any]:
     return known or {"method": arm.method, "detector": arm.detector, "settings": arm.settings}
 
 
-def _state_facts(manifest: Manifest) -> Facts:
-    machine = manifest.machine
+def _state_facts(run: RunAnswers) -> Facts:
+    manifest, machine = run.manifest, run.manifest.machine
+    again, solves = sum(arm.verified.total for arm in run.arms), sum(arm.solves for arm in run.arms)
+    detectors = f", detectors {', '.join(manifest.graders)}: all reached" if manifest.graders else ""
     kind = ", ".join(name for name in manifest.recipe.get("targets", {}) if name != "units")
     facts = (
         ("robot", manifest.robot),
         ("targets", f"{manifest.targets:,}{f' ({kind})' if kind else ''}"),
         ("solves of a target", f"{manifest.repeats:,}"),
         ("seed", str(manifest.seed)),
-        ("graded again by", ", ".join(manifest.graders) or "none"),
+        ("graded again by", f"plain numpy: {again:,} of {solves:,}{detectors}"),
         ("run file", manifest.file or "none, made in Python"),
         ("started", manifest.started),
         ("machine", f"{machine.get('processor')}, {machine.get('cores')} cores, {machine.get('system')}"),
@@ -85,14 +88,15 @@ def _show(value: Any) -> str:
 
 
 def make_again(run: RunAnswers) -> Section:
-    """The commands that make run and page again, and the answers in three libraries."""
+    """The commands that make run and page again, and the answers in pyarrow and three other libraries."""
     folder = str(run.folder)
     commands = [*([run_command(run)] if run.manifest.file else []), f"ikde report {shlex.quote(folder)}"]
     return Section(
         "Do it again, read on",
         (
             Code("\n".join(commands), caption="To make answers and page again; the same recipe gives the same bits."),
-            Code(_read_on(folder), caption="To read the answers; times stand in `read_batch(..., timing=True)`."),
+            Code(_read(folder), caption="To read the answers; times stand in `read_batch(..., timing=True)`."),
+            Code(_read_on(folder), caption="The same in other libraries, which ikde does not install"),
         ),
         anchor="again",
     )
@@ -104,15 +108,26 @@ def run_command(run: RunAnswers) -> str:
     return shlex.join(["ikde", "batch", f"./{file}" if file.startswith("-") else file, "--out", str(run.folder)])
 
 
+def _read(folder: str) -> str:
+    return "\n".join(
+        (
+            "import ikde",
+            "",
+            f"answers = ikde.read_batch({folder!r})  # a pyarrow table, a row a solve",
+            'print(answers.group_by("arm").aggregate([("reached", "mean")]).to_pylist())',
+        )
+    )
+
+
 def _read_on(folder: str) -> str:
     files = f"{folder}/solutions/*.parquet".replace("'", "''")
     query = f"select arm, avg(reached::int) from '{files}' group by arm"
     return "\n".join(
         (
-            "import duckdb, ikde, polars",
+            "import duckdb, ikde, pandas, polars",
             "",
-            f"frame = ikde.read_batch({folder!r}).to_pandas()               # pandas",
-            f"frame = polars.from_arrow(ikde.read_batch({folder!r}))        # polars",
+            f"frame = ikde.read_batch({folder!r}).to_pandas()",
+            f"frame = polars.from_arrow(ikde.read_batch({folder!r}))",
             f"duckdb.sql({query!r})",
         )
     )

@@ -7,7 +7,7 @@ from ikde.plot.charts import Estimate, plot_forest
 from ikde.plot.images import to_svg
 from ikde.plot.style import Axis
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
-from ikde.report.numbers import with_interval
+from ikde.report.numbers import count_of, with_interval
 from ikde.report.page import Block, Column, Figure, Section, Table
 
 CHECKED = {True: "checked", False: "not checked", None: "–"}
@@ -17,7 +17,7 @@ MAX_TARGETS = 30  # rows of the table by target
 def make_success(run: RunAnswers) -> Section:
     """Rates with their intervals, and why a search stopped."""
     blocks: list[Block] = [_make_table(run)]
-    if len(run.arms) > 1:
+    if len({arm.rate.share for arm in run.arms if arm.solves}) > 1:  # equal shares are no picture
         figure = draw_rates([(arm.name, arm.rate) for arm in run.arms], "reached")
         blocks.append(Figure(image=figure, alt="Rate and 95 % interval of every arm", caption="Reached, by arm."))
     if run.manifest.targets > 1 and run.manifest.repeats > 1:
@@ -63,9 +63,19 @@ def _make_table(run: RunAnswers) -> Table:
         ),
         caption="How many solves reached their target",
         note="Reached: within tolerance, inside the limits and, where that was checked, free of self-collision by the "
-        "arm's detector. The kernels' grader decides: code of its own on the same tables as the search. Plain numpy "
-        "grades one stream in 64 and what is explained; a solve with which it disagrees is not reached. Rates with "
-        "Wilson's 95 % interval.",
+        f"arm's detector. {say_who_graded(run)} Rates with Wilson's 95 % interval.",
+    )
+
+
+def say_who_graded(run: RunAnswers) -> str:
+    """In one sentence, who graded how many."""
+    solves = sum(arm.solves for arm in run.arms)
+    again = sum((arm.verified for arm in run.arms), Rate(0, 0))
+    agrees = f", and agrees with {'all' if again.count == again.total else f'{again.count:,}'} of them"
+    return (
+        f"The kernels' grader, code of its own on the tables of the search, graded {'all ' if solves > 1 else ''}"
+        f"{count_of(solves, 'solve')}; plain numpy graded {again.total:,} of these again (the last 64 of each 4,096, "
+        f"and unreached ones that are explained){agrees if again.total else ''}."
     )
 
 
