@@ -89,7 +89,7 @@ def _solve_again(plan: "Batch", out: Path | None, row: str, as_json: bool) -> Ex
     if as_json:
         print_json({"row": str(asked), "same_as_run": same, **solve_json(plan.robot, result)})
     else:
-        print_result(format_solve(plan.robot, result, Units(), color=use_color()))
+        print_result(format_solve(plan.robot, result, Units(), **layout()))
         if same:
             print_note(f"the same bits as in {out}")
     return ExitCode.OK if result.reached else ExitCode.NOT_REACHED

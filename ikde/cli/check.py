@@ -3,13 +3,14 @@
 import typer
 
 from ikde.cli import options
+from ikde.cli.candidates import DEFAULT_ROBOT
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.output import layout, print_json, print_result
 
 
 def check(
     q: options.QOption = None,
-    robot: options.RobotOption = options.DEFAULT_ROBOT,
+    robot: options.RobotOption = DEFAULT_ROBOT,
     detector: options.DetectorOption = None,
     pairs: options.PairsOption = None,
     safe_distance: options.SafeDistanceOption = None,

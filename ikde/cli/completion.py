@@ -28,7 +28,7 @@ def completion(shell: Annotated[Shell, typer.Argument(show_default=False)]) -> N
 
     Example: ikde completion bash >> ~/.bashrc
     """
-    from typer.completion import get_completion_script
+    from typer.completion import get_completion_script  # type: ignore[attr-defined]
 
     print_result(get_completion_script(prog_name="ikde", complete_var=VARIABLE, shell=shell.value))
 
@@ -36,6 +36,6 @@ def completion(shell: Annotated[Shell, typer.Argument(show_default=False)]) -> N
 def prepare_completion() -> None:
     """Make typer answer shells, if one is asking."""
     if VARIABLE in os.environ:
-        from typer.completion import completion_init
+        from typer.completion import completion_init  # type: ignore[attr-defined]
 
         completion_init()

@@ -1,12 +1,13 @@
 """`ikde fk`: where every frame is."""
 
 from ikde.cli import options
+from ikde.cli.candidates import DEFAULT_ROBOT
 from ikde.cli.output import layout, print_json, print_result
 
 
 def fk(
     q: options.QOption = None,
-    robot: options.RobotOption = options.DEFAULT_ROBOT,
+    robot: options.RobotOption = DEFAULT_ROBOT,
     detector: options.DetectorOption = None,
     unit: options.UnitOption = options.LengthUnit.m,
     angles: options.AnglesOption = options.AngleUnit.rad,

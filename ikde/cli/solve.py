@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli import options
-from ikde.cli.candidates import offer, offer_joints
+from ikde.cli.candidates import DEFAULT_ROBOT, offer, offer_joints
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import layout, print_json, print_note, print_result, working
@@ -98,7 +98,7 @@ def solve(
     axis: AxisOption = None,
     tolerance: ToleranceOption = None,
     orientation_tolerance: OrientationToleranceOption = None,
-    robot: options.RobotOption = options.DEFAULT_ROBOT,
+    robot: options.RobotOption = DEFAULT_ROBOT,
     near: NearOption = None,
     freeze: FreezeOption = None,
     weights: WeightsOption = None,

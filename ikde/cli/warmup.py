@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ikde.cli.options import DEFAULT_ROBOT, DetectorOption, JsonOption, RobotOption, read_robot
+from ikde.cli.candidates import DEFAULT_ROBOT
+from ikde.cli.options import DetectorOption, JsonOption, RobotOption, read_robot
 from ikde.cli.output import is_live, layout, note_console, print_json, print_note, print_result
 
 if TYPE_CHECKING:

@@ -124,8 +124,8 @@ def joint_trajectory(trajectory: Trajectory, *, velocities: bool = True) -> dict
 
     With velocities ROS's joint_trajectory_controller runs a cubic through the points: each is the mean of the steps
     before and after the point, that of the first one is its step's, and the last one is 0. Without them it
-    interpolates linearly, as a `Trajectory` does. Accelerations are unknown: those of linear steps are jumps. The frame is
-    the one in which `base_motion` has the base.
+    interpolates linearly, as a `Trajectory` does. Accelerations are unknown: those of linear steps are jumps. The frame
+    is the one in which `base_motion` has the base.
     """
     arm = [index for index, name in enumerate(trajectory.joint_names) if name not in trajectory.base_joints]
     speeds = _at_samples(trajectory.joint_speeds)

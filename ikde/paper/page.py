@@ -44,9 +44,9 @@ def _introduce(
     agree += [detection.agrees for detection in situations.detections]
     most = "all" if all(agree) else f"{sum(agree)}"
     return Text(
-        "The paper covers a mobile manipulator of nine joints with spheres, once as is usual and once in an improved way, "
-        "and finds configurations free of self-collision by differential evolution. **Its figures come out again**: "
-        f"{most} of {len(agree)} printed volumes, errors and detection angles agree, once {len(misprints.misprints)} "
+        "The paper covers a mobile manipulator of nine joints with spheres, once as is usual and once in an improved "
+        "way, and finds configurations free of self-collision by differential evolution. "
+        f"**Its figures come out again**: {most} of {len(agree)} printed volumes, errors and detection angles agree, once {len(misprints.misprints)} "
         f"[misprints](#misprints) are put right."
     )
 

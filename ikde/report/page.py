@@ -179,7 +179,7 @@ class Details:
     """Blocks below a line of text, shown when it is opened."""
 
     summary: str
-    blocks: tuple[Text | Facts | Code | Table | Figure | Animation, ...]
+    blocks: "tuple[Block, ...]"
 
 
 Block = Text | Notice | Numbers | Facts | Code | Table | Figure | Animation | Gallery | Details

@@ -169,13 +169,6 @@ def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
         yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", "no contact"
 
 
-def _list_files(files: tuple[Path, ...]) -> list[str]:
-    if not files:
-        return []
-    names = ", ".join(file.name for file in files)
-    return [plain(f"files   {files[0].parent}: {names}")]
-
-
 def largest_wheel_speed(motion: TrackSummary) -> float | None:
     """Rad/s of the faster wheel; None without wheels or a motion."""
     wheels = motion.trajectory.wheel_speeds

@@ -116,7 +116,7 @@ class PathEntry(Entry):
     curve: CurveEntry | None = None
     """Lines, arcs and splines."""
     waypoints: Annotated[list[AnyTarget], Field(min_length=2)] | None = None
-    """A list of poses, or [x, y, z] each, written here: straight lines between them, shortest rotations between them."""
+    """A list of poses, or [x, y, z] each, written here: straight lines and shortest rotations between them."""
     file: FileEntry | None = None
     """A table of waypoints: CSV, Parquet or NPZ."""
 
