@@ -46,7 +46,8 @@ def _introduce(
     return Text(
         "The paper covers a mobile manipulator of nine joints with spheres, once as is usual and once in an improved "
         "way, and finds configurations free of self-collision by differential evolution. "
-        f"**Its figures come out again**: {most} of {len(agree)} printed volumes, errors and detection angles agree, once {len(misprints.misprints)} "
+        f"**Its figures come out again**: {most} of {len(agree)} printed volumes, errors and detection angles agree, "
+        f"once {len(misprints.misprints)} "
         f"[misprints](#misprints) are put right."
     )
 
