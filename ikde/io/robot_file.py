@@ -22,11 +22,13 @@ from ikde.model.robot import (
     AdjacentPair,
     Drive,
     Frame,
+    FreeSpheres,
     Inertia,
     Joint,
     Provenance,
     Robot,
     SphereRow,
+    Spheres,
     Wheels,
 )
 from ikde.model.rotation import rotation_from_rpy
@@ -41,6 +43,16 @@ LIMITS_BY_KIND: JsonDict = {
     "then": {"properties": {"lower": False, "upper": False}},
     "else": {"required": ["lower", "upper"]},
 }
+ROW_OR_FREE: JsonDict = {
+    "oneOf": [
+        {"required": ["from", "radius"], "properties": {"frame": False, "spheres": False}},
+        {
+            "required": ["frame", "spheres"],
+            "properties": dict.fromkeys(("from", "to", "radius", "count", "spacing"), False),
+        },
+    ]
+}
+FreeSphere = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Source = Name | dict[Name, Name]
 """The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
 
@@ -85,12 +97,16 @@ class FrameEntry(SourcedEntry):
 
 
 class SphereRowEntry(SourcedEntry):
-    """A row of equal spheres between two key points."""
+    """A row of equal spheres between two key points, or free spheres [x, y, z, radius] in a frame."""
+
+    model_config = ConfigDict(json_schema_extra=ROW_OR_FREE)
 
     component: Name
-    start: Name = Field(alias="from")
+    start: Name | None = Field(None, alias="from")
     end: Name | None = Field(None, alias="to")
-    radius: Number
+    radius: Number | None = None
+    frame: Name | None = None
+    spheres: Annotated[list[FreeSphere], Field(min_length=1, max_length=10_000)] | None = None
     count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
     spacing: Literal["touching", "even"] = "touching"
 
@@ -198,7 +214,7 @@ def _check_part(draft: Robot) -> Robot:
 def _to_robot(file: RobotFile) -> Robot:
     length, angle = file.units.length_m, file.units.angle_rad
     unit = {"revolute": angle, "prismatic": length, "continuous": angle}
-    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
+    if sum(len(entry.spheres or ()) or entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
         raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
     wheels = file.wheels
@@ -208,7 +224,10 @@ def _to_robot(file: RobotFile) -> Robot:
         joints=tuple(_to_joint(name, entry, unit[entry.kind]) for name, entry in file.joints.items()),
         frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
         tool=file.tool,
-        approximations={name: tuple(_to_row(e, length) for e in rows) for name, rows in file.spheres.items()},
+        approximations={
+            name: tuple(_to_spheres(e, length, ("spheres", name, k)) for k, e in enumerate(rows))
+            for name, rows in file.spheres.items()
+        },
         pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
         adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
         detectors={name: make_detector(name, entry, file.units) for name, entry in file.detectors.items()},
@@ -256,7 +275,18 @@ def _unit(name: str, axis: np.ndarray) -> np.ndarray:
     return axis / norm
 
 
-def _to_row(entry: SphereRowEntry, length: float) -> SphereRow:
+def _to_spheres(entry: SphereRowEntry, length: float, where: Where) -> Spheres:
+    """A row, or free spheres: what either needs, and nothing of the other."""
+    is_free = entry.frame is not None or entry.spheres is not None
+    for key in entry.model_fields_set & {"start", "end", "radius", "count", "spacing"} if is_free else ():
+        alias = {"start": "from", "end": "to"}.get(key, key)
+        raise InputError("free spheres have a frame, and x, y, z, radius each; this key is of a row", (*where, alias))
+    if entry.frame is not None and entry.spheres is not None:
+        spheres = tuple((x * length, y * length, z * length, r * length) for x, y, z, r in entry.spheres)
+        return FreeSpheres(component=entry.component, frame=entry.frame, spheres=spheres)
+    if entry.start is None or entry.radius is None:
+        missing = ("frame" if entry.frame is None else "spheres") if is_free else None
+        raise InputError("this key is missing", (*where, missing or ("from" if entry.start is None else "radius")))
     return SphereRow(
         component=entry.component,
         start=entry.start,
