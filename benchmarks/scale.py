@@ -54,14 +54,14 @@ def scatter(robot: Robot, count: int) -> Robot:
     """The robot with free spheres in place of its rows, as an import has them."""
     spheres = robot.detectors[robot.default_detector].spheres
     rows, rng, T = robot.approximations[spheres], np.random.default_rng(0), compute_frames(robot, robot.home)
-    free: dict[tuple[str, str], list[tuple[float, ...]]] = {}
+    free: dict[tuple[str, str], list[tuple[float, float, float, float]]] = {}
     for k in range(count):
         row = rows[k * len(rows) // count]  # those of one component together
         start, end = T[row.start], T[row.end]
         p_world = start[:3, 3] + rng.random() * (end - start)[:3, 3] + rng.normal(size=3) * 0.25 * row.radius_m
         p = start[:3, :3].T @ (p_world - start[:3, 3])
         radius = row.radius_m * (0.5 + 0.3 * rng.random())
-        free.setdefault((row.component, row.start), []).append((*p.tolist(), radius))
+        free.setdefault((row.component, row.start), []).append((float(p[0]), float(p[1]), float(p[2]), radius))
     entries = tuple(FreeSpheres(component=c, frame=f, spheres=tuple(own)) for (c, f), own in free.items())
     return replace(robot, approximations={spheres: entries})
 

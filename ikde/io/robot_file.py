@@ -14,6 +14,7 @@ from ikde.formats.entries import DetectorPartsEntry, Entry, Number, UnitsEntry, 
 from ikde.formats.names import MAX_TEXT_LENGTH, Name, Text
 from ikde.formats.robot_entries import make_detector
 from ikde.io.schema import as_file_error
+from ikde.io.sphere_entries import SourcedEntry, SphereRowEntry, to_spheres
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
 from ikde.model.robot import (
@@ -22,13 +23,10 @@ from ikde.model.robot import (
     AdjacentPair,
     Drive,
     Frame,
-    FreeSpheres,
     Inertia,
     Joint,
     Provenance,
     Robot,
-    SphereRow,
-    Spheres,
     Wheels,
 )
 from ikde.model.rotation import rotation_from_rpy
@@ -43,24 +41,6 @@ LIMITS_BY_KIND: JsonDict = {
     "then": {"properties": {"lower": False, "upper": False}},
     "else": {"required": ["lower", "upper"]},
 }
-ROW_OR_FREE: JsonDict = {
-    "oneOf": [
-        {"required": ["from", "radius"], "properties": {"frame": False, "spheres": False}},
-        {
-            "required": ["frame", "spheres"],
-            "properties": dict.fromkeys(("from", "to", "radius", "count", "spacing"), False),
-        },
-    ]
-}
-FreeSphere = Annotated[list[Number], Field(min_length=4, max_length=4)]
-Source = Name | dict[Name, Name]
-"""The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
-
-
-class SourcedEntry(Entry):
-    """An entry whose numbers have a source."""
-
-    source: Source | None = None
 
 
 class SourceEntry(Entry):
@@ -94,21 +74,6 @@ class FrameEntry(SourcedEntry):
     rpy: Vector = [0.0, 0.0, 0.0]
     joint: Name | None = None
     axis: Vector | None = None
-
-
-class SphereRowEntry(SourcedEntry):
-    """A row of equal spheres between two key points, or free spheres [x, y, z, radius] in a frame."""
-
-    model_config = ConfigDict(json_schema_extra=ROW_OR_FREE)
-
-    component: Name
-    start: Name | None = Field(None, alias="from")
-    end: Name | None = Field(None, alias="to")
-    radius: Number | None = None
-    frame: Name | None = None
-    spheres: Annotated[list[FreeSphere], Field(min_length=1, max_length=10_000)] | None = None
-    count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
-    spacing: Literal["touching", "even"] = "touching"
 
 
 class PairEntry(SourcedEntry):
@@ -225,7 +190,7 @@ def _to_robot(file: RobotFile) -> Robot:
         frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
         tool=file.tool,
         approximations={
-            name: tuple(_to_spheres(e, length, ("spheres", name, k)) for k, e in enumerate(rows))
+            name: tuple(to_spheres(e, length, ("spheres", name, k)) for k, e in enumerate(rows))
             for name, rows in file.spheres.items()
         },
         pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
@@ -273,28 +238,6 @@ def _unit(name: str, axis: np.ndarray) -> np.ndarray:
     if not 1e-9 < norm < np.inf:
         raise InputError("expected an axis that is not zero", ("frames", name, "axis"))
     return axis / norm
-
-
-def _to_spheres(entry: SphereRowEntry, length: float, where: Where) -> Spheres:
-    """A row, or free spheres: what either needs, and nothing of the other."""
-    is_free = entry.frame is not None or entry.spheres is not None
-    for key in entry.model_fields_set & {"start", "end", "radius", "count", "spacing"} if is_free else ():
-        alias = {"start": "from", "end": "to"}.get(key, key)
-        raise InputError("free spheres have a frame, and x, y, z, radius each; this key is of a row", (*where, alias))
-    if entry.frame is not None and entry.spheres is not None:
-        spheres = tuple((x * length, y * length, z * length, r * length) for x, y, z, r in entry.spheres)
-        return FreeSpheres(component=entry.component, frame=entry.frame, spheres=spheres)
-    if entry.start is None or entry.radius is None:
-        missing = ("frame" if entry.frame is None else "spheres") if is_free else None
-        raise InputError("this key is missing", (*where, missing or ("from" if entry.start is None else "radius")))
-    return SphereRow(
-        component=entry.component,
-        start=entry.start,
-        end=entry.end or entry.start,
-        radius_m=entry.radius * length,
-        count=entry.count,
-        spacing=entry.spacing,
-    )
 
 
 def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...], known: dict[str, Pairs]) -> Pairs:
