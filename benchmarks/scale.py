@@ -31,7 +31,7 @@ from ikde.kernels import cache_folder
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate import assemble
 from ikde.model.generate.module import load_module
-from ikde.model.robot import NO_DETECTOR, Frame, Robot, SphereRow
+from ikde.model.robot import NO_DETECTOR, FreeSpheres, Robot
 from ikde.solver.engines.pool import load_kernels
 from ikde.solver.plain import compute_frames
 from ikde.solver.problem import pack_searched
@@ -51,19 +51,19 @@ def load_chain(joints: int) -> Robot:
 
 
 def scatter(robot: Robot, count: int) -> Robot:
-    """The robot with single spheres in place of its rows: as an import has them, a fixed frame and a radius each."""
+    """The robot with free spheres in place of its rows, as an import has them."""
     spheres = robot.detectors[robot.default_detector].spheres
     rows, rng, T = robot.approximations[spheres], np.random.default_rng(0), compute_frames(robot, robot.home)
-    frames, single = [], []
+    free: dict[tuple[str, str], list[tuple[float, float, float, float]]] = {}
     for k in range(count):
         row = rows[k * len(rows) // count]  # those of one component together
         start, end = T[row.start], T[row.end]
         p_world = start[:3, 3] + rng.random() * (end - start)[:3, 3] + rng.normal(size=3) * 0.25 * row.radius_m
         p = start[:3, :3].T @ (p_world - start[:3, 3])
-        frames.append(Frame(name=f"s{k}", parent=row.start, p_parent_frame=p, R_parent_frame=np.eye(3)))
         radius = row.radius_m * (0.5 + 0.3 * rng.random())
-        single.append(SphereRow(component=row.component, start=f"s{k}", end=f"s{k}", radius_m=radius))
-    return replace(robot, frames=(*robot.frames, *frames), approximations={spheres: tuple(single)})
+        free.setdefault((row.component, row.start), []).append((float(p[0]), float(p[1]), float(p[2]), radius))
+    entries = tuple(FreeSpheres(component=c, frame=f, spheres=tuple(own)) for (c, f), own in free.items())
+    return replace(robot, approximations={spheres: entries})
 
 
 def make(name: str) -> Robot:

@@ -85,7 +85,7 @@ class Grader:
     def components(self):
         """Component -> body, over all approximations."""
         rows = [row for rows in self.file.get("spheres", {}).values() for row in rows]
-        return {row["component"]: self.body(row["from"]) for row in rows}
+        return {row["component"]: self.body(row.get("from", row.get("frame"))) for row in rows}
 
     def adjacent(self):
         """Pair -> why, of all pairs of components that `non_adjacent` leaves out."""
@@ -154,6 +154,12 @@ class Grader:
         """Component -> (centres [T, S, 3], radii [S])."""
         placed, centres, radii = self.place(Q), {}, {}
         for row in self.file["spheres"][approximation]:
+            if "spheres" in row:
+                own = self.length * np.array(row["spheres"], dtype=float)
+                R, p = placed[row["frame"]]
+                centres.setdefault(row["component"], []).append(p[:, None] + np.einsum("tij,sj->tsi", R, own[:, :3]))
+                radii.setdefault(row["component"], []).append(own[:, 3])
+                continue
             name, start, end = row["component"], row["from"], row.get("to", row["from"])
             radius, count = float(row["radius"]) * self.length, int(row.get("count", 1))
             line = placed[start][1], placed[end][1]

@@ -138,6 +138,7 @@ def validate(
 def export(
     name: RobotArgument,
     urdf: Annotated[bool, typer.Option("--urdf", help="Write URDF.")] = False,
+    srdf: Annotated[bool, typer.Option("--srdf", help="Write SRDF: pairs that are left out.")] = False,
     mjcf: Annotated[bool, typer.Option("--mjcf", help="Write MJCF, MuJoCo's format.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Where it goes (default: printed).")] = None,
     detector: DetectorOption = None,
@@ -148,12 +149,14 @@ def export(
     """
     from ikde.errors import InputError
     from ikde.io.mjcf import format_mjcf
+    from ikde.io.srdf_writer import format_srdf
     from ikde.io.urdf import format_urdf
     from ikde.io.xml_file import write_xml
 
-    if urdf == mjcf:
-        raise InputError(f"expected one of --urdf and --mjcf, got {'both' if urdf else 'none'}")
-    text = (format_urdf if urdf else format_mjcf)(read_robot(name), collision=detector)
+    wanted = [form for form, asked in ((format_urdf, urdf), (format_srdf, srdf), (format_mjcf, mjcf)) if asked]
+    if len(wanted) != 1:
+        raise InputError(f"expected one of --urdf, --srdf and --mjcf, got {len(wanted) or 'none'}")
+    text = wanted[0](read_robot(name), collision=detector)
     if out is None:
         print_result(text)
     else:

@@ -14,7 +14,7 @@ from ikde.io.xml_file import (
     format_numbers,
     list_carriers,
     list_components,
-    reserve_name,
+    name_components,
 )
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import WORLD, Frame, Joint, Robot
@@ -81,10 +81,8 @@ def _add_joint(body: ET.Element, frame: Frame, joint: Joint) -> None:
 def _add_components(root: ET.Element, collision: CollisionModel, bodies: dict[str, ET.Element]) -> None:
     carriers = list_carriers(collision.robot)
     components = list_components(collision)
-    taken = set(bodies)
-    names: dict[str, str] = {}
+    names = name_components(collision)
     for component, spheres in components.items():
-        names[component] = reserve_name(f"component_{component}", taken)
         body = ET.SubElement(bodies[carriers[spheres[0].body]], "body", name=names[component])
         for index, sphere in enumerate(spheres):
             place = format_numbers(sphere.p_body_sphere)

@@ -14,6 +14,7 @@ from ikde.formats.entries import DetectorPartsEntry, Entry, Number, UnitsEntry, 
 from ikde.formats.names import MAX_TEXT_LENGTH, Name, Text
 from ikde.formats.robot_entries import make_detector
 from ikde.io.schema import as_file_error
+from ikde.io.sphere_entries import SourcedEntry, SphereRowEntry, to_spheres
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
 from ikde.model.robot import (
@@ -26,7 +27,6 @@ from ikde.model.robot import (
     Joint,
     Provenance,
     Robot,
-    SphereRow,
     Wheels,
 )
 from ikde.model.rotation import rotation_from_rpy
@@ -41,14 +41,6 @@ LIMITS_BY_KIND: JsonDict = {
     "then": {"properties": {"lower": False, "upper": False}},
     "else": {"required": ["lower", "upper"]},
 }
-Source = Name | dict[Name, Name]
-"""The name of an entry in `sources`, or one for each key of the entry that holds numbers."""
-
-
-class SourcedEntry(Entry):
-    """An entry whose numbers have a source."""
-
-    source: Source | None = None
 
 
 class SourceEntry(Entry):
@@ -82,17 +74,6 @@ class FrameEntry(SourcedEntry):
     rpy: Vector = [0.0, 0.0, 0.0]
     joint: Name | None = None
     axis: Vector | None = None
-
-
-class SphereRowEntry(SourcedEntry):
-    """A row of equal spheres between two key points."""
-
-    component: Name
-    start: Name = Field(alias="from")
-    end: Name | None = Field(None, alias="to")
-    radius: Number
-    count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
-    spacing: Literal["touching", "even"] = "touching"
 
 
 class PairEntry(SourcedEntry):
@@ -198,7 +179,7 @@ def _check_part(draft: Robot) -> Robot:
 def _to_robot(file: RobotFile) -> Robot:
     length, angle = file.units.length_m, file.units.angle_rad
     unit = {"revolute": angle, "prismatic": length, "continuous": angle}
-    if sum(entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
+    if sum(len(entry.spheres or ()) or entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
         raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
     wheels = file.wheels
@@ -208,7 +189,10 @@ def _to_robot(file: RobotFile) -> Robot:
         joints=tuple(_to_joint(name, entry, unit[entry.kind]) for name, entry in file.joints.items()),
         frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
         tool=file.tool,
-        approximations={name: tuple(_to_row(e, length) for e in rows) for name, rows in file.spheres.items()},
+        approximations={
+            name: tuple(to_spheres(e, length, ("spheres", name, k)) for k, e in enumerate(rows))
+            for name, rows in file.spheres.items()
+        },
         pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
         adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
         detectors={name: make_detector(name, entry, file.units) for name, entry in file.detectors.items()},
@@ -254,17 +238,6 @@ def _unit(name: str, axis: np.ndarray) -> np.ndarray:
     if not 1e-9 < norm < np.inf:
         raise InputError("expected an axis that is not zero", ("frames", name, "axis"))
     return axis / norm
-
-
-def _to_row(entry: SphereRowEntry, length: float) -> SphereRow:
-    return SphereRow(
-        component=entry.component,
-        start=entry.start,
-        end=entry.end or entry.start,
-        radius_m=entry.radius * length,
-        count=entry.count,
-        spacing=entry.spacing,
-    )
 
 
 def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...], known: dict[str, Pairs]) -> Pairs:

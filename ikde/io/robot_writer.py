@@ -12,7 +12,7 @@ import numpy as np
 from ikde.errors import printable
 from ikde.io.urdf import rpy_from_rotation
 from ikde.io.xml_file import write_xml
-from ikde.model.robot import Frame, Inertia, Joint, Provenance, Robot, SphereRow
+from ikde.model.robot import Frame, FreeSpheres, Inertia, Joint, Provenance, Robot, Spheres
 from ikde.model.validate import NON_ADJACENT
 
 Entry = dict[str, Any]
@@ -88,7 +88,9 @@ def _frame_entry(frame: Frame) -> Entry:
     return entry
 
 
-def _row_entry(row: SphereRow) -> Entry:
+def _row_entry(row: Spheres) -> Entry:
+    if isinstance(row, FreeSpheres):
+        return {"component": row.component, "frame": row.frame, "spheres": [list(sphere) for sphere in row.spheres]}
     line: Entry = {} if row.end == row.start else {"to": row.end}
     many: Entry = {"count": row.count} if row.count != 1 else {}
     many |= {"spacing": row.spacing} if row.spacing != "touching" else {}

@@ -15,6 +15,7 @@ from ikde.io.xml_file import (
     format_numbers,
     list_carriers,
     list_components,
+    name_components,
     reserve_name,
 )
 from ikde.kernels.arrays import Floats
@@ -29,7 +30,7 @@ def format_urdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     Every frame is a link of its name and every joint keeps its name; a fixed frame hangs on the joint `fixed_<frame>`.
     Each component is a link `component_<name>`, fixed to the link that its joint moves, so that pairs of components
     are pairs of links; its spheres are the collision (and visual) elements `<name>_0`, `<name>_1` and so on. A name
-    that is taken gets an underscore. URDF cannot say which pairs count: leave out those that the detector leaves out.
+    that is taken gets an underscore. URDF cannot say which pairs count: `format_srdf` writes that.
 
     Args:
         robot: the robot.
@@ -40,14 +41,14 @@ def format_urdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     """
     model = CollisionModel.of(robot, collision)
     root = ET.Element("robot", name=robot.name)
-    links, joints = {WORLD, *(frame.name for frame in robot.frames)}, set(robot.joint_names)
+    links, joints = name_components(model), set(robot.joint_names)
     _add_link(root, WORLD)
     for frame in robot.frames:
         _add_link(root, frame.name, has_mass=frame.joint is not None)
         _add_joint(root, robot, frame, joints)
     carriers = list_carriers(robot)
     for component, spheres in list_components(model).items():
-        link = _add_link(root, reserve_name(f"component_{component}", links))
+        link = _add_link(root, links[component])
         _add_spheres(link, component, spheres)
         joint = ET.SubElement(root, "joint", name=reserve_name(f"fixed_{link.attrib['name']}", joints), type="fixed")
         ET.SubElement(joint, "parent", link=carriers[spheres[0].body])

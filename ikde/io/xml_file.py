@@ -55,6 +55,12 @@ def list_components(collision: CollisionModel) -> dict[str, list[Sphere]]:
     return components
 
 
+def name_components(collision: CollisionModel) -> dict[str, str]:
+    """Name of the link, or body, of each component: `component_<name>`, or another one if a frame is called so."""
+    taken = {WORLD, *(frame.name for frame in collision.robot.frames)}
+    return {component: reserve_name(f"component_{component}", taken) for component in list_components(collision)}
+
+
 def list_carriers(robot: Robot) -> list[str]:
     """Name of the frame that stands where each of the tree's bodies does: that of its joint, or the world."""
     by_joint = {frame.joint: frame.name for frame in robot.frames}

@@ -11,7 +11,7 @@ from ikde.kernels.arrays import CollisionArrays
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
-from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, SphereRow
+from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, Spheres
 from ikde.model.spheres import Sphere, expand_rows
 from ikde.model.tree import build_tree
 
@@ -73,7 +73,7 @@ class CollisionModel:
         return self.detector.safe_distance_m if self.detector else 0.0
 
     @property
-    def rows(self) -> tuple[SphereRow, ...]:
+    def rows(self) -> tuple[Spheres, ...]:
         """Rows of spheres of all components, compared or not; none without a detector."""
         return self.robot.approximations[self.detector.spheres] if self.detector else ()
 

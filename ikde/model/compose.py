@@ -15,10 +15,11 @@ from ikde.model.robot import (
     AdjacentPair,
     Detector,
     Frame,
+    FreeSpheres,
     Inertia,
     Joint,
     Robot,
-    SphereRow,
+    Spheres,
 )
 from ikde.model.rotation import rotation_about
 from ikde.model.validate import NON_ADJACENT, check_robot
@@ -33,7 +34,7 @@ class _Assembly:
 
     joints: list[Joint] = field(default_factory=list)
     frames: list[Frame] = field(default_factory=list)
-    rows: list[SphereRow] = field(default_factory=list)
+    rows: list[Spheres] = field(default_factory=list)
     adjacent: list[AdjacentPair] = field(default_factory=list)
     compared: list[tuple[str, str]] = field(default_factory=list)
     inertias: dict[str, Inertia] = field(default_factory=dict)
@@ -150,7 +151,9 @@ def _add_spheres(assembly: _Assembly, part: Robot, word: str, frame_of: Mapping[
     rows = part.approximations[names[0]] if len(names) == 1 else ()
     component_of = _rename(dict.fromkeys(row.component for row in rows), word, {row.component for row in assembly.rows})
     assembly.rows += [
-        replace(row, component=component_of[row.component], start=frame_of[row.start], end=frame_of[row.end])
+        replace(row, component=component_of[row.component], frame=frame_of[row.frame])
+        if isinstance(row, FreeSpheres)
+        else replace(row, component=component_of[row.component], start=frame_of[row.start], end=frame_of[row.end])
         for row in rows
     ]
     left_out = [(pair.a, pair.b, pair.reason) for pair in part.adjacent]

@@ -2,14 +2,15 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.kernels.arrays import CollisionArrays, Floats, Indices, Ints, RobotArrays, TargetArrays
-from ikde.model.robot import WORLD, Detector, Robot
+from ikde.model.robot import WORLD, Detector, FreeSpheres, Robot
 from ikde.model.rotation import rotation_with_z
-from ikde.model.spheres import bounding_sphere, expand_rows
+from ikde.model.spheres import Sphere, bounding_sphere, expand_rows
 from ikde.model.target import Target, Targets
 from ikde.model.tree import Body, build_tree, transform
 
@@ -44,11 +45,7 @@ def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
     spheres = [sphere for sphere in every if sphere.component in compared]
     components = list(dict.fromkeys(sphere.component for sphere in spheres))
     groups = [[s for s in spheres if s.component == c] for c in components]
-    rows = robot.approximations[detector.spheres] if detector else ()
-    used_rows = list(dict.fromkeys(sphere.row for sphere in spheres))
-    row_ends = np.cumsum([0, *(sum(s.row == row for s in spheres) for row in used_rows)])
     ends = np.cumsum([0, *map(len, groups)])
-    frames = frame_names(robot)
     aligned = [_align(body).T for body in tree.bodies]
     centres = [_map(aligned[s.body], s.p_body_sphere) for s in spheres]
     bounds = [(g[0].body, *bounding_sphere(g)) for g in groups]
@@ -60,15 +57,23 @@ def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
         components=_table([(g[0].body, ends[i], ends[i + 1]) for i, g in enumerate(groups)], 3),
         bounds=_floats(np.reshape([[*_map(aligned[body], p), r] for body, p, r in bounds], (-1, 4))),
         pairs=_table(indices, 2),
-        rows=_table(
-            [
-                (frames.index(rows[row].start), frames.index(rows[row].end), row_ends[i], row_ends[i + 1])
-                for i, row in enumerate(used_rows)
-            ],
-            4,
-        ),
+        rows=_table(_list_rows(robot, detector.spheres, spheres) if detector else (), 4),
         offset=_floats([s.offset_m for s in spheres]),
     )
+
+
+def _list_rows(robot: Robot, approximation: str, spheres: list[Sphere]) -> list[tuple[int, int, int, int]]:
+    """Key points and spheres of each row; a free sphere is one of its own, about its frame."""
+    frames, entries = frame_names(robot), robot.approximations[approximation]
+    rows: list[tuple[int, int, int, int]] = []
+    for entry, group in groupby(range(len(spheres)), key=lambda k: spheres[k].row):
+        numbers, row = list(group), entries[entry]
+        ends = frames.index(row.start), frames.index(row.end)
+        if isinstance(row, FreeSpheres):
+            rows += [(*ends, k, k + 1) for k in numbers]
+        else:
+            rows.append((*ends, numbers[0], numbers[-1] + 1))
+    return rows
 
 
 def frame_names(robot: Robot) -> list[str]:

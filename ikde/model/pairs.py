@@ -2,11 +2,11 @@
 
 from itertools import combinations
 
-from ikde.model.robot import LeftOutPair, Pairs, Robot, SphereRow
+from ikde.model.robot import LeftOutPair, Pairs, Robot, Spheres
 from ikde.model.tree import Tree
 
 
-def component_bodies(rows: tuple[SphereRow, ...], tree: Tree) -> dict[str, int]:
+def component_bodies(rows: tuple[Spheres, ...], tree: Tree) -> dict[str, int]:
     """Body of each component; a component's rows all lie on one body (`model.validate`)."""
     return {row.component: tree.frame_body[row.start] for row in rows}
 

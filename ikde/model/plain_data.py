@@ -30,4 +30,7 @@ def decode(kind: Any, value: Any) -> Any:
     if origin is Mapping or (isinstance(origin, type) and issubclass(origin, Mapping)):
         return {decode(inner[0], key): decode(inner[1], item) for key, item in value}
     known = [part for part in inner if part is not type(None)]
+    for part in known if len(known) > 1 else ():  # dataclasses that their fields tell apart
+        if is_dataclass(part) and {field.name for field in fields(part)} == set(value):
+            return decode(part, value)
     return decode(known[0], value) if value is not None and type(None) in inner else value

@@ -86,6 +86,35 @@ class SphereRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FreeSpheres:
+    """Spheres of one component that stand anywhere in a frame: what covers a mesh stands in no rows."""
+
+    component: str
+    frame: str
+    spheres: tuple[tuple[float, float, float, float], ...]
+    """Centre in the frame and radius of each: x, y, z, r in m."""
+
+    @property
+    def start(self) -> str:
+        """The frame, as a row's first key point; it is the last as well."""
+        return self.frame
+
+    @property
+    def end(self) -> str:
+        """The frame."""
+        return self.frame
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.spheres)
+
+
+Spheres = SphereRow | FreeSpheres
+"""An entry of an approximation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Detector:
     """What self-collision means: an approximation, the pairs that are compared, and the safe distance in m.
 
@@ -146,7 +175,7 @@ class Robot:
     joints: tuple[Joint, ...]
     frames: tuple[Frame, ...]
     tool: str
-    approximations: Mapping[str, tuple[SphereRow, ...]]
+    approximations: Mapping[str, tuple[Spheres, ...]]
     adjacent: tuple[AdjacentPair, ...]
     """Pairs that are adjacent although the tree does not show it."""
     pair_lists: Mapping[str, Pairs]

@@ -1,11 +1,11 @@
-"""Sphere approximations: from the paper's rows (component, key points, radius, count) to spheres on bodies."""
+"""Sphere approximations: from rows (component, key points, radius, count) and free spheres to spheres on bodies."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import Robot, SphereRow
+from ikde.model.robot import FreeSpheres, Robot, SphereRow
 from ikde.model.tree import Tree
 
 
@@ -21,7 +21,7 @@ class Sphere:
     row: int
     """Index of its row in the approximation."""
     offset_m: float
-    """Along the row's line, from the middle."""
+    """Along the row's line, from the middle; 0 of a free sphere."""
 
 
 def row_offsets(row: SphereRow, length_m: float) -> Floats:
@@ -39,6 +39,9 @@ def expand_rows(robot: Robot, tree: Tree, approximation: str) -> tuple[Sphere, .
     spheres = []
     for index in sorted(range(len(rows)), key=lambda i: order.index(rows[i].component)):
         row = rows[index]
+        if isinstance(row, FreeSpheres):
+            spheres += _place_free(row, index, tree)
+            continue
         body = tree.frame_body[row.start]
         start, end = tree.T_body_frame[row.start][:3, 3], tree.T_body_frame[row.end][:3, 3]
         length = float(np.linalg.norm(end - start))
@@ -57,6 +60,21 @@ def expand_rows(robot: Robot, tree: Tree, approximation: str) -> tuple[Sphere, .
     return tuple(spheres)
 
 
+def _place_free(free: FreeSpheres, index: int, tree: Tree) -> list[Sphere]:
+    T = tree.T_body_frame[free.frame]
+    return [
+        Sphere(
+            component=free.component,
+            body=tree.frame_body[free.frame],
+            p_body_sphere=T[:3, :3] @ np.array(centre) + T[:3, 3],
+            radius_m=radius,
+            row=index,
+            offset_m=0.0,
+        )
+        for *centre, radius in free.spheres
+    ]
+
+
 def bounding_sphere(spheres: list[Sphere]) -> tuple[Floats, float]:
     """A sphere around spheres of one body, centred on the middle of their box.
 
@@ -73,5 +91,6 @@ def approximation_volume_m3(robot: Robot, approximation: str) -> dict[str, float
     """Sum of the sphere volumes of each component in m^3 [Qiao2021, Table 2]; overlaps count twice, as there."""
     volumes = dict.fromkeys(robot.components(approximation), 0.0)
     for row in robot.approximations[approximation]:
-        volumes[row.component] += row.count * 4.0 / 3.0 * np.pi * row.radius_m**3
+        radii = [r for *_, r in row.spheres] if isinstance(row, FreeSpheres) else [row.radius_m] * row.count
+        volumes[row.component] += sum(4.0 / 3.0 * np.pi * radius**3 for radius in radii)
     return volumes

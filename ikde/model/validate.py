@@ -17,10 +17,12 @@ from ikde.model.robot import (
     TOOL,
     WORLD,
     Frame,
+    FreeSpheres,
     Joint,
     Pairs,
     Robot,
     SphereRow,
+    Spheres,
 )
 from ikde.model.rotation import check_rotation
 from ikde.model.tree import Tree, build_tree
@@ -178,36 +180,52 @@ def _check_tool(robot: Robot) -> None:
     _require(robot.tool == TOOL or TOOL not in names, taken, "frames", TOOL)
 
 
-def _check_rows(rows: tuple[SphereRow, ...], tree: Tree, where: tuple[str | int, ...]) -> None:
+def _check_rows(rows: tuple[Spheres, ...], tree: Tree, where: tuple[str | int, ...]) -> None:
     body_of: dict[str, int] = {}
     for index, row in enumerate(rows):
         here = (*where, index)
-        _check_name(row.start, tree.frame_body, (*here, "from"), "frame")
-        _check_name(row.end, tree.frame_body, (*here, "to"), "frame")
-        _require(
-            0.0 < row.radius_m <= MAX_MAGNITUDE,
-            f"expected a radius above 0, up to {MAX_MAGNITUDE:g} m",
-            *here,
-            "radius",
-        )
-        _require(row.count >= 1, "expected a count of at least 1", *here, "count")
+        if isinstance(row, FreeSpheres):
+            _check_free(row, tree, here)
+        else:
+            _check_row(row, tree, here)
         body = tree.frame_body[row.start]
-        _require(
-            body == tree.frame_body[row.end],
-            "these two frames are on different bodies; add a fixed frame on one of the two",
-            *here,
-            "to",
-        )
-        length = np.linalg.norm(tree.T_body_frame[row.start][:3, 3] - tree.T_body_frame[row.end][:3, 3])
-        _require(
-            row.count == 1 or bool(length > 0.0), "several spheres need two key points to stand between", *here, "to"
-        )
         _require(
             body_of.setdefault(row.component, body) == body,
             f"the rows of {row.component!r} lie on different bodies; a component is rigid",
             *here,
             "component",
         )
+
+
+def _check_free(free: FreeSpheres, tree: Tree, here: tuple[str | int, ...]) -> None:
+    _check_name(free.frame, tree.frame_body, (*here, "frame"), "frame")
+    _require(free.count >= 1, "expected at least one sphere [x, y, z, radius]", *here, "spheres")
+    for number, (x, y, z, radius) in enumerate(free.spheres):
+        place = (*here, "spheres", number)
+        is_near = all(abs(v) <= MAX_MAGNITUDE for v in (x, y, z))  # False for NaN
+        _require(is_near, f"expected a finite centre, at most {MAX_MAGNITUDE:g} m from 0", *place)
+        _require(0.0 < radius <= MAX_MAGNITUDE, f"expected a radius above 0, up to {MAX_MAGNITUDE:g} m", *place, 3)
+
+
+def _check_row(row: SphereRow, tree: Tree, here: tuple[str | int, ...]) -> None:
+    _check_name(row.start, tree.frame_body, (*here, "from"), "frame")
+    _check_name(row.end, tree.frame_body, (*here, "to"), "frame")
+    _require(
+        0.0 < row.radius_m <= MAX_MAGNITUDE,
+        f"expected a radius above 0, up to {MAX_MAGNITUDE:g} m",
+        *here,
+        "radius",
+    )
+    _require(row.count >= 1, "expected a count of at least 1", *here, "count")
+    body = tree.frame_body[row.start]
+    _require(
+        body == tree.frame_body[row.end],
+        "these two frames are on different bodies; add a fixed frame on one of the two",
+        *here,
+        "to",
+    )
+    length = np.linalg.norm(tree.T_body_frame[row.start][:3, 3] - tree.T_body_frame[row.end][:3, 3])
+    _require(row.count == 1 or bool(length > 0.0), "several spheres need two key points to stand between", *here, "to")
 
 
 def _check_pairs(robot: Robot, components: Mapping[str, int]) -> None:

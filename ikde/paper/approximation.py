@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import Robot
+from ikde.model.robot import Robot, SphereRow
 from ikde.model.spheres import approximation_volume_m3
 from ikde.paper.columns import label, make_table, mark_off, ours, published
 from ikde.paper.inputs import APPROXIMATIONS, Inputs, meant
@@ -115,7 +115,7 @@ def _compare(robot: Robot, place: tuple[str, str], entry: Mapping[str, Any], vol
 def describe_spheres(robot: Robot, approximation: str, component: str) -> str:
     """Counts and radii of a component's spheres, as in `3 x R80 + 1 x R80` (mm), rows in their order."""
     rows = [row for row in robot.approximations[approximation] if row.component == component]
-    return " + ".join(f"{row.count} x R{1e3 * row.radius_m:g}" for row in rows)
+    return " + ".join(f"{row.count} x R{1e3 * row.radius_m:g}" for row in rows if isinstance(row, SphereRow))
 
 
 def find_provenance(robot: Robot, approximation: str, component: str) -> list[str]:

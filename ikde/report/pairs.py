@@ -10,7 +10,7 @@ from ikde.model.robot import NO_DETECTOR
 from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
 from ikde.solver.check import compute_pairs
-from ikde.solver.touching import find_always_touching
+from ikde.solver.touching import CONFIGURATIONS, find_always_touching, find_standing
 
 
 def pairs_json(collision: CollisionModel) -> dict[str, Any] | None:
@@ -27,6 +27,7 @@ def pairs_json(collision: CollisionModel) -> dict[str, Any] | None:
         "left_out": [asdict(pair) for pair in collision.left_out_pairs],
         "always_touching": [list(pair) for pair in touching.pairs] if touching else [],
         "to_add": list(touching.lines) if touching else [],
+        "standing": [asdict(pair) for pair in find_standing(collision)],
     }
 
 
@@ -46,7 +47,7 @@ def format_pairs(collision: CollisionModel, units: Units, *, color: bool = False
     tables = [_compared_table(collision, units)]
     if collision.left_out_pairs:
         tables.append(_left_out_table(collision))
-    lines = [_describe(collision), *_touching_lines(collision)]
+    lines = [_describe(collision), *_touching_lines(collision), *_standing_lines(collision, units)]
     return "\n".join([*lines, "", render(*tables, color=color, width=width)])
 
 
@@ -65,6 +66,15 @@ def _touching_lines(collision: CollisionModel) -> list[str]:
         return []
     meant = f"if that is meant, {touching.remedy}{':' if touching.lines else ''}"
     return [str(touching), meant, *touching.lines]
+
+
+def _standing_lines(collision: CollisionModel, units: Units) -> list[str]:
+    """A line for each pair that no safe distance may reach."""
+    return [
+        f"{pair.a} - {pair.b} stand {units.format_length(pair.clearance_m)} apart in each of {CONFIGURATIONS:,} random "
+        "configurations: with a safe distance as large, nothing is free"
+        for pair in find_standing(collision)
+    ]
 
 
 def _compared_table(collision: CollisionModel, units: Units) -> Any:

@@ -14,7 +14,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.branches import find_branches
 from ikde.model.closed_form import URArm, find_still_arm, find_ur_arm
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import WORLD, Robot
+from ikde.model.robot import WORLD, FreeSpheres, Robot, Spheres
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.problem import Problem
@@ -109,7 +109,7 @@ class Motions:
         ways = {name: _list_ways_up(robot, name) for name in (WORLD, *(frame.name for frame in robot.frames))}
         parts = {name: ([False] * 6, np.zeros(6), 0.0) for pair in pairs for name in pair}
         for row in collision.rows:
-            beyond = 2.0 * row.radius_m * row.count if row.spacing == "touching" else 0.0
+            beyond = _reach_beyond(row)
             for point in (row.start, row.end):
                 levers = np.array([_join(ways[axis], ways[point]) for axis in axes])
                 _, old, old_tool = parts.get(row.component, (None, 0.0, 0.0))
@@ -184,3 +184,10 @@ def find_beyond(problem: Problem, target: Target) -> Floats | None:
     if not len(free):
         return None
     return free[_measure_excess(problem, free).sum(axis=-1).argmin()]
+
+
+def _reach_beyond(row: Spheres) -> float:
+    """How far a row's centres may be beyond its key points, m."""
+    if isinstance(row, FreeSpheres):
+        return float(np.linalg.norm(np.array(row.spheres)[:, :3], axis=1).max())
+    return 2.0 * row.radius_m * row.count if row.spacing == "touching" else 0.0

@@ -15,7 +15,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.flat_arguments import Terms, flatten_grader
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
-from ikde.model.robot import Robot
+from ikde.model.robot import FreeSpheres, Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.plain import compute_gaps
 from ikde.solver.settings import SolveSettings
@@ -159,8 +159,9 @@ def measure_scale(robot: Robot, p_world_tool: Floats, Q: Floats) -> Floats:
 @lru_cache(maxsize=64)
 def _sum_lengths(robot: Robot) -> float:
     """All that can add up in a coordinate at q = 0, m: the frames' places and the largest sphere."""
-    radii = [row.radius_m for rows in robot.approximations.values() for row in rows]
-    return float(sum(np.abs(frame.p_parent_frame).max() for frame in robot.frames)) + max(radii, default=0.0)
+    rows = [row for rows in robot.approximations.values() for row in rows]
+    sizes = [np.abs(row.spheres).sum(axis=1).max() if isinstance(row, FreeSpheres) else row.radius_m for row in rows]
+    return float(sum(np.abs(frame.p_parent_frame).max() for frame in robot.frames)) + float(max(sizes, default=0.0))
 
 
 def _difference(kernel: Floats, plain: Floats) -> Floats:

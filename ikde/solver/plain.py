@@ -12,7 +12,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import WORLD, Pairs, Robot, SphereRow
+from ikde.model.robot import WORLD, FreeSpheres, Pairs, Robot, SphereRow
 
 
 def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
@@ -68,6 +68,12 @@ def compute_components(
     centres: dict[str, list[Floats]] = {}
     radii: dict[str, list[float]] = {}
     for row in collision.rows:
+        if isinstance(row, FreeSpheres):
+            own, T = np.array(row.spheres), Ts_world[row.frame]
+            points = np.einsum("...ij,nj->...ni", T[..., :3, :3], own[:, :3]) + T[..., None, :3, 3]
+            centres.setdefault(row.component, []).append(points)
+            radii.setdefault(row.component, []).extend(own[:, 3])
+            continue
         points = compute_row_centres(row, Ts_world[row.start][..., :3, 3], Ts_world[row.end][..., :3, 3])
         centres.setdefault(row.component, []).append(points)
         radii.setdefault(row.component, []).extend([row.radius_m] * row.count)

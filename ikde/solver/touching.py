@@ -1,4 +1,4 @@
-"""Pairs that touch whatever the joints do: nothing is free then, and only the robot's file can say that it is meant."""
+"""Pairs that touch whatever the joints do, so that nothing is free, and pairs that stand close without ever moving."""
 
 import json
 import re
@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector, Pairs, Robot
 from ikde.model.validate import NON_ADJACENT
@@ -16,6 +17,7 @@ from ikde.solver.plain import compute_gaps
 CONFIGURATIONS = 1_000
 FIRST = 16  # of them: few pairs are left after these
 ROOM = 2**22  # gaps at a time, of pairs or of the spheres of one: 100 MB
+CLOSE_M, STILL_M = 0.02, 1e-9  # a gap that could be asked for as a margin; what rounding may move it by
 TO_FILL_IN = "why they may touch"
 PLAIN_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")  # a key that YAML reads as it is
 
@@ -42,7 +44,7 @@ def find_always_touching(collision: CollisionModel) -> AlwaysTouching | None:
     robot, detector = collision.robot, collision.detector
     if detector is None:
         return None
-    drawn = np.random.default_rng(0).uniform(*robot.drawn, (CONFIGURATIONS, len(robot.joints)))
+    drawn = draw_configurations(robot)
     pairs, done = collision.pairs, 0
     while pairs and done < CONFIGURATIONS:
         piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
@@ -53,6 +55,39 @@ def find_always_touching(collision: CollisionModel) -> AlwaysTouching | None:
         return None
     remedy, lines = _leave_out(robot, detector, pairs)
     return AlwaysTouching(pairs=pairs, remedy=remedy, lines=lines)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StandingPair:
+    """A pair with one clearance in every configuration that was drawn: no safe distance may be as large."""
+
+    a: str
+    b: str
+    clearance_m: float
+
+
+@lru_cache(maxsize=64)
+def find_standing(collision: CollisionModel) -> tuple[StandingPair, ...]:
+    """Compared pairs that are free, but at one and the same gap of at most 20 mm; closest first."""
+    if collision.detector is None:
+        return ()
+    drawn = draw_configurations(collision.robot)
+    pairs, done, least, most = collision.pairs, 0, np.array(np.inf), np.array(-np.inf)
+    while pairs and done < CONFIGURATIONS:
+        piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
+        gaps = compute_gaps(collision, piece, pairs)
+        least, most = np.minimum(least, gaps.min(axis=0)), np.maximum(most, gaps.max(axis=0))
+        stands = (most - least <= STILL_M) & (least > collision.limit_m) & (most <= CLOSE_M)
+        pairs = tuple(pair for pair, is_still in zip(pairs, stands, strict=True) if is_still)
+        least, most, done = least[stands], most[stands], done + len(piece)
+    gaps_m = np.reshape(least, -1)[: len(pairs)].tolist()
+    found = (StandingPair(a=a, b=b, clearance_m=gap) for (a, b), gap in zip(pairs, gaps_m, strict=True))
+    return tuple(sorted(found, key=lambda pair: pair.clearance_m))
+
+
+def draw_configurations(robot: Robot) -> Floats:
+    """The 1,000 random configurations [K, N] inside the limits, the same every time."""
+    return np.random.default_rng(0).uniform(*robot.drawn, (CONFIGURATIONS, len(robot.joints)))
 
 
 def _count_at_once(collision: CollisionModel, pairs: Pairs) -> int:

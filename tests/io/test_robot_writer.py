@@ -79,3 +79,11 @@ def test_efforts_masses_and_the_drive_come_back():
     assert isinstance(arm, Inertia)
     assert (arm.mass_kg, arm.p_frame_com.tolist()) == (3.0, [0.01, 0, 0])
     assert arm.I_com_frame.tolist() == [[1, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 3]]
+
+
+def test_free_spheres_come_back(tmp_path):
+    robot = load_text(
+        GOOD.replace("from: rail, radius: 200", "frame: rail, spheres: [[1, 2.5, 3, 200], [0, 0, 9, 30]]")
+    )
+    robot.save(tmp_path / "robot.yaml")
+    assert ikde.load_robot(tmp_path / "robot.yaml").approximations == robot.approximations

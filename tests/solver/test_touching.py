@@ -9,7 +9,7 @@ import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.solver import touching as module
 from ikde.solver.plain import compute_gaps
-from ikde.solver.touching import TO_FILL_IN, find_always_touching
+from ikde.solver.touching import TO_FILL_IN, find_always_touching, find_standing
 from tests.bare_robot import BARE
 from tests.robot_files import load_text
 
@@ -110,3 +110,30 @@ def test_many_spheres_are_compared_a_few_configurations_at_a_time(monkeypatch, s
     assert find(robot).pairs == expected
     assert max(sizes) <= 300
     assert len(sizes) > 3
+
+
+HUB = "tool: tip", "  hub: {parent: deck, xyz: [0.2, 0, 0.25]}\ntool: tip"  # below the shoulder, on its axis
+LARGE = "platform, from: platform, radius: 0.35", "platform, from: hub, radius: 0.3"
+ROW = "from: upper_arm_start, to: upper_arm_end, radius: 0.075, count: 8, spacing: even"
+STANDING = BARE.replace(*HUB).replace(*LARGE).replace(ROW, "from: upper_arm, radius: 0.119")
+
+
+def test_a_pair_that_never_moves_is_found_with_its_clearance():
+    """The upper arm's sphere stands on two axes: 0.43 m above the hub, less 0.3 and 0.119."""
+    (pair,) = find_standing(CollisionModel.of(load_text(STANDING)))
+    assert (pair.a, pair.b) == ("platform", "upper_arm")
+    assert pair.clearance_m == pytest.approx(0.011, abs=1e-12)
+
+
+@pytest.mark.parametrize("radius", ["0.05", "0.121"])  # far apart, and within the safe distance of 10 mm
+def test_what_stands_far_apart_or_touches_is_not_called_standing(radius):
+    assert find_standing(CollisionModel.of(load_text(STANDING.replace("0.119", radius)))) == ()
+
+
+def test_a_pair_that_moves_is_not_called_standing():
+    moved = STANDING.replace("from: upper_arm,", "from: upper_arm_end,").replace("0.119", "0.3")
+    assert find_standing(CollisionModel.of(load_text(moved))) == ()
+
+
+def test_nothing_stands_where_nothing_is_compared(qiao):
+    assert find_standing(CollisionModel.of(qiao, "none")) == ()
