@@ -33,6 +33,8 @@ ALLOWED = {
     ("ikde/kernels/least_motion.py", "slides"): "along contacts",
     ("ikde/kernels/turns.py", "turned"): "by whole turns",
     ("ikde/plot/motion.py", "turn"): "the tool's",
+    ("ikde/io/xml_elements.py", "strangers"): "people who send files",
+    ("docs/design.md", "strangers"): "the same",
     ("ikde/kernels/cache_folder.py", "everybody"): "users of a machine",
     ("docs/security.md", "stranger"): "people who send files",
     ("docs/index.md", "stranger"): "the same",

@@ -26,7 +26,7 @@ EXPECTED = {
     "string_too_short": "expected text that is not empty",
 }
 UNKNOWN = "extra_forbidden"  # what pydantic calls a key that is none
-MOST = 10  # errors of a file that are listed
+MAX_LISTED = 10  # errors of a file that are listed
 FEW = 4  # values: where there may not be more, there may not be fewer either
 LIMITS = {
     "greater_than_equal": ("at least", "ge"),
@@ -55,16 +55,16 @@ class Given:
 def as_file_error(document: Document | Given, error: ValidationError, model: type[BaseModel]) -> InputError:
     """Pydantic's complaints, placed in the file: the first one with the others as its notes, in order of lines.
 
-    The first `MOST` are listed, the others counted.
+    The first `MAX_LISTED` are listed, the others counted.
     """
     complaints = [_place(document.data, complaint) for complaint in error.errors()]
-    told = [complaint for complaint in complaints if not _is_misspelt(complaint, complaints, model)]
-    told.sort(key=lambda it: (document.line(it.where) or 0, it.kind != UNKNOWN))
-    first, *others = (document.error(_describe(complaint, model), complaint.where) for complaint in told[:MOST])
+    listed = [complaint for complaint in complaints if not _is_misspelt(complaint, complaints, model)]
+    listed.sort(key=lambda it: (document.line(it.where) or 0, it.kind != UNKNOWN))
+    first, *others = (document.error(_describe(complaint, model), complaint.where) for complaint in listed[:MAX_LISTED])
     for other in others:
         first.add_note(str(other))
-    if len(told) > MOST:
-        first.add_note(f"and {len(told) - MOST} more")
+    if len(listed) > MAX_LISTED:
+        first.add_note(f"and {len(listed) - MAX_LISTED} more")
     return first
 
 

@@ -183,8 +183,8 @@ def unpack_answer(numbers, whole):
     """The grader's numbers and whole numbers, the kind of target [1], and what `unwind` takes beside q, as views."""
     joints, end = whole[0], whole.size - 3
     grader, bounds = numbers[whole[end + 1] : numbers.size - 3 * joints], numbers[numbers.size - 3 * joints :]
-    turning = whole[end - 1 - joints : end - 1]
-    turns = bounds[:joints], bounds[joints : 2 * joints], turning, bounds[2 * joints :]
+    is_revolute = whole[end - 1 - joints : end - 1]
+    turns = bounds[:joints], bounds[joints : 2 * joints], is_revolute, bounds[2 * joints :]
     return grader, whole[whole[end + 2] : end - 1 - joints], whole[end : end + 1], turns
 
 

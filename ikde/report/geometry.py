@@ -52,8 +52,10 @@ def format_forward(
     for name, T in Ts_world.items():
         digits = 1 if unit == "mm" else 4
         origin = [format_fixed(value / LENGTHS_M[unit], digits) for value in T[:3, 3]]
-        turned = [_direction(T[:3, k], 3 if width >= BESIDE else 2) for k in (0, 2)]
-        for table, cells in zip(tables, [[*origin, *turned]] if len(tables) == 1 else [origin, turned], strict=True):
+        directions = [_direction(T[:3, k], 3 if width >= BESIDE else 2) for k in (0, 2)]
+        for table, cells in zip(
+            tables, [[*origin, *directions]] if len(tables) == 1 else [origin, directions], strict=True
+        ):
             table.add_row(plain(name), *cells)
     return render(f"robot {plain(robot.name)}", *tables, *_outside_line(outside), color=color, width=width)
 

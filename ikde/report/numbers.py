@@ -80,7 +80,7 @@ def angle(value_rad: float) -> str:
 
 
 def _in_unit(value: float, units: Sequence[tuple[float, str]], ends: Sequence[float]) -> str:
-    """At most three digits in the first unit whose end is not reached; below 1 of the least unit nothing is told."""
+    """At most three digits in the first unit whose end is not reached; below 1 of the smallest unit only the bound."""
     size, (least, smallest) = abs(value), units[0]
     if size == 0.0:
         return "0"

@@ -147,7 +147,7 @@ def test_wheels_may_be_left_out(tmp_path):
         ("half_track: ours", "half_track: our", "wheels.source", "did you mean 'ours'?"),
         ("half_track: ours", "track: ours", "wheels.source.track", "this entry has no key 'track'"),
         ("{radius: 75", "[{radius: 75", "robot.yaml", ""),
-        ("axis: [0, 0, 1]", "axis: [0, 1, 0]", "robot.yaml:16 → wheels", "turns about z, and carries all"),
+        ("axis: [0, 0, 1]", "axis: [0, 1, 0]", "robot.yaml:16 → wheels", "revolute about z, that carries all"),
     ],
 )
 def test_what_is_wrong_with_wheels_is_said_with_its_place(old, new, place, words, tmp_path):
@@ -194,7 +194,7 @@ def test_frames_may_stand_in_any_order(tmp_path):
         ("pairs: all,", "pairs: al,", "detectors.coarse.pairs", "did you mean 'all'?"),
         ("spheres: coarse,", "spheres: fine,", "detectors.coarse.spheres", "no approximation is called 'fine'"),
         ("safe_distance: 5", "safe_distance: -5", "detectors.coarse.safe_distance", "at least 0"),
-        ("to: tip,", "to: rail,", "spheres.coarse[1].to", "a joint moves these two frames"),
+        ("to: tip,", "to: rail,", "spheres.coarse[1].to", "these two frames are on different bodies"),
         ("count: 4", "count: 0", "spheres.coarse[1].count", "expected at least 1, got 0"),
         ("count: 4", "count: 2.5", "spheres.coarse[1].count", "whole number"),
         ("kind: prismatic", "kind: sliding", "joints.slide.kind", "'revolute', 'prismatic' or 'continuous'"),

@@ -93,7 +93,7 @@ def test_sliding_sideways_is_told():
 
 
 def test_what_is_refused(qiao):
-    with pytest.raises(InputError, match="no base that drives"):
+    with pytest.raises(InputError, match="no planar base"):
         find_wheels(ikde.load_robot("panda"), "differential")
     with pytest.raises(InputError, match="expected one of differential, omnidirectional"):
         find_wheels(qiao, "tracked")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.plot.motion import plot_base, plot_clearance, plot_errors, plot_joint_speeds, plot_joints, plot_path
+from ikde.plot.motion import plot_base, plot_errors, plot_joint_speeds, plot_joints, plot_margins, plot_path
 from tests.random_robots import make_frame, make_robot
 from tests.track.measured import make_measured, make_still
 
@@ -174,31 +174,68 @@ def test_a_robot_that_stands_still_has_no_base():
 
 
 def test_errors_have_their_tolerance_and_orientation_if_asked_for(qiao, motion):
-    charts = plot_errors(motion).axes
+    off = with_errors(motion, 1e-6)
+    charts = plot_errors(off).axes
     assert [axes.get_ylabel() for axes in charts] == ["error [mm]", "turned by [deg]", "off path [mm]"]
     assert levels(charts[0]) == pytest.approx([1e-3])
-    free = plot_errors(make_measured(qiao, orientation="free")).axes
+    free = plot_errors(with_errors(make_measured(qiao, orientation="free"), 1e-6)).axes
     assert [axes.get_ylabel() for axes in free] == ["error [mm]", "off path [mm]"]
 
 
+def with_errors(motion, size):
+    """The same motion, measured to be off by so much, m and rad, at its second sample."""
+    was = motion.grade
+    errors = {"error_m": np.zeros_like(was.error_m), "orientation_error_rad": np.zeros_like(was.orientation_error_rad)}
+    for error in errors.values():
+        error[1] = size
+    return replace(motion, trajectory=replace(motion.trajectory, grade=replace(was, **errors)))
+
+
+def test_errors_below_a_nanometre_are_no_curve(qiao, motion):
+    assert [axes.get_ylabel() for axes in plot_errors(with_errors(motion, 0.9e-9)).axes] == ["off path [mm]"]
+    assert plot_errors(with_errors(make_measured(qiao, steps=1), 0.0)) is not None
+    assert plot_errors(make_measured(qiao, steps=0, further=5)) is None
+    least = plot_errors(with_errors(motion, 1.1e-9)).axes[0]
+    assert min(line.get_ydata().min() for line in least.lines[:3]) == pytest.approx(1e-6)
+
+
+def margins(motion):
+    return {axes.get_ylabel(): axes for axes in plot_margins(motion).axes}
+
+
+def test_margins_are_those_of_the_worst_joint(motion):
+    charts = margins(motion)
+    assert list(charts) == ["clearance [mm]", "range left [%]", "speed [% of limit]"]
+    q, robot = motion.trajectory.q[:, 2:], motion.robot
+    left = np.minimum(q - robot.lower[2:], robot.upper[2:] - q) / (robot.upper - robot.lower)[2:]
+    np.testing.assert_allclose(charts["range left [%]"].lines[0].get_ydata(), 100.0 * left.min(axis=1))
+    used = np.abs(motion.grade.driven / motion.limits.speed).max(axis=1)
+    np.testing.assert_allclose(charts["speed [% of limit]"].lines[0].get_ydata()[::2], 100.0 * used)
+    assert levels(charts["speed [% of limit]"]) == [100.0]
+
+
 def test_clearance_is_above_what_is_certain(motion):
-    axes = plot_clearance(motion).axes[0]
+    axes = margins(motion)["clearance [mm]"]
     samples, certain = (line.get_ydata() for line in axes.lines[:2])
     np.testing.assert_allclose(samples, 1e3 * motion.grade.gaps_m.min(axis=1))
     assert certain.min() <= samples.min()
 
 
 def test_a_start_alone_has_nothing_certified_between(qiao):
-    (axes,) = plot_clearance(make_measured(qiao, steps=0, further=5)).axes
+    axes = margins(make_measured(qiao, steps=0, further=5))["clearance [mm]"]
     assert [line.get_label() for line in axes.lines][:1] == ["at samples"]
     assert "certified between them" not in [line.get_label() for line in axes.lines]
 
 
 def test_collisions_are_marked(qiao):
     motion = make_measured(qiao, amplitude=2.6)
-    legend = [text.get_text() for text in plot_clearance(motion).legends[0].get_texts()]
-    assert legend == ["at samples", "certified between them", "safe distance", "collision"]
+    legend = [text.get_text() for text in plot_margins(motion).legends[0].get_texts()]
+    assert legend[:4] == ["at samples", "certified between them", "safe distance", "collision"]
 
 
-def test_without_a_detector_there_is_no_clearance(qiao):
-    assert plot_clearance(make_measured(qiao, detector="none")) is None
+def test_without_a_detector_and_limits_there_is_no_margin(qiao):
+    assert list(margins(make_measured(qiao, detector="none"))) == ["range left [%]", "speed [% of limit]"]
+    frames = [make_frame("a", "world", joint="s1", axis=(0, 0, 1))]
+    endless = make_robot({"s1": "revolute"}, frames, tool="a")
+    joints = tuple(replace(joint, lower=-np.inf, upper=np.inf) for joint in endless.joints)
+    assert plot_margins(make_still(replace(endless, joints=joints), detector="none", speed=None)) is None

@@ -14,7 +14,7 @@ from ikde.report.track_comparison import (
     make_ends_table,
     make_runs_table,
 )
-from ikde.report.track_page import BASE, CLEARANCE, PATH
+from ikde.report.track_page import BASE, MARGINS, PATH
 from ikde.track.comparison import Compared, TrackBudget, measure
 from tests.track.measured import make_measured, make_still
 
@@ -66,7 +66,7 @@ def test_dead_ends_are_of_all_starts(compared):
 
 
 def test_the_page_shows_the_methods_side_by_side(compared, monkeypatch):
-    monkeypatch.setattr(track_comparison, "DRAWINGS", (("Path and clearance", (PATH, CLEARANCE)),))
+    monkeypatch.setattr(track_comparison, "DRAWINGS", (("Path and clearance", (PATH, MARGINS)),))
     text = render_html(make_comparison_page(compared, BUDGET, "ikde bench track wave.yaml --out FOLDER"))
     assert text.count("<canvas") == text.count("data:image/png") == 2
     assert text.count("<svg") == 4

@@ -129,7 +129,7 @@ def test_a_robot_without_wheels_has_no_limit_of_theirs(unwheeled, drive):
 def test_a_robot_without_a_base_needs_no_drive():
     ur5 = ikde.load_robot("ur5")
     assert plan(ur5).drive == plan(ur5, drive="omnidirectional").drive == "omnidirectional"
-    with pytest.raises(InputError, match=r"^drive: ur5 has no base .*; leave it out, or say omnidirectional$"):
+    with pytest.raises(InputError, match=r"^drive: ur5 has no planar base .*; leave it out, or say omnidirectional$"):
         plan(ur5, drive="differential")
 
 

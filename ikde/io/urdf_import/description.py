@@ -265,7 +265,7 @@ def _read_limits(
     if kind == "planar" and {"lower", "upper"} <= set(limit.attributes):
         lower, upper = (file.read_number(limit, key, 0.0, *where) for key in ("lower", "upper"))
     if lower > upper:
-        raise file.error(f"limits are upside down: upper {upper:g} is below lower {lower:g}", limit, *where)
+        raise file.error(f"the upper limit {upper:g} is below the lower one, {lower:g}", limit, *where)
     speed, effort = (file.read_number(limit, key, 0.0, *where) for key in ("velocity", "effort"))
     return lower, upper, _keep(speed), _keep(effort)
 

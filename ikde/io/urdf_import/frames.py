@@ -62,9 +62,9 @@ def build_skeleton(
         p, R = joint.p_parent_child, joint.R_parent_child
         if joint.name in held:
             value = held[joint.name].value
-            slide = value * joint.axis if joint.kind == "prismatic" else np.zeros(3)
-            turn = rotation_about(joint.axis, value) if joint.kind in ("revolute", "continuous") else np.eye(3)
-            skeleton.add(name, parent, p + R @ slide, R @ turn)
+            shift = value * joint.axis if joint.kind == "prismatic" else np.zeros(3)
+            rotation = rotation_about(joint.axis, value) if joint.kind in ("revolute", "continuous") else np.eye(3)
+            skeleton.add(name, parent, p + R @ shift, R @ rotation)
         elif joint.kind == "planar":
             _add_planar(skeleton, name, parent, joint, options)
         elif joint.kind == "fixed":
@@ -98,7 +98,7 @@ def _add_root(skeleton: Skeleton, root: str, tool: str, options: ImportOptions) 
 
 
 def _add_planar(skeleton: Skeleton, name: str, parent: str, joint: UrdfJoint, options: ImportOptions) -> None:
-    """A planar joint: two slides in the plane, and a turn about its normal."""
+    """A planar joint: two prismatic joints in the plane, and a revolute one about its normal."""
     x, y, yaw = (reserve_name(f"{joint.name}_{key}", skeleton.joint_names) for key in ("x", "y", "yaw"))
     place = (parent, joint.p_parent_child, joint.R_parent_child)
     reach_m = options.base_reach_m
@@ -116,15 +116,15 @@ def _add_plane(
     place: tuple[str, Floats, Floats],
     plane: tuple[Floats, tuple[float, float]],
 ) -> None:
-    """Joints `names` that move `frame` in a plane: x, y [m] and the turn about its normal, the columns of a matrix."""
+    """Joints `names` that move `frame` in a plane: x, y [m] and the rotation about its normal, columns of a matrix."""
     (x, y, yaw), (parent, p, R), (axes, (lower, upper)) = names, place, plane
     first, second = (reserve_name(name, skeleton.frame_names) for name in (x, y))
     home = _choose_home(lower, upper)
-    slides = [Joint(name=name, kind="prismatic", lower=lower, upper=upper, home=home) for name in (x, y)]
-    skeleton.add(first, parent, p, R, (slides[0], axes[:, 0]))
-    skeleton.add(second, first, np.zeros(3), np.eye(3), (slides[1], axes[:, 1]))
-    turn = Joint(name=yaw, kind="continuous", home=0.0)
-    skeleton.add(frame, second, np.zeros(3), np.eye(3), (turn, axes[:, 2]))
+    prismatic = [Joint(name=name, kind="prismatic", lower=lower, upper=upper, home=home) for name in (x, y)]
+    skeleton.add(first, parent, p, R, (prismatic[0], axes[:, 0]))
+    skeleton.add(second, first, np.zeros(3), np.eye(3), (prismatic[1], axes[:, 1]))
+    revolute = Joint(name=yaw, kind="continuous", home=0.0)
+    skeleton.add(frame, second, np.zeros(3), np.eye(3), (revolute, axes[:, 2]))
 
 
 def _to_joint(skeleton: Skeleton, joint: UrdfJoint) -> Joint:

@@ -1,4 +1,4 @@
-"""What an import did, as data: for tables, and for those who want to know."""
+"""What an import did, as data: for tables and for callers."""
 
 from dataclasses import dataclass
 
@@ -30,7 +30,7 @@ class ImportedUrdf:
     root: str
     """The URDF's root link."""
     tool_was_chosen: bool
-    """Whether the tool is the only leaf, and nobody named it."""
+    """Whether the tool is the only leaf, and was not named."""
     joint_notes: dict[str, str]
     """Joint of the robot -> what the file lacks about it."""
     held: tuple[HeldJoint, ...]

@@ -80,7 +80,7 @@ class ArmAnswers:
 
     @property
     def timed_alone(self) -> bool:
-        """Whether each solve was timed by itself; short ones share a call, and its time evenly."""
+        """Whether each solve was timed by itself; short ones share a call, and its time in equal parts."""
         seconds = self.numbers["solve_seconds"]
         return len(np.unique(seconds)) > TIMED_ALONE * len(seconds)
 

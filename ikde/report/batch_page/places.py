@@ -29,7 +29,7 @@ def make_places(run: RunAnswers) -> Section | None:
         if chosen.any()
     ]
     total = run.manifest.targets
-    few = f" {len(targets):,} of {total:,}, evenly chosen." if len(targets) < total else ""
+    few = f" {len(targets):,} of {total:,}, equally spaced." if len(targets) < total else ""
     how = ", coloured by the least clearance of their solutions" if np.isfinite(clearance_m).any() else ""
     figure = Figure(
         image=to_svg(plot_places(groups)),

@@ -68,7 +68,7 @@ def _make_table(run: RunAnswers) -> Table:
 
 
 def say_who_graded(run: RunAnswers) -> str:
-    """In one sentence, who graded how many."""
+    """In one sentence, which grader graded how many."""
     solves = sum(arm.solves for arm in run.arms)
     again = sum((arm.verified for arm in run.arms), Rate(0, 0))
     agrees = f", and agrees with {'all' if again.count == again.total else f'{again.count:,}'} of them"

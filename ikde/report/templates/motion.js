@@ -161,19 +161,19 @@ function setUp(figure) {
     button.textContent = "❚❚"; button.ariaLabel = "pause";
     playing = requestAnimationFrame(step(motion.times_s[Number(slider.value)], performance.now()));
   };
-  const turn = (across, up) => { eye = [eye[0] - across, Math.min(1.57, Math.max(-.2, eye[1] + up))]; draw(); };
+  const orbit = (across, up) => { eye = [eye[0] - across, Math.min(1.57, Math.max(-.2, eye[1] + up))]; draw(); };
   button.onclick = () => (playing ? stop() : play());
   slider.oninput = () => { stop(); showMoment(motion.times_s[Number(slider.value)]); };
   canvas.onpointerdown = (event) => {
     if (event.offsetX > layout.space.left && event.offsetY > layout.space.top - LABEL) canvas.setPointerCapture(event.pointerId);
   };
   canvas.onpointermove = (event) => {
-    if (canvas.hasPointerCapture(event.pointerId)) turn(event.movementX / 120, event.movementY / 120);
+    if (canvas.hasPointerCapture(event.pointerId)) orbit(event.movementX / 120, event.movementY / 120);
   };
   canvas.ondblclick = () => { eye = [...home]; draw(); };
   canvas.onkeydown = (event) => {
     const by = {ArrowLeft: [-.1, 0], ArrowRight: [.1, 0], ArrowUp: [0, .1], ArrowDown: [0, -.1]}[event.key];
-    if (by) { turn(...by); event.preventDefault(); } else if (event.key === "Home") canvas.ondblclick();
+    if (by) { orbit(...by); event.preventDefault(); } else if (event.key === "Home") canvas.ondblclick();
   };
   new ResizeObserver(fit).observe(figure);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);

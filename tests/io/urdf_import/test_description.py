@@ -113,7 +113,7 @@ def test_a_robot_without_a_name_is_called_as_its_file(tmp_path):
         ('xyz="0.1 0 0.5"', 'xyz="0.1 0 nan"', "joint.slide.xyz", "expected 3 finite numbers"),
         ('xyz="0.1 0 0.5"', 'xyz="0.1 0 1e6"', "joint.slide.xyz", "within 100000 of 0"),
         ('lower="-1.5"', 'lower="nan"', "joint.shoulder.limit.lower", "expected a number, got 'nan'"),
-        ('lower="-1.5"', 'lower="2.5"', "joint.shoulder.limit", "limits are upside down: upper 2 is below lower 2.5"),
+        ('lower="-1.5"', 'lower="2.5"', "joint.shoulder.limit", "the upper limit 2 is below the lower one, 2.5"),
         ('radius="0.05"', 'radius="-1"', "link.upper.collision", "expected sizes above 0"),
         ('<sphere radius="0.05"/>', "<box/>", "link.upper.collision", "expected an attribute 'size' of <box>"),
         ('<sphere radius="0.05"/>', "<mesh/>", "link.upper.collision", "expected an attribute 'filename' of <mesh>"),
