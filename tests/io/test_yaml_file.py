@@ -61,7 +61,7 @@ def test_a_value_knows_its_line(tmp_path):
         ("a: !!python/object:os.system x", 1, "is not read here"),
         ("a: !!int x", 1, "does not fit its tag"),
         ("a: &x [*x]", 1, "alias"),
-        ("\tb: 1", 1, "not YAML"),
+        ("\tb: 1", 1, "a tab; YAML wants spaces"),
     ],
 )
 def test_bad_yaml_is_one_line_with_its_place(text, line, words, tmp_path):

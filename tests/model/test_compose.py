@@ -135,5 +135,5 @@ def test_wheels_stay_only_under_a_base_that_carries_all(platform):
     on_base = platform.approximations["s"][0]
     on_ground = replace(on_base, component="ground", start="world", end="world")
     held = replace(platform, approximations={"s": (on_base, on_ground)})
-    with pytest.raises(InputError, match="wheels need a base"):
+    with pytest.raises(InputError, match="wheels need a planar base"):
         compose(held, ikde.load_robot("ur5"), MOUNT)

@@ -363,7 +363,7 @@ def test_a_base_may_have_wheels_or_not(qiao, unwheeled):
 
 
 def test_a_drive_needs_a_base_and_is_one_of_two(qiao):
-    reject("a drive needs a base that slides along x", "drive", drive="omnidirectional")
+    reject("a drive needs a planar base, prismatic along x", "drive", drive="omnidirectional")
     with pytest.raises(InputError, match="drive: expected one of differential, omnidirectional"):
         check_robot(unchecked(replace(qiao, drive="legs")))
     assert check_robot(unchecked(replace(qiao, drive="omnidirectional"))).drive == "omnidirectional"

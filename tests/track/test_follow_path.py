@@ -227,7 +227,7 @@ def test_an_arm_on_the_floor_has_no_wheels():
     assert motion.reached
     assert (motion.drive, motion.base_joints, motion.wheel_speeds) == ("omnidirectional", (), None)
     assert motion.v.shape == (60, 2)
-    with pytest.raises(InputError, match="no base that drives"):
+    with pytest.raises(InputError, match="no planar base"):
         follow_path(arm, path, drive="differential")
 
 
