@@ -49,7 +49,7 @@ def test_a_run_is_summarised_and_what_is_next_is_said(cli, spec, tmp_path):
     outcome = cli("batch", spec, "--out", out)
     assert outcome.code == 0
     assert outcome.out.startswith("all reached by qiao2021: 6 solves\n")
-    assert outcome.out.endswith(f"wrote {out} (1 part)\nnext: ikde report {out}\n")
+    assert outcome.out.endswith(f"wrote {out} (2 parts)\nnext: ikde report {out}\n")
     assert outcome.err == f"two → {out}: 6 solves, 0 of 2 parts done before\n"
     assert len(ikde.read_batch(out)) == 6
 
@@ -106,7 +106,7 @@ def test_a_dry_run_tells_compiling_apart(cli, spec, monkeypatch):
     assert data["seconds"] == sum(arm["seconds"] + arm["load_seconds"] for arm in data["arms"])
     again = cli("batch", spec, "--dry-run")
     assert "compiling  nothing: all that the sample needed was compiled already\n" in again.out
-    assert "of it to load kernels and seeds\n" in again.out
+    assert "of it to load kernels and seeds" in " ".join(again.out.split())
 
 
 def test_a_dry_run_refuses_a_folder_as_the_run_would(cli, spec, tmp_path, substitute):

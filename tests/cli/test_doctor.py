@@ -50,7 +50,7 @@ WELL = {"solve_reached": True, "cache_is_writable": True, "compile_seconds": 0.0
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, "all good: what this solve needs was compiled before, and the next one takes 23.0 µs"),
+        ({}, "all good: what this solve needs was compiled before, and the next one takes 23 µs"),
         ({"compile_seconds": 8.0}, "all good: what this solve needs is compiled now, and need not be again, and"),
         (
             {"cache_is_writable": False},

@@ -147,7 +147,7 @@ def test_the_command_solve_does_not_believe_them(lie, liar, cli, count):
             met = is_met(ROBOT, target, list(solution["q"].values()), HELPED)
             assert not solution["reached"] or (met and "lm" not in options)
         reached = sum(solution["reached"] for solution in solutions)
-        assert len(re.findall("^reached by qiao2021: ", outcome.out, flags=re.MULTILINE)) == reached
+        assert len(re.findall("^reached by three_joints: ", outcome.out, flags=re.MULTILINE)) == reached
         assert (told.code == 0) == (reached == count)
 
 

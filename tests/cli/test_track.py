@@ -94,7 +94,7 @@ def test_a_path_that_ends_early_says_where_and_exits_with_1(cli, spec, tmp_path,
     outcome = cli("track", spec, "--out", tmp_path / "a")
     assert outcome.code == 1
     first, second = outcome.out.splitlines()[:2]
-    assert first == "stopped after 3 of 6 points of short"
+    assert first == "stopped after 3 of 6 points of short by qiao2021"
     assert second.startswith("sample 4 (0.08 s): ")
     assert names(tmp_path / "a") == FILES
     assert len((tmp_path / "a" / "trajectory.csv").read_text().splitlines()) == 5
@@ -153,7 +153,7 @@ def test_a_file_that_is_not_there(refuse):
 def test_units_are_those_of_the_start(cli, spec, tmp_path, monkeypatch):
     leave_out_figures(monkeypatch)
     text = " ".join(cli("track", "--help").out.replace("│", " ").split())
-    for words in ("Unit of lengths in --start.", "Unit of angles in --start.", "counted in --start (default"):
+    for words in ("Unit of lengths in --start.", "Unit of angles in --start.", "joint values in --start (default"):
         assert words in text
     assert "in and out" not in text
     assert "in and out" in cli("fk", "--help").out
