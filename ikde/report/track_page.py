@@ -73,8 +73,8 @@ BASE = Drawing(plot_base, "the base over time", "The base: its place, all its sp
 MARGINS = Drawing(
     plot_margins,
     "what is left before the limits, over time",
-    "The smallest clearance of any pair, at the samples and certified between them; the least share of a joint's range "
-    "that is left to either end; the largest share of a joint's speed limit that is used.",
+    "The least share of a joint's range that is left to either end; the largest share of a joint's speed limit that is "
+    "used.",
 )
 
 
@@ -178,7 +178,7 @@ def _list_sections(motion: TrackSummary) -> list[Section]:
     path = PATH if motion.trajectory.base_joints else PATH_ALONE
     groups = [
         ("Motion", [moving, draw_moments(motion)]),
-        ("Clearance and limits", [draw(MARGINS, motion)]),
+        ("Clearance and limits", [draw(replace(MARGINS, caption=_tell_margins(motion)), motion)]),
         ("Figures", [_make_measured(motion)]),
         ("Path and error", [*_tell_error(motion), _beside(draw(path, motion), draw(ERRORS, motion))]),
         ("Joints", [_beside(draw(JOINTS, motion), draw(SPEEDS, motion))]),
@@ -186,6 +186,14 @@ def _list_sections(motion: TrackSummary) -> list[Section]:
     ]
     sections = [(title, tuple(block for block in blocks if block is not None)) for title, blocks in groups]
     return [Section(title, blocks) for title, blocks in sections if blocks]
+
+
+def _tell_margins(motion: TrackSummary) -> str:
+    """What the figure shows: a clearance only if one was checked, and a bound only if there is one."""
+    if motion.grade.clearance_m is None:
+        return MARGINS.caption
+    between = " and certified between them" if motion.certificate is not None else ""
+    return f"The smallest clearance of any pair, at the samples{between}. {MARGINS.caption}"
 
 
 def _beside(*figures: Figure | None) -> Gallery | None:

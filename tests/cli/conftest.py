@@ -36,7 +36,7 @@ def _kernels_are_compiled():
 
 @pytest.fixture(autouse=True)
 def _no_terminal_is_so_wide(monkeypatch):
-    """pytest's own workers say how wide theirs is."""
+    """Workers of pytest say how wide their terminal is."""
     monkeypatch.delenv("COLUMNS", raising=False)
 
 
@@ -63,7 +63,7 @@ def cli(capsys):
 
 @pytest.fixture
 def refuse(cli, tmp_path, monkeypatch):
-    """Run one command that must be refused: exit code 2, a line a fault on stderr, nothing on stdout, nothing written."""
+    """Run one command that must be refused: exit code 2, a line a fault on stderr, nothing printed, nothing written."""
 
     def call(*arguments):
         monkeypatch.chdir(tmp_path)

@@ -29,7 +29,7 @@ def test_frames_are_in_time_along_the_path(motion):
 
 def test_links_lead_to_the_tool(motion):
     data = make_animation(motion)
-    assert np.shape(data["links_mm"]) == (6, 11, 3)
+    assert np.shape(data["links_mm"]) == (6, 10, 3)
     np.testing.assert_allclose(data["links_mm"], 1e3 * motion.robot.links_m, atol=0.5)
 
 

@@ -51,11 +51,13 @@ def test_every_sphere_is_drawn_in_the_colour_of_its_role(pose):
 
 def test_the_legend_names_each_role_once(pose):
     roles = dict.fromkeys(pose.robot.roles[pose.robot.parts])
-    assert labels(plot_pose(pose).axes[0]) == [*(f"{role} spheres" for role in roles), *(m.text for m in pose.marks)]
+    marks = [mark.text for mark in pose.marks]
+    assert labels(plot_pose(pose).axes[0]) == ["links", *(f"{role} spheres" for role in roles), *marks]
 
 
 def test_marks_are_drawn_where_they_are(pose):
-    closest, target = pose.marks
+    closest, target, base = pose.marks
+    assert base.role is Role.BASE
     axes = plot_pose(pose).axes[0]
     line = next(line for line in axes.lines if line.get_label() == closest.text)
     assert line.get_color() == COLORS[Role.CLOSEST]

@@ -162,7 +162,7 @@ def test_several_solutions_tell_once_what_they_took_together(qiao, result):
     assert [line for line in text.splitlines() if line.startswith("solution ")] == [
         f"solution {k} of 3, robot qiao2021" for k in (1, 2, 3)
     ]
-    assert text.endswith("\n\ntogether 12.3 ms, with loading and grading, after 3.0 s of compiling")
+    assert text.endswith("\n\ntogether 12.3 ms, with loading and grading, after 3 s of compiling")
     assert "compiled first" not in text
     counted = f"{count_of(result.evaluations, 'evaluation')} in {count_of(result.attempts, 'attempt')}"
     assert re.findall(r"^ cost +(.*)$", text, re.MULTILINE) == [counted] * 3

@@ -32,9 +32,9 @@ def test_a_followed_path_is_green_with_its_figures(qiao, plan):
     assert text.startswith("followed: 20 of 20 points of wave [1] by qiao2021, 0.4 s, differential\n")
     rows = {name: (value, asked) for name, value, asked in list_figures(make_measured(qiao))}
     assert rows["points reached"] == ("20", "20")
-    assert rows["largest error along x / y / z"] == ("0 / 0 / 0 mm", "0.001 mm")
+    assert rows["largest error along x / y / z"] == ("0 each", "1 µm")
     assert rows["largest speed, base, 40 %"] == ("0.2 m/s", "0.5 m/s")
-    assert rows["time of a single step, median / p99"] == ("20.0 / 20.0 µs", "20,000 µs")
+    assert rows["time of a single step, median / p99"] == ("20 µs / 20 µs", "20 ms")
     assert rows["time of the whole search"] == ("250 ms", "")
     assert all(name in text for name in rows)
 

@@ -60,9 +60,10 @@ def test_the_closest_pair_is_marked_with_its_clearance(qiao, home):
 
 def test_a_target_is_marked(qiao, home):
     assert [mark.role for mark in draw_pose(CollisionModel.of(qiao, "none"), qiao.home, target=TARGET).marks] == [
-        Role.TARGET
+        Role.TARGET,
+        Role.BASE,
     ]
-    np.testing.assert_array_equal(home.marks[-1].points_m, [TARGET.p_world_tool])
+    np.testing.assert_array_equal(home.marks[-2].points_m, [TARGET.p_world_tool])
 
 
 def test_links_lead_to_the_tool_whose_axes_are_shown(qiao, home):
@@ -71,11 +72,14 @@ def test_links_lead_to_the_tool_whose_axes_are_shown(qiao, home):
     np.testing.assert_allclose(home.Ts_world_frame, [tool], atol=1e-15)
 
 
-def test_links_begin_at_the_base_that_turns_the_heading(qiao):
+def test_links_begin_where_the_arm_does_and_a_mark_points_where_the_base_does(qiao):
     q = qiao.home
     q[:3] = 0.5, -0.25, 1.2
     pose = draw_pose(CollisionModel.of(qiao, "none"), q)
-    np.testing.assert_allclose(pose.robot.links_m[0][:2], q[:2])
+    mount = ikde.forward(qiao, q)["O1"][:3, 3]
+    assert np.linalg.norm(pose.robot.links_m[0] - mount) < np.linalg.norm(pose.robot.links_m[0][:2] - q[:2])
+    nose = pose.marks[-1].points_m[0, :2] - q[:2]
+    assert np.arctan2(nose[1], nose[0]) == pytest.approx(1.2)
     assert pose.heading_rad == pytest.approx(1.2)
 
 

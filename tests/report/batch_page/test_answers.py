@@ -89,7 +89,7 @@ def test_names_are_kept_unless_there_are_very_many(answers, bare, folder, monkey
 
 def test_columns_that_are_not_kept_are_missing(bare):
     (arm,) = bare.arms
-    assert set(arm.numbers) == {"target", "reached", "solve_seconds"}
+    assert set(arm.numbers) == {"target", "repeat", "reached", "solve_seconds"}
     assert arm.of_reached("clearance_m").size == 0
     assert arm.closest_pairs == {}
 

@@ -20,7 +20,7 @@ def test_the_least_clearance_and_the_largest_error_are_shown(section, answers):
     table = tables(section)[0]
     careful = answers.arms[1]
     assert column(table, "detector") == ["none", "improved"]
-    assert column(table, "clearance: least [mm]") == [
+    assert column(table, "clearance: smallest [mm]") == [
         "not checked",
         significant(1e3 * careful.of_reached("clearance_m").min()),
     ]

@@ -34,7 +34,7 @@ def test_a_run_without_reasons_shows_where_it_stopped_and_claims_nothing(bare):
     table = make_table(bare)
     assert [column.title for column in table.columns] == ["target", "why"]
     assert column(table, "why") == ["budget"] * 12
-    assert "not to keep reasons" in table.note
+    assert "keeps no reasons" in table.note
     assert "Nothing was found" not in table.note
 
 

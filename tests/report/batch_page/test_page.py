@@ -19,6 +19,10 @@ def labels(page):
     return [item.label for block in page.lead if isinstance(block, Numbers) for item in block.items]
 
 
+def numbers_of(page):
+    return next(block.items for block in page.lead if isinstance(block, Numbers))
+
+
 def notices(page):
     return [block.markup for block in page.lead if isinstance(block, Notice)]
 
@@ -29,7 +33,17 @@ def page(answers):
 
 
 def test_a_run_has_all_its_sections(page):
-    assert page.anchors() == ["reached", "cost", "clearance", "graded", "not-reached", "recipe", "again"]
+    assert page.anchors() == [
+        "reached",
+        "targets",
+        "worst",
+        "cost",
+        "clearance",
+        "graded",
+        "not-reached",
+        "recipe",
+        "again",
+    ]
     assert page.subtitle.startswith("A batch of inverse kinematics: robot qiao2021, 2 arms, 4 targets, 8 solves each")
     assert notices(page) == []
     assert labels(page) == ["reached by free", "reached by careful"]
@@ -64,16 +78,16 @@ def test_one_arm_is_shown_with_its_cost(answers, bare):
 
 
 def test_an_arm_without_a_detector_is_said_not_to_be_checked(answers):
-    first, second = (item.note for item in make_batch_page(answers).lead[-1].items)
+    first, second = (item.note for item in numbers_of(make_batch_page(answers)))
     assert first.endswith("of 32 solves, self-collision not checked")
     assert second.endswith("of 32 solves")
     many = replace(answers, arms=(*answers.arms[:1], *answers.arms[1:] * MAX_NUMBERS))
-    assert make_batch_page(many).lead[-1].items[0].note.endswith("solves, self-collision not checked in 1 of 5 arms")
+    assert numbers_of(make_batch_page(many))[0].note.endswith("solves, self-collision not checked in 1 of 5 arms")
 
 
 def test_a_run_without_graders_and_reasons_has_fewer_sections(bare):
     page = make_batch_page(bare)
-    assert page.anchors() == ["reached", "cost", "not-reached", "recipe", "again"]
+    assert page.anchors() == ["reached", "worst", "cost", "not-reached", "recipe", "again"]
     assert "12 targets, seed 7" in page.subtitle
     assert "</html>" in render_html(page)
 

@@ -78,4 +78,4 @@ def test_an_arm_that_has_not_begun_has_no_rate(unfinished):
     arms, targets = tables(section)
     assert arms.rows[1][:4] == ("careful", "0", "0", "–")
     assert column(targets, "reached by: careful [%]") == ["–"] * 4
-    assert ">careful</text>" not in figures(section)[0].image
+    assert figures(section) == []  # one share is no picture
