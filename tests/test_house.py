@@ -20,6 +20,7 @@ NO_TEST_OF_ITS_OWN = {
     "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",
     "formats/units.py": "two tables; tests/cli/test_solve.py and tests/report/test_numbers.py use every unit",
     "io/plan_file.py": "tests/io/test_batch_file.py and test_track_file.py load every kind of plan",
+    "io/sphere_entries.py": "tests/model/test_free_spheres.py reads every kind of row",
     "io/schema.py": "tests/io/test_robot_file.py reads its messages",
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
