@@ -16,12 +16,10 @@ CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
 NO_TEST_OF_ITS_OWN = {
     "__main__.py": "two lines; tests/cli/test_app.py runs them in a process",
     "cli/exit_codes.py": "an enumeration; tests/cli/test_app.py",
-    "cli/output.py": "tests/cli/test_app.py sees what it writes",
     "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",
     "formats/units.py": "two tables; tests/cli/test_solve.py and tests/report/test_numbers.py use every unit",
     "io/plan_file.py": "tests/io/test_batch_file.py and test_track_file.py load every kind of plan",
     "io/sphere_entries.py": "tests/model/test_free_spheres.py reads every kind of row",
-    "io/schema.py": "tests/io/test_robot_file.py reads its messages",
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
     "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",

@@ -53,7 +53,8 @@ def _fitting(words: Iterable[str], incomplete: str) -> list[str]:
 
 def _names(ctx: typer.Context, section: str) -> list[str]:
     """Keys of a section of the robot's file; none if that cannot be read."""
-    given = ctx.params.get("robot") or ctx.params.get("name")
+    typed = ctx.args if "name" in ctx.params else []  # an option without its value keeps typer from reading arguments
+    given = ctx.params.get("robot") or next(iter(typed), None) or ctx.params.get("name")
     name = str(given or os.environ.get(ROBOT) or DEFAULT_ROBOT)
     shipped = ROBOTS / f"{name}.yaml"
     data: Any = None

@@ -89,10 +89,9 @@ def _refuse_other_kinds(path: Path, text: str) -> None:
 
 
 def _is_tab(text: str, mark: Any) -> bool:
-    """True if a tab stands where the parser gave up, or before the first word of that line."""
-    line = text.splitlines()[mark.line] if mark.line < len(text.splitlines()) else ""
-    blank = line[: len(line) - len(line.lstrip())]
-    return "\t" in blank or line[mark.column : mark.column + 1] == "\t"
+    """True if a tab stands where the parser gave up."""
+    lines = text.splitlines()
+    return mark.line < len(lines) and lines[mark.line][mark.column : mark.column + 1] == "\t"
 
 
 class _Anchored(NamedTuple):

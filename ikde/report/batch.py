@@ -129,7 +129,7 @@ def _name_arms(names: Sequence[str]) -> str:
 
 def _arm_table(arms: Iterable[ArmSummary]) -> Any:
     spreads = (">attempts median / p95 / max", ">ms median / p95 / max")
-    table = make_table("arm", "method", "detector", ">reached", ">rate (95 %)", ">plain numpy agrees", *spreads)
+    table = make_table("arm", "?method", "?detector", ">reached", ">rate (95 %)", ">plain numpy agrees", *spreads)
     for arm in arms:
         table.add_row(
             *map(plain, (arm.name, arm.method, arm.detector)),

@@ -57,25 +57,54 @@ def make_table(*columns: str, title: str | None = None) -> Any:
 
 
 def _narrow(table: Any, console: Any) -> None:
-    """Make a table fit: smaller gaps, then without its columns to spare, then with its texts alone folded."""
+    """Make a table fit: smaller gaps, then words on several lines, then without its columns to spare."""
+    if _measure(table, console) <= console.width:
+        return
+    table.collapse_padding = True
+    if _share_room(table, console):
+        return
+    table.columns = [column for column in table.columns if column.ratio is None]
+    for place, column in enumerate(table.columns):
+        column._index = place  # from which rich knows what stands at an edge
+    if not _share_room(table, console):
+        for column in table.columns:
+            column.width = max(map(_longest_word, _cells(column))) if column.justify == "right" else None
+
+
+def _share_room(table: Any, console: Any) -> bool:
+    """Give columns the widths that they need, or, the widest first, fewer; False if words would have to be folded."""
+    widths = [max(map(_width, _cells(column))) for column in table.columns]
+    least = [max(map(_longest_word, _cells(column))) for column in table.columns]
+    over = _measure(table, console) - console.width
+    while over > 0:
+        wide = max(range(len(widths)), key=lambda k: (widths[k] > least[k], widths[k]))
+        if widths[wide] <= least[wide]:
+            return False
+        widths[wide] -= 1
+        over -= 1
+    for column, width in zip(table.columns, widths, strict=True):
+        column.width = width
+    return True
+
+
+def _measure(table: Any, console: Any) -> int:
+    """Columns that a table would take up if it could."""
     from rich.measure import Measurement
 
-    def is_too_wide() -> bool:
-        wide = console.options.update(max_width=MAX_WIDTH)
-        return Measurement.get(console, wide, table).maximum > console.width
-
-    if is_too_wide():
-        table.collapse_padding = True
-    if is_too_wide():
-        table.columns = [column for column in table.columns if column.ratio is None]
-    if is_too_wide():
-        for column in table.columns:
-            if column.justify == "right":
-                column.width = max(_longest_word(cell) for cell in (column.header, *column.cells))
+    return Measurement.get(console, console.options.update(max_width=MAX_WIDTH), table).maximum
 
 
-def _longest_word(cell: Any) -> int:
-    """Columns that the longest word of a cell takes up."""
+def _cells(column: Any) -> list[str]:
+    return [str(cell) for cell in (column.header, *column.cells)]
+
+
+def _width(cell: str) -> int:
     from rich.text import Text
 
-    return max((Text(word).cell_len for word in Text.from_markup(str(cell)).plain.split()), default=1)
+    return Text.from_markup(cell).cell_len
+
+
+def _longest_word(cell: str) -> int:
+    from rich.text import Text
+
+    return max((Text(word).cell_len for word in Text.from_markup(cell).plain.split()), default=1)

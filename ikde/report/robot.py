@@ -81,7 +81,7 @@ def format_robot(collision: CollisionModel, units: Units, *, color: bool = False
 
 
 def _joint_table(robot: Robot, units: Units) -> Any:
-    heads = ("joint", "kind", ">lower", ">home", ">upper", "unit", "limits from")
+    heads = ("joint", "?kind", ">lower", ">home", ">upper", "unit", "limits from")
     table = make_table(*heads, title=f"joints, {robot.convention} convention")
     for joint in robot.joints:
         values = [units.format_limit(joint, value, 6) for value in (joint.lower, joint.home, joint.upper)]

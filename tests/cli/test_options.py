@@ -217,6 +217,33 @@ def test_names_that_are_none_are_refused(text):
         read_choices(text, ("a", "b"), "--only")
 
 
+def test_the_environment_names_the_robot_where_the_command_does_not(cli, monkeypatch):
+    monkeypatch.setenv("IKDE_ROBOT", "ur5")
+    assert cli("fk").out.startswith("robot ur5\n")
+    assert cli("check").out.startswith("free of self-collision: robot ur5, ")
+    assert cli("robots", "show").out.startswith("ur5: ")
+    assert cli("fk", "--robot", "panda").out.startswith("robot panda\n")
+
+
+def test_a_robot_that_the_environment_names_wrongly_is_refused_by_its_name(refuse, monkeypatch):
+    monkeypatch.setenv("IKDE_ROBOT", "ur6")
+    assert refuse("fk").startswith("ikde: $IKDE_ROBOT: no robot is called 'ur6'")
+    assert refuse("fk", "--robot", "ur7").startswith("ikde: no robot is called 'ur7'")
+
+
+@pytest.mark.parametrize(
+    "command",
+    [SOLVE, ("fk",), ("check",), ("robots",), ("robots", "list"), ("schema", "track"), ("doctor",), ("warmup",)],
+)
+def test_a_wrong_word_about_compiling_is_refused_by_every_command(refuse, monkeypatch, command):
+    monkeypatch.setenv("IKDE_COMPILE", "foo")
+    assert refuse(*command) == "ikde: $IKDE_COMPILE: expected background, wait, never, got 'foo'\n"
+
+
+def test_weights_of_a_joint_that_is_none_name_the_joints(refuse):
+    assert "joints are d_x, d_y, q_z, q1" in refuse(*SOLVE, "--weights", "foo=2")
+
+
 def test_a_command_is_repeated_with_what_was_said():
     said = {"seed": 0, "drive": None, "start": "q1=1 q2=2", "quick": True}
     assert repeat_command(["track", "a b.yaml"], said) == (

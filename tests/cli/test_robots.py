@@ -160,11 +160,25 @@ def test_what_is_wrong_with_a_file_is_one_line(refuse, tmp_path, old, new, place
     assert words in line
 
 
-@pytest.mark.parametrize("text", ["", "just words", "[1, 2]", "{}"])
+@pytest.mark.parametrize("text", ["", "just words", "[1, 2]", "{name: a, joints: {}, frames: {}}"])
 def test_a_file_that_is_no_robot_is_refused(refuse, tmp_path, text):
     path = tmp_path / "bad.yaml"
     path.write_text(text)
     assert str(path) in refuse("robots", "validate", path)
+
+
+def test_errors_of_a_file_are_a_line_each(cli, tmp_path):
+    path = tmp_path / "bad.yaml"
+    path.write_text("{}")
+    outcome = cli("robots", "validate", path)
+    keys = ("name", "joints", "frames", "tool")
+    assert (outcome.code, outcome.out) == (2, "")
+    assert outcome.err == "".join(f"ikde: {path}:1 → {key}: this key is missing\n" for key in keys)
+
+
+def test_a_file_that_is_there_is_no_unknown_robot(refuse, tmp_path):
+    (tmp_path / "arm.txt").write_text("<robot/>")
+    assert refuse("robots", "show", "arm.txt").startswith("ikde: arm.txt: this is a URDF; expected YAML")
 
 
 @pytest.mark.parametrize(

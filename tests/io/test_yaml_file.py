@@ -61,7 +61,10 @@ def test_a_value_knows_its_line(tmp_path):
         ("a: !!python/object:os.system x", 1, "is not read here"),
         ("a: !!int x", 1, "does not fit its tag"),
         ("a: &x [*x]", 1, "alias"),
+        ("a: [1, 2}", 1, "not YAML"),
         ("\tb: 1", 1, "a tab; YAML wants spaces"),
+        ("a:\n\tb: 1", 2, "a tab; YAML wants spaces"),
+        ("a: 1\nb:\n  c: 1\n\td: 2", 4, "a tab; YAML wants spaces"),
     ],
 )
 def test_bad_yaml_is_one_line_with_its_place(text, line, words, tmp_path):
@@ -71,6 +74,30 @@ def test_bad_yaml_is_one_line_with_its_place(text, line, words, tmp_path):
     assert f"a.yaml:{line}" in message
     assert words in message
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "a.yaml: the file is empty"),
+        (" \n\n", "a.yaml: the file is empty"),
+        (
+            '<?xml version="1.0"?>\n<robot name="a"/>',
+            "a.yaml: this is a URDF; expected YAML (`ikde robots import FILE.urdf`",
+        ),
+        ('\n<robot xmlns:xacro="http://ros.org/wiki/xacro"/>', "a.yaml: this is xacro; expected YAML (`xacro FILE > "),
+        ("<mujoco model='a'/>", "a.yaml: this is MJCF; expected YAML"),
+        ("<html/>", "a.yaml: this is XML; expected YAML"),
+    ],
+)
+def test_files_of_other_kinds_are_named(text, words, tmp_path):
+    with pytest.raises(FileError) as caught:
+        load(text, tmp_path)
+    assert str(caught.value).removeprefix(f"{tmp_path}/").startswith(words)
+
+
+def test_a_comment_alone_is_no_empty_file(tmp_path):
+    assert load("# nothing yet", tmp_path).data is None
 
 
 def test_deep_nesting_is_refused(tmp_path):

@@ -46,6 +46,40 @@ def test_long_lines_are_folded_at_the_width():
     assert max(map(len, render("word " * 100, width=40).splitlines())) <= 40
 
 
+@pytest.mark.parametrize("width", [24, 30, 40])
+def test_a_table_that_is_too_wide_moves_together_and_folds_its_texts_alone(width):
+    table = make_table("name", ">value of it", "?", "why")
+    for number in ("-1234.567", "0.5"):
+        table.add_row("joint", number, "#" * 20, "a reason in several words")
+    text = render(table, width=width)
+    assert max(map(len, text.splitlines())) <= width
+    assert "-1234.567" in text
+    assert "#" not in text
+
+
+def test_a_table_that_fits_once_it_moves_together_folds_nothing():
+    table = make_table("name", ">a", ">b", ">c")
+    table.add_row("two words", *["12345678"] * 3)
+    assert len(render(table, width=41).splitlines()) == 3
+    assert len(render(table, width=38).splitlines()) == 4
+
+
+def test_what_is_too_wide_by_little_is_narrowed_by_little():
+    table = make_table("name", ">a long head", ">value")
+    table.add_row("a", "1,999 / 2,000", "100.0 % (99.7 to 100.0)")
+    rows = render(table, width=40).splitlines()
+    assert len(rows) == 4
+    assert "1,999 / 2,000   100.0 % (99.7 to" in rows[2]
+    assert max(map(len, rows)) <= 40
+
+
+def test_a_column_to_spare_stays_where_there_is_room():
+    table = make_table("name", "?", ">value")
+    table.add_row("a", "#" * 20, "1")
+    assert "#" * 20 in render(table, width=60)
+    assert "   " in render(table, width=60).splitlines()[0]  # and the gaps are wide
+
+
 @pytest.mark.parametrize("name", EVERYTHING)
 @pytest.mark.parametrize("color", [False, True])
 def test_a_name_is_shown_as_it_is_whatever_stands_around_it(name, color):

@@ -206,6 +206,8 @@ def test_another_word_is_an_error(monkeypatch):
     monkeypatch.setenv(COMPILE, "sometimes")
     with pytest.raises(InputError, match=r"\$IKDE_COMPILE.*background, wait, never"):
         choose_way()
+    with pytest.raises(InputError, match=r"\$IKDE_COMPILE"):
+        ikde.solve_many(ikde.load_robot("qiao2021"), [ikde.Target((0.8, 0.5, 1.0))])
 
 
 @pytest.mark.parametrize("hindrance", ["frozen", "no cache", "no python"])

@@ -1,0 +1,54 @@
+"""`ikde completion`, and what the process answers to a shell."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+LIGHT = """
+import sys
+from ikde.cli.app import run
+code = run([])
+loaded = sorted({"numpy", "numba", "scipy", "rich", "matplotlib"} & set(sys.modules))
+sys.exit(f"loaded {loaded}" if loaded else code)
+"""
+
+
+def complete(line):
+    """What bash would offer at the end of a line."""
+    asking = {"_IKDE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(line.split(" ")) - 1)}
+    told = {"env": {**os.environ, **asking}, "capture_output": True, "text": True, "timeout": 60}
+    done = subprocess.run([sys.executable, "-c", LIGHT], check=False, **told)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_gets_its_script(cli, shell):
+    outcome = cli("completion", shell)
+    assert (outcome.code, outcome.err) == (0, "")
+    assert f"_IKDE_COMPLETE=complete_{shell}" in outcome.out
+
+
+@pytest.mark.parametrize("words", [("tcsh",), ()])
+def test_another_shell_is_refused(refuse, words):
+    assert "shell" in refuse("completion", *words).lower()
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("ikde che", ["check"]),
+        ("ikde solve --near", ["--near"]),
+        ("ikde solve --robot pa", ["panda"]),
+        ("ikde solve --robot ur5 --freeze elbow", ["elbow_joint"]),
+        ("ikde check --detector im", ["improved"]),
+        ("ikde robots show panda --detector ", ["default", "none"]),
+        ("ikde solve --rank l", ["limits"]),
+        ("ikde solve --method me", ["memetic"]),
+        ("ikde schema t", ["track"]),
+    ],
+)
+def test_a_shell_is_answered_without_anything_heavy(line, words):
+    assert complete(line) == words
