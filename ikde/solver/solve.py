@@ -45,7 +45,8 @@ def solve(
         robot: the robot, its name or the path of its file.
         target: what the tool is asked to do: a `Target`, a position [3] in m, or a pose [4, 4], also that
             of another library (`.homogeneous`, `.A`, `.as_matrix()`).
-        settings: tolerances and search settings, or a mapping of some of them; others are the method's own (`SolveSettings.for_method`).
+        settings: tolerances and search settings, or a mapping of some; others are the method's own
+            (`SolveSettings.for_method`).
         seed: same seed, same bits. 0 <= seed < 2^64.
         stream: which random stream of the seed; `solve_many` gives its target k stream k.
         method: the engine (`SolveSettings.method`); `"auto"` is ikde's choice.
