@@ -23,7 +23,7 @@ targets = [
     ikde.Target.from_rpy((0.4, 0.2, 0.3), (0, 0, np.pi)),
 ]
 
-result = ikde.solve(robot, targets[0])
+result: ikde.SolveResult = ikde.solve(robot, targets[0])
 result = ikde.solve("ur5", (0.4, 0.2, 0.3), {"timeout_s": 1.0}, method="lm")
 result = ikde.solve(Path("my.yaml"), T_world_tool, near=result.q, freeze=["q1"], weights={"q2": 1.0})
 result = ikde.solve(robot, [0.4, 0.2, 0.3], ikde.SolveSettings(method="de", de=ikde.DeSettings(strategy="best/1")))
@@ -69,6 +69,7 @@ ikde.follow_path(robot, path, method="foo")  # type: ignore[arg-type]
 ikde.follow_path(robot, path, method="optimized", settings=ikde.OptimizedSettings())
 ikde.follow_path(robot, path, method="typical", settings=ikde.TypicalSettings())
 stop: ikde.TrackStop | None = motion.stop
+ends = stop is not None and stop.reason is ikde.TrackStopReason.SPEED_LIMIT
 surface = ikde.check_surface(robot, robot.home)
 with ikde.compile_clock() as clock:
     ikde.solve(robot, targets[0])

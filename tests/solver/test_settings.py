@@ -172,7 +172,7 @@ def test_settings_may_be_a_mapping():
     assert (own.method, own.evolution.population) == ("de", 80)
     with pytest.raises(InputError, match=r"^settings: no setting is called 'timeot_s' \(did you mean 'timeout_s'\?\)"):
         choose_settings({"timeot_s": 1.0}, "auto")
-    with pytest.raises(InputError, match="^settings: no setting is called 3; there are method"):
+    with pytest.raises(InputError, match=r"^settings: no setting is called 3; there are method"):
         choose_settings({3: 1.0}, "auto")
 
 
