@@ -214,5 +214,5 @@ def test_slides_do_not_turn(qiao):
 
 @pytest.mark.parametrize("freeze", [[3], b"abc", 3, [["q1"]], {"q1": 10**400}, {"q1": 1j}])
 def test_what_names_no_joints_is_refused_as_freeze(qiao, freeze):
-    with pytest.raises(InputError, match="^freeze: expected"):
+    with pytest.raises(InputError, match=r"^freeze: expected"):
         make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=freeze)
