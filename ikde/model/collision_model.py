@@ -33,7 +33,7 @@ class CollisionModel:
     def of(cls, robot: Robot, choice: CollisionChoice = None) -> "CollisionModel":
         """Resolve a choice; raises `InputError` for an unknown name, or for what does not fit the robot."""
         if isinstance(choice, CollisionModel):
-            if choice.robot is not robot:
+            if choice.robot != robot:
                 other = f"this is a model of another Robot object ({choice.robot.name}), not of this {robot.name}"
                 raise InputError(other, ("collision",))
             _ = choice.is_checked

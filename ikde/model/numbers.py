@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.errors import InputError
+from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a number and no bool."""
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    """Whether it is a real number and no bool."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
 
 
 def read_numbers(values: ArrayLike, where: tuple[str | int, ...]) -> Floats:
@@ -20,5 +20,5 @@ def read_numbers(values: ArrayLike, where: tuple[str | int, ...]) -> Floats:
         raise InputError("expected numbers, got complex ones", where)
     try:
         return np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"expected numbers, got {values!r}", where) from None
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"expected numbers, got {quoted(values)}", where) from None

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
+from ikde.model.value import Value
 
 WORLD = "world"
 NO_DETECTOR = "none"
@@ -44,7 +45,7 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Frame:
+class Frame(Value):
     """A frame of the tree: T_parent_frame(q) = [R_parent_frame, p_parent_frame] @ joint motion about `axis`."""
 
     name: str
@@ -59,7 +60,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Inertia:
+class Inertia(Value):
     """The mass that moves with a frame: kept for programs that move masses; nothing here depends on it."""
 
     mass_kg: float
@@ -167,7 +168,7 @@ class LeftOutPair:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, weakref_slot=True)
-class Robot:
+class Robot(Value):
     """A robot that has been checked: parents come before children and every name resolves (`model.validate`)."""
 
     name: str

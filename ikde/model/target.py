@@ -1,5 +1,7 @@
 """What the tool is asked to do: a position, a position with a tool axis direction, or a full pose; once or often."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, Self, overload
@@ -10,7 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 from ikde.errors import InputError
 from ikde.kernels.arrays import AXIS, POSE, POSITION, Floats, Ints
 from ikde.model.numbers import read_numbers
-from ikde.model.rotation import are_rotations, check_rotation, length, rotation_with_z
+from ikde.model.rotation import (
+    TOLERANCE,
+    are_rotations,
+    check_rotation,
+    length,
+    rotation_from_quat_wxyz,
+    rotation_from_rpy,
+    rotation_with_z,
+)
+from ikde.model.value import Value
 
 MAX_MAGNITUDE = 1e6  # m: beyond it, doubles hold less than a nanometre
 MAX_LENGTH = 1e100  # of an axis, whose length says nothing
@@ -22,7 +33,7 @@ NOT_BOTH = "a target has a rotation (R_world_tool) or an axis (axis_world_tool),
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class Target:
+class Target(Value):
     """Where the tool should be, in the world frame.
 
     Args:
@@ -47,6 +58,32 @@ class Target:
         kind, R = _read_orientation(R_world_tool, axis_world_tool, rows=())
         p = _read_vectors(p_world_tool, "p_world_tool", MAX_MAGNITUDE, rows=())
         self._set(KINDS[kind], np.concatenate([R, p[:, None]], axis=1))
+
+    @classmethod
+    def from_matrix(cls, T_world_tool: ArrayLike) -> Self:
+        """A full pose from a homogeneous matrix [4, 4], m; raises `InputError` unless it is a rotation and a position.
+
+        Poses of other libraries are taken as they are wherever a target is: `solve(robot, pin.SE3.Identity())`.
+        """
+        R, p = _read_matrices(T_world_tool, rows=())
+        return cls(p, R_world_tool=R)
+
+    @classmethod
+    def from_quat_wxyz(cls, p_world_tool: ArrayLike, quat_wxyz: ArrayLike) -> Self:
+        """A full pose from a position [3] in m and a quaternion [4] of any length, w first (MuJoCo, Drake)."""
+        return cls(p_world_tool, R_world_tool=_rotation_from_quat(_read(quat_wxyz, "quat_wxyz", (4,)), "quat_wxyz"))
+
+    @classmethod
+    def from_quat_xyzw(cls, p_world_tool: ArrayLike, quat_xyzw: ArrayLike) -> Self:
+        """A full pose from a position [3] in m and a quaternion [4] of any length, w last (ROS, scipy)."""
+        quat_wxyz = np.roll(_read(quat_xyzw, "quat_xyzw", (4,)), 1)
+        return cls(p_world_tool, R_world_tool=_rotation_from_quat(quat_wxyz, "quat_xyzw"))
+
+    @classmethod
+    def from_rpy(cls, p_world_tool: ArrayLike, rpy_rad: ArrayLike) -> Self:
+        """A full pose from a position [3] in m and roll, pitch, yaw [3] in rad about fixed axes: Rz Ry Rx, as URDF."""
+        rpy = _read_vectors(rpy_rad, "rpy_rad", MAX_MAGNITUDE, rows=())
+        return cls(p_world_tool, R_world_tool=rotation_from_rpy(rpy))
 
     @property
     def p_world_tool(self) -> Floats:
@@ -81,7 +118,7 @@ class Target:
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class Targets:
+class Targets(Value):
     """Many targets as arrays: a sequence of `Target`, and the cheap way to have a million of them.
 
     Args:
@@ -114,7 +151,7 @@ class Targets:
         self._set(np.full(len(p), kind, dtype=np.int64), np.concatenate([R, p[:, :, None]], axis=2))
 
     @classmethod
-    def of(cls, targets: "Targets | Sequence[Target]") -> "Targets":
+    def of(cls, targets: Targets | Sequence[Target]) -> Targets:
         """Targets of any kinds from a sequence of `Target`; `Targets` are given back as they are."""
         if isinstance(targets, Targets):
             return targets
@@ -122,6 +159,12 @@ class Targets:
         for row, target in zip(T_world_tool, targets, strict=True):
             row[:] = target.T_world_tool
         return cls.packed(np.array([KINDS.index(target.kind) for target in targets], dtype=np.int64), T_world_tool)
+
+    @classmethod
+    def from_matrix(cls, T_world_tool: ArrayLike) -> Self:
+        """Full poses from homogeneous matrices [T, 4, 4], m."""
+        R, p = _read_matrices(T_world_tool, rows=("T",))
+        return cls(p, R_world_tool=R)
 
     @classmethod
     def packed(cls, kind: Ints, T_world_tool: Floats) -> Self:
@@ -145,7 +188,7 @@ class Targets:
         """Directions asked of the tool's z axis [T, 3]."""
         return self.T_world_tool[:, :, 2]
 
-    def take(self, rows: Ints | slice) -> "Targets":
+    def take(self, rows: Ints | slice) -> Targets:
         """The targets of these rows, in this order."""
         return Targets.packed(self.kind[rows], self.T_world_tool[rows])
 
@@ -159,9 +202,9 @@ class Targets:
     def __getitem__(self, index: int) -> Target: ...
 
     @overload
-    def __getitem__(self, index: slice) -> "Targets": ...
+    def __getitem__(self, index: slice) -> Targets: ...
 
-    def __getitem__(self, index: int | slice) -> "Target | Targets":
+    def __getitem__(self, index: int | slice) -> Target | Targets:
         if isinstance(index, slice):
             return Targets.packed(self.kind[index], self.T_world_tool[index])
         return Target.packed(KINDS[self.kind[index]], self.T_world_tool[index].copy())
@@ -199,6 +242,23 @@ def _read_rotations(values: ArrayLike, rows: Rows) -> Floats:
         good = np.isfinite(R).all(axis=(-2, -1)) & are_rotations(R)
     _refuse(good, "R_world_tool", lambda row: check_rotation(R[row]))
     return R
+
+
+def _read_matrices(values: ArrayLike, rows: Rows) -> tuple[Floats, Floats]:
+    """Rotations [*rows, 3, 3] and positions [*rows, 3] of homogeneous matrices."""
+    T = _read(values, "T_world_tool", (*rows, 4, 4))
+    good = np.all(np.abs(T[..., 3, :] - [0.0, 0.0, 0.0, 1.0]) <= TOLERANCE, axis=-1)
+    _refuse(good, "T_world_tool", lambda row: f"expected the last row 0 0 0 1, got {T[row][3].tolist()}")
+    return T[..., :3, :3], T[..., :3, 3]
+
+
+def _rotation_from_quat(quat_wxyz: Floats, name: str) -> Floats:
+    if not np.isfinite(quat_wxyz).all():
+        raise InputError("expected finite numbers", (name,))
+    try:
+        return rotation_from_quat_wxyz(quat_wxyz)
+    except InputError as error:
+        raise InputError(error.message, (name,)) from None
 
 
 def _read_axes(values: ArrayLike, rows: Rows) -> Floats:

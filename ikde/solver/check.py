@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from ikde.kernels.arrays import Floats
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, joints_outside, read_configuration
 from ikde.solver.plain import compute_gaps
 
@@ -37,12 +37,12 @@ class CheckResult:
 
 
 def check(
-    robot: Robot, q: JointValues, collision: CollisionChoice = None, convention: str | None = None
+    robot: RobotLike, q: JointValues, collision: CollisionChoice = None, convention: str | None = None
 ) -> CheckResult:
     """Clearance of every pair of components; collision means clearance <= safe distance [Qiao2021, eq. 21].
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         q: joint values [N] or a mapping by joint name; m and rad. Values outside the limits are accepted and named.
         collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
         convention: how `q` is counted; None for the robot's own.
@@ -50,6 +50,7 @@ def check(
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
+    robot = read_robot(robot)
     values = read_configuration(robot, q, convention)
     model = CollisionModel.of(robot, collision)
     pairs = compute_pairs(model, values)

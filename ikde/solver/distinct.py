@@ -1,26 +1,29 @@
 """Several solutions of one target, far enough apart to be a choice, best first by a stated cost."""
 
+from __future__ import annotations
+
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Literal, TypedDict, Unpack, get_args
 
 import numpy as np
 
-from ikde.errors import InputError
+from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats
 from ikde.kernels.seeds import LUCKY_ATTEMPTS
+from ikde.model.arguments import RobotLike, TargetLike, read_robot, read_target
 from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.solver.engine_table import ENGINES
+from ikde.solver.engine_table import ENGINES, Method
 from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights, limit_margin
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.result import SolveResult
 from ikde.solver.results import solve_rows
-from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, choose_settings
+from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, choose_settings, describe_count, is_count
 from ikde.solver.solve import solve
 
 REVOLUTE_APART_RAD, PRISMATIC_APART_M = 0.1, 0.05  # what makes two solutions distinct
@@ -44,14 +47,14 @@ class Question(TypedDict, total=False):
 
 
 def solve_distinct(
-    robot: Robot,
-    target: Target,
+    robot: RobotLike,
+    target: TargetLike,
     count: int,
-    settings: SolveSettings | None = None,
+    settings: SolveSettings | Mapping[str, Any] | None = None,
     *,
     rank: Rank = "motion",
     seed: int = 0,
-    method: str = "auto",
+    method: Method = "auto",
     **question: Unpack[Question],
 ) -> list[SolveResult]:
     """Up to `count` distinct solutions: any two differ by more than 0.1 rad or 50 mm in a joint.
@@ -60,8 +63,8 @@ def solve_distinct(
     each (`verified`). A timeout is that of the whole call.
 
     Args:
-        robot: the robot.
-        target: what the tool is asked to do.
+        robot: the robot, its name or the path of its file.
+        target: what the tool is asked to do, as for `solve`.
         count: how many are wanted.
         settings: tolerances and search settings; None for the method's own.
         rank: what comes first, and what is kept of many: `"motion"`, the least from `near`, else home
@@ -73,9 +76,10 @@ def solve_distinct(
         question: `collision`, `near`, `freeze` and `weights`, as for `solve`. With `near` the first that is found is a
             local minimum of the motion; the others are as the search finds them, since few are.
     """
-    if not 1 <= count <= MAX_WANTED:
-        raise InputError(f"expected a whole number of at least 1, up to {MAX_WANTED:,}, got {count}", ("count",))
+    if not is_count(1, MAX_WANTED)(count):
+        raise InputError(f"expected {describe_count(1, MAX_WANTED)}, got {quoted(count)}", ("count",))
     check_rank(rank)
+    robot, target = read_robot(robot), read_target(target)
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, **{**NOTHING_ELSE, **question})
     if rank == "clearance" and not problem.collision.pairs:

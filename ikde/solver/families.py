@@ -8,10 +8,13 @@ Stand at the shoulder, the first axis pointing up, and look to the wrist centre,
 * `flip`: the fifth joint is rotated the other way, and the fourth and the sixth by half a turn.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.closed_form import BRANCHES, DOWN, FLIP, RIGHT, SINGULAR
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.closed_form import URArm, find_ur_arm
 from ikde.model.robot import Robot
 from ikde.solver.joints import JointValues, read_configuration
@@ -27,11 +30,11 @@ FAMILIES = tuple(name_family(code) for code in range(BRANCHES))
 """Labels by code."""
 
 
-def family(robot: Robot, q: JointValues, convention: str | None = None) -> str | None:
+def family(robot: RobotLike, q: JointValues, convention: str | None = None) -> str | None:
     """How a UR-type arm holds itself: shoulder/elbow/wrist, such as `left/up/no flip`.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         q: joint values [N] or a mapping by joint name; m and rad.
         convention: how `q` is counted; None for the robot's own.
 
@@ -41,6 +44,7 @@ def family(robot: Robot, q: JointValues, convention: str | None = None) -> str |
     Raises:
         InputError: for a wrong count, an unknown joint or convention, NaN or infinity.
     """
+    robot = read_robot(robot)
     return label_family(robot, read_configuration(robot, q, convention))
 
 

@@ -1,16 +1,19 @@
 """Where every frame is."""
 
+from __future__ import annotations
+
 from ikde.kernels.arrays import Floats
-from ikde.model.robot import TOOL, WORLD, Robot
+from ikde.model.arguments import RobotLike, read_robot
+from ikde.model.robot import TOOL, WORLD
 from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.plain import compute_frames
 
 
-def forward(robot: Robot, q: JointValues, convention: str | None = None) -> dict[str, Floats]:
+def forward(robot: RobotLike, q: JointValues, convention: str | None = None) -> dict[str, Floats]:
     """Pose of every frame in the world [Qiao2021, eq. 3, 5-9].
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         q: joint values [N] or [..., N] in the robot's order, or a mapping by joint name; m and rad. Values outside
             the limits are accepted.
         convention: how `q` is counted; None for the robot's own.
@@ -21,5 +24,6 @@ def forward(robot: Robot, q: JointValues, convention: str | None = None) -> dict
     Raises:
         InputError: for a wrong count, an unknown joint or convention, NaN or infinity.
     """
+    robot = read_robot(robot)
     Ts_world = compute_frames(robot, read_joints(robot, q, convention))
     return {name: T for name, T in Ts_world.items() if name != WORLD} | {TOOL: Ts_world[robot.tool]}

@@ -5,9 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import Floats
 from ikde.model.base_motion import find_planar_base
+from ikde.model.numbers import is_number
 from ikde.model.robot import Robot
 
 Weights = Mapping[str, float]
@@ -29,13 +30,9 @@ def read_weights(robot: Robot, weights: Weights | None) -> Floats:
     for name, value in weights.items():
         if name not in names:
             raise InputError(f"{robot.name} has no joint {name!r}{nearest(str(name), names)}", ("weights", str(name)))
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, int | float | np.number)
-            or not MIN_WEIGHT <= value <= MAX_WEIGHT
-        ):
+        if not is_number(value) or not MIN_WEIGHT <= value <= MAX_WEIGHT:
             raise InputError(
-                f"expected a number from {MIN_WEIGHT:g} to {MAX_WEIGHT:g}, got {value!r}", ("weights", name)
+                f"expected a number from {MIN_WEIGHT:g} to {MAX_WEIGHT:g}, got {quoted(value)}", ("weights", name)
             )
         read[names.index(name)] = value
     read.setflags(write=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ikde.errors import InputError
+from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT, CollisionArrays, Floats, RobotArrays, SearchArrays
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionChoice, CollisionModel
@@ -99,7 +99,7 @@ def make_problem(
     weights: Weights | None = None,
 ) -> Problem:
     """Resolve names and ranges; raises `InputError` for what does not fit the robot."""
-    start = None if near is None else read_joints(robot, near, default=robot.home)
+    start = None if near is None else read_joints(robot, near, default=robot.home, argument="near")
     if start is not None and start.ndim != 1:
         raise InputError(f"expected one configuration, got shape {start.shape}", ("near",))
     centre = robot.home if start is None else start
@@ -126,15 +126,16 @@ def make_problem(
 def _read_freeze(robot: Robot, freeze: Freeze | None, default: Floats) -> dict[str, float]:
     if freeze is None:
         return {}
-    if not isinstance(freeze, str | Iterable):
-        raise InputError(f"expected names of joints, or values by name, got {freeze!r}", ("freeze",))
     names = [freeze] if isinstance(freeze, str) else freeze
+    names = names if isinstance(names, Mapping) or not isinstance(names, Iterable) else list(names)
+    if not isinstance(names, Mapping | list) or not all(isinstance(name, str) for name in names):
+        raise InputError(f"expected names of joints, or values by name, got {quoted(freeze)}", ("freeze",))
     given = dict(names) if isinstance(names, Mapping) else dict.fromkeys(names)
     start = dict(zip(robot.joint_names, default, strict=True))
     values = {name: start.get(name, 0.0) if value is None else value for name, value in given.items()}
     if all(name in start and is_number(value) and abs(value) <= MAX_MAGNITUDE for name, value in values.items()):
         return {name: float(value) for name, value in values.items()}
-    resolved = read_joints(robot, values, default=default)
+    resolved = read_joints(robot, values, default=default, argument="freeze")
     return {name: float(resolved[robot.joint_names.index(name)]) for name in values}
 
 

@@ -13,6 +13,17 @@ from ikde.model.numbers import is_number
 from ikde.solver.engine_table import AUTO, ENGINES, Method
 
 Collision = Literal["reject", "feasibility"]
+Repair = Literal["redraw", "clip", "parent", "midpoint", "none"]
+Strategy = Literal[
+    "rand/1",
+    "best/1",
+    "rand/2",
+    "best/2",
+    "rand-to-best/1",
+    "rand-to-best/2",
+    "current-to-best/1",
+    "current-to-best/2",
+]
 Update = Literal["generation", "in_place"]
 Verify = Literal["all", "sample", "none"]
 Rule = tuple[Callable[[Any], bool], str]
@@ -32,7 +43,7 @@ class DeSettings:
         InputError: for a population below 6, a crossover rate above 1, and so on.
     """
 
-    strategy: str = "rand/1"
+    strategy: Strategy = "rand/1"
     """Mutation: one of `kernels.mutation.STRATEGIES`."""
     population: int = 50
     """NP [Qiao2022]."""
@@ -44,7 +55,7 @@ class DeSettings:
     """CR, the crossover rate, [0, 1] [Qiao2022]."""
     generations: int = 1000
     """G, generations of one attempt [Qiao2022]."""
-    bounds: str = "redraw"
+    bounds: Repair = "redraw"
     """What happens to a coordinate out of its range: drawn again uniformly, clipped, its parent's value, the midpoint
     between parent and bound, or none (then a solution out of range counts as not reached). The paper does not say."""
     update: Update = "in_place"
@@ -208,13 +219,28 @@ def _check_bits(value: Any, bits: int, name: str) -> int:
     return int(value)
 
 
-def choose_settings(settings: SolveSettings | None, method: str) -> SolveSettings:
+def _read_mapping(given: Mapping[str, Any], method: str) -> SolveSettings:
+    """Settings by name, the others the method's own."""
+    known = [field.name for field in fields(SolveSettings)]
+    for name in given:
+        if name not in known:
+            hint = nearest(str(name), known) or f"; there are {', '.join(known)}"
+            raise InputError(f"no setting is called {quoted(name)}{hint}", ("settings",))
+    own = given.get("method", method)
+    if not isinstance(own, str):
+        raise InputError(f"expected the name of a method, got {quoted(own)}", ("settings", "method"))
+    return SolveSettings.for_method(own).with_changes(**given)
+
+
+def choose_settings(settings: SolveSettings | Mapping[str, Any] | None, method: str) -> SolveSettings:
     """The settings, or the method's own; a wrong name, or what is neither, is an error either way."""
     if not isinstance(method, str):
         raise InputError(f"expected the name of a method, got {quoted(method)}", ("method",))
+    if isinstance(settings, Mapping):
+        settings = _read_mapping(settings, method)
     if not isinstance(settings, SolveSettings | None):
         hint = ", which take these as `de`" if isinstance(settings, DeSettings) else ""
-        raise InputError(f"expected SolveSettings{hint}, got {quoted(settings)}", ("settings",))
+        raise InputError(f"expected SolveSettings{hint}, or a mapping of them, got {quoted(settings)}", ("settings",))
     own = SolveSettings.for_method(method)
     if settings is None:
         return own

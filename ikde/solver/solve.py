@@ -1,15 +1,20 @@
 """`solve` and `solve_many`: search, grade, explain."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from collections.abc import Mapping
 from functools import lru_cache
 from time import perf_counter
+from typing import Any
 
 from ikde.errors import InputError
+from ikde.model.arguments import RobotLike, TargetLike, TargetsLike, read_robot, read_target, read_targets
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
-from ikde.model.target import Target, Targets
+from ikde.model.target import Target
 from ikde.solver.asker import find_asker
 from ikde.solver.background import choose_way
+from ikde.solver.engine_table import Method
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, Problem, make_problem
@@ -22,13 +27,13 @@ USUAL = BulkOptions()
 
 
 def solve(
-    robot: Robot,
-    target: Target,
-    settings: SolveSettings | None = None,
+    robot: RobotLike,
+    target: TargetLike,
+    settings: SolveSettings | Mapping[str, Any] | None = None,
     *,
     seed: int = 0,
     stream: int = 0,
-    method: str = "auto",
+    method: Method = "auto",
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
@@ -37,9 +42,11 @@ def solve(
     """Find a configuration that meets the target, inside all limits and free of self-collision.
 
     Args:
-        robot: the robot.
-        target: what the tool is asked to do.
-        settings: tolerances and search settings; None for the method's own (`SolveSettings.for_method`).
+        robot: the robot, its name or the path of its file.
+        target: what the tool is asked to do: a `Target`, a position [3] in m, or a pose [4, 4], also that
+            of another library (`.homogeneous`, `.A`, `.as_matrix()`).
+        settings: tolerances and search settings, or a mapping of some; others are the method's own
+            (`SolveSettings.for_method`).
         seed: same seed, same bits. 0 <= seed < 2^64.
         stream: which random stream of the seed; `solve_many` gives its target k stream k.
         method: the engine (`SolveSettings.method`); `"auto"` is ikde's choice.
@@ -62,7 +69,12 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     started = perf_counter()
-    seed, stream = check_seed(seed), check_stream(stream)
+    if type(robot) is not Robot or type(target) is not Target:
+        robot, target = read_robot(robot), read_target(target)
+    if settings is not None and type(settings) is not SolveSettings:
+        settings = choose_settings(settings, method)
+    if seed or stream or type(seed) is not int or type(stream) is not int:  # 0.2 us less for the first stream
+        seed, stream = check_seed(seed), check_stream(stream)
     if near is None and freeze is None and weights is None:
         try:
             quick = find_quick(robot, settings, method, collision, target.kind)
@@ -84,12 +96,12 @@ def solve(
 
 
 def solve_many(
-    robot: Robot,
-    targets: Targets | Sequence[Target],
-    settings: SolveSettings | None = None,
+    robot: RobotLike,
+    targets: TargetsLike,
+    settings: SolveSettings | Mapping[str, Any] | None = None,
     *,
     seed: int = 0,
-    method: str = "auto",
+    method: Method = "auto",
     collision: CollisionChoice = None,
     near: JointValues | None = None,
     freeze: Freeze | None = None,
@@ -98,6 +110,8 @@ def solve_many(
 ) -> SolveResults:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
+    `targets`: `Targets`, positions [T, 3] in m, poses [T, 4, 4], or a sequence of what `solve` takes; one
+    target is one row.
     `bulk` says on how many threads, whose answers plain numpy grades as well (`verified` is masked where it was not
     asked), and whether failures are explained. A disagreement does not raise: that result is not reached, and
     `verified` is False. Other arguments as for `solve`.
@@ -108,12 +122,12 @@ def solve_many(
     choose_way()  # a wrong word is found before anything else
     if not isinstance(bulk, BulkOptions | None):
         raise InputError(f"expected BulkOptions, got {bulk!r}", ("bulk",))
-    chosen = choose_settings(settings, method)
+    robot, chosen = read_robot(robot), choose_settings(settings, method)
     if near is None and freeze is None and weights is None:
         problem = _find_problem(CollisionModel.of(robot, collision), chosen)
     else:
         problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
-    return solve_rows(problem, targets, bulk or USUAL, seed=check_seed(seed))
+    return solve_rows(problem, read_targets(targets), bulk or USUAL, seed=check_seed(seed))
 
 
 @lru_cache(maxsize=16)

@@ -1,6 +1,8 @@
 """The grader in plain numpy, written apart from the kernels, grading the exact joint values that are returned."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -8,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
+from ikde.model.arguments import RobotLike, TargetLike, read_robot, read_target
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.robot import Robot
 from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import AXIS, POSE, Target, Targets
 from ikde.solver.families import label_family
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.plain import compute_frames, compute_gaps
-from ikde.solver.settings import SolveSettings
+from ikde.solver.settings import SolveSettings, choose_settings
 
 Bools = NDArray[np.bool_]
 if TYPE_CHECKING:
@@ -87,18 +89,18 @@ class Grades:
 
 
 def verify(
-    robot: Robot,
-    target: Target,
+    robot: RobotLike,
+    target: TargetLike,
     q: JointValues,
     *,
-    settings: SolveSettings | None = None,
+    settings: SolveSettings | Mapping[str, Any] | None = None,
     collision: CollisionChoice = None,
     convention: str | None = None,
 ) -> Grade:
     """Grade joint values against a target.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         target: what the tool is asked to do.
         q: joint values [N] or a mapping by joint name; m and rad.
         settings: the tolerances (default 1e-5 m, 1e-4 rad).
@@ -108,8 +110,9 @@ def verify(
     Raises:
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
+    robot, chosen = read_robot(robot), choose_settings(settings, "auto")
     Q = read_configuration(robot, q, convention)[None]
-    return verify_many(CollisionModel.of(robot, collision), [target], Q, settings or SolveSettings()).row(0)
+    return verify_many(CollisionModel.of(robot, collision), [read_target(target)], Q, chosen).row(0)
 
 
 def verify_many(

@@ -191,3 +191,28 @@ def test_poses_are_c_ordered_and_read_only_however_they_came(again):
         assert not target.T_world_tool.flags.writeable
     assert (again(one).T_world_tool == one.T_world_tool).all()
     assert again(one).kind == one.kind
+
+
+def test_a_pose_may_be_written_in_four_ways():
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = rotation_from_rpy(np.array([0.0, 0.0, np.pi / 2])), P
+    expected, half = Target(P, R_world_tool=T[:3, :3]), np.sqrt(0.5)
+    assert Target.from_matrix(T) == expected
+    assert Target.from_rpy(P, (0.0, 0.0, np.pi / 2)) == expected
+    for same in (Target.from_quat_wxyz(P, (half, 0, 0, half)), Target.from_quat_xyzw(P, (0, 0, half, half))):
+        np.testing.assert_allclose(same.T_world_tool, expected.T_world_tool, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Target.from_matrix(np.eye(3)), r"T_world_tool: expected an array \[4, 4\]"),
+        (lambda: Target.from_matrix(2 * np.eye(4)), "T_world_tool: expected the last row 0 0 0 1"),
+        (lambda: Target.from_quat_wxyz(P, (0, 0, 0, 0)), "quat_wxyz: a quaternion of length 0"),
+        (lambda: Target.from_quat_xyzw(P, (0, 0, np.nan, 0)), "quat_xyzw: expected finite numbers"),
+        (lambda: Target.from_rpy(P, (0, 0)), r"rpy_rad: expected an array \[3\]"),
+    ],
+)
+def test_what_is_no_pose_is_refused(make, message):
+    with pytest.raises(InputError, match=f"^{message}"):
+        make()

@@ -114,3 +114,9 @@ def test_the_ends_of_the_widest_ranges_that_load_are_joint_values(qiao):
         assert read_joints(wide, q).tolist() == q.tolist()
     with pytest.raises(InputError, match="below 100000"):
         read_joints(wide, np.nextafter(wide.upper, np.inf))
+
+
+def test_a_mistake_is_named_by_the_argument(qiao):
+    for near in ([1.0, 2.0], {"q": 1.0}, {3: 1.0}, "abc"):
+        with pytest.raises(InputError, match=r"^near"):
+            read_joints(qiao, near, default=qiao.home, argument="near")

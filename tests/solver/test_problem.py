@@ -10,7 +10,8 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionModel
-from ikde.solver.problem import pack_search, pack_searched
+from ikde.solver.problem import make_problem, pack_search, pack_searched
+from ikde.solver.settings import SolveSettings
 from tests.endless_robot import ENDLESS
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
@@ -209,3 +210,9 @@ def test_turns_stay_inside_the_limits_where_a_probe_asks_for_more(endless):
 
 def test_slides_do_not_turn(qiao):
     assert problem_of(qiao).turns[2].tolist() == [False, False] + [True] * 7
+
+
+@pytest.mark.parametrize("freeze", [[3], b"abc", 3, [["q1"]], {"q1": 10**400}, {"q1": 1j}])
+def test_what_names_no_joints_is_refused_as_freeze(qiao, freeze):
+    with pytest.raises(InputError, match=r"^freeze: expected"):
+        make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=freeze)

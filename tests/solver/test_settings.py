@@ -1,6 +1,7 @@
 """Settings: the defaults of each method, and what is refused."""
 
 from dataclasses import FrozenInstanceError, fields, replace
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.solver.engine_table import ENGINES
-from ikde.solver.settings import SolveSettings, choose_settings
+from ikde.solver.settings import Repair, SolveSettings, Strategy, choose_settings
 
 PAPER = ikde.DeSettings(collision="reject", update="generation")
 GOOD = {
@@ -163,3 +164,18 @@ def test_defaults_of_the_de_come_and_go_with_the_method():
 def test_an_unknown_setting_of_the_de_is_a_line():
     with pytest.raises(InputError, match=r"no setting of the DE is called 'popul' \(did you mean 'population'\?\)"):
         SolveSettings(method="de").with_changes(de={"popul": 80})
+
+
+def test_settings_may_be_a_mapping():
+    assert choose_settings({"timeout_s": 1.0}, "auto") == SolveSettings(timeout_s=1.0)
+    own = choose_settings({"method": "de", "de": {"population": 80}}, "auto")
+    assert (own.method, own.evolution.population) == ("de", 80)
+    with pytest.raises(InputError, match=r"^settings: no setting is called 'timeot_s' \(did you mean 'timeout_s'\?\)"):
+        choose_settings({"timeot_s": 1.0}, "auto")
+    with pytest.raises(InputError, match=r"^settings: no setting is called 3; there are method"):
+        choose_settings({3: 1.0}, "auto")
+
+
+def test_the_words_of_type_checkers_are_those_of_the_kernels():
+    assert get_args(Strategy) == STRATEGIES
+    assert get_args(Repair) == REPAIRS

@@ -1,0 +1,103 @@
+"""What is unambiguous is taken as a robot or a target; the rest is refused by the name of its argument."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ikde.errors import FileError, InputError
+from ikde.io.robots import load_robot, robot_path
+from ikde.model.arguments import read_robot, read_target, read_targets
+from ikde.model.target import Target, Targets
+
+P = (0.8, 0.5, 1.0)
+T = np.array([[0.0, 0.0, 1.0, 0.8], [1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
+POSE = Target(P, R_world_tool=T[:3, :3])
+POSES = [SimpleNamespace(homogeneous=T), SimpleNamespace(A=T), SimpleNamespace(as_matrix=lambda: T)]
+
+
+def test_a_robot_may_be_named_or_be_a_file():
+    robot = load_robot("ur5")
+    assert read_robot(robot) is robot
+    assert read_robot("ur5") is robot
+    assert read_robot(robot_path("ur5")) == robot
+
+
+@pytest.mark.parametrize(("given", "message"), [(3, "robot: expected a Robot"), ("ur6", "robot: no robot is called")])
+def test_what_is_no_robot_is_refused(given, message):
+    with pytest.raises(InputError, match=f"^{message}"):
+        read_robot(given)
+
+
+def test_a_file_that_is_missing_is_named(tmp_path):
+    with pytest.raises(FileError, match=r"none\.yaml"):
+        read_robot(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize("given", [P, list(P), np.array(P), Target(P)], ids=["tuple", "list", "array", "target"])
+def test_three_numbers_are_a_position(given):
+    assert read_target(given) == Target(P)
+
+
+@pytest.mark.parametrize("given", [T, T.tolist(), np.asfortranarray(T), *POSES])
+def test_a_matrix_is_a_pose_also_that_of_another_library(given):
+    assert read_target(given) == POSE
+    assert list(read_targets(given)) == [POSE]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("x", "got 'x'"),
+        (None, "got None"),
+        ((1.0, 2.0), r"got shape \(2,\)"),
+        (T[:3], r"got shape \(3, 4\)"),
+        (T[:3, :3], r"got shape \(3, 3\); rotations have no position: Target\(p, R_world_tool=R\)"),
+        (SimpleNamespace(as_matrix=lambda: T[:3, :3]), r"got shape \(3, 3\); rotations have no position"),
+        ((1.0, np.nan, 2.0), "expected finite numbers"),
+        (2.0 * T, "expected the last row 0 0 0 1"),
+        ([Target(P)], "got "),
+        (Targets([P]), "solve_many takes many"),
+    ],
+)
+def test_what_is_no_target_is_refused(given, message):
+    with pytest.raises(InputError, match=f"^target: .*{message}"):
+        read_target(given)
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        (Targets([P, P]), [Target(P)] * 2),
+        (POSE, [POSE]),
+        (P, [Target(P)]),
+        (np.array([P, P, P]), [Target(P)] * 3),
+        ([P, list(P)], [Target(P)] * 2),
+        (np.array([T, T]), [POSE] * 2),
+        (SimpleNamespace(A=[T, T]), [POSE] * 2),
+        ([P, T, *POSES, POSE], [Target(P), *[POSE] * 5]),
+        ((one for one in [P, T]), [Target(P), POSE]),
+        ([], []),
+        (np.empty((0, 3)), []),
+    ],
+)
+def test_many_targets_may_be_arrays_or_a_list_of_all_kinds(given, expected):
+    assert list(read_targets(given)) == expected
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ([P, "x"], r"targets\[1\]: expected a Target.*got 'x'"),
+        ([P, (1.0, 2.0)], r"targets\[1\]: .*shape \(2,\)"),
+        ([P, (1.0, np.inf, 2.0)], r"targets\[1\]: expected finite numbers"),
+        (np.zeros((2, 4)), r"targets: .*shape \(2, 4\)"),
+        ([T[:3, :3]] * 2, r"targets: .*rotations have no position"),
+        (3, "targets: .*got 3"),
+        ({"a": 1}, "targets: .*got {'a': 1}"),
+        ("abc", "targets: .*got 'abc'"),
+    ],
+)
+def test_what_are_no_targets_is_refused_with_its_row(given, message):
+    with pytest.raises(InputError, match=f"^{message}"):
+        read_targets(given)

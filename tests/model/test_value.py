@@ -1,0 +1,53 @@
+"""Robots and targets are equal by value, through pickle and copies, and are hashed once."""
+
+import copy
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ikde.io.robots import load_robot
+from ikde.model.pack import pack_robot
+from ikde.model.target import Target, Targets
+
+THROUGH = [lambda value: pickle.loads(pickle.dumps(value)), copy.copy, copy.deepcopy]
+VALUES = [load_robot("ur5"), load_robot("ur5").frames[0], Target((1.0, 2.0, 3.0)), Targets([(1.0, 2.0, 3.0)])]
+
+
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("travel", THROUGH, ids=["pickle", "copy", "deepcopy"])
+def test_a_copy_is_equal_and_finds_the_same_key(value, travel):
+    hash(value)
+    other = travel(value)
+    assert other is not value
+    assert other == value
+    assert {value: "found"}[other] == "found"
+
+
+def test_an_equal_robot_shares_what_was_prepared_for_the_first():
+    robot = load_robot("ur5")
+    assert pack_robot(pickle.loads(pickle.dumps(robot))) is pack_robot(robot)
+
+
+def test_robots_that_differ_in_one_number_are_not_equal():
+    robot = load_robot("ur5")
+    moved = replace(robot.frames[0], p_parent_frame=robot.frames[0].p_parent_frame + 1e-15)
+    assert replace(robot, frames=(moved, *robot.frames[1:])) != robot
+    assert replace(robot, title="another") != robot
+    assert replace(robot) == robot
+
+
+def test_targets_are_equal_if_they_ask_for_the_same():
+    assert Target([1, 2, 3]) == Target((1.0, 2.0, 3.0))
+    assert Target([1, 2, 3]) != Target([1, 2, 3], R_world_tool=np.eye(3))
+    assert Target([1, 2, 3]) != Target([1, 2, 4])
+    assert Target([1, 2, 3]) != Targets([[1, 2, 3]])
+    assert Target([1, 2, 3]) != "target"
+
+
+def test_a_hash_is_computed_once(monkeypatch):
+    target = Target([1, 2, 3])
+    first = hash(target)
+    monkeypatch.setattr("ikde.model.value.encode", None)
+    assert hash(target) == first

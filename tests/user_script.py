@@ -1,0 +1,82 @@
+"""A script as users write it, with every public call: checked by pyright (`include` in pyproject), not run.
+
+A comment that silences an error which is none is an error as well: what must be refused is refused.
+"""
+
+# pyright: reportUnnecessaryTypeIgnoreComment=true
+
+from pathlib import Path
+
+import numpy as np
+
+import ikde
+
+robot = ikde.load_robot("ur5")
+T_world_tool = ikde.forward(robot, robot.home)["tool"]
+q: np.ndarray = ikde.forward("ur5", [0.0] * 6)["tool"]
+
+targets = [
+    ikde.Target((0.4, 0.2, 0.3)),
+    ikde.Target.from_matrix(T_world_tool),
+    ikde.Target.from_quat_wxyz((0.4, 0.2, 0.3), (1, 0, 0, 0)),
+    ikde.Target.from_quat_xyzw((0.4, 0.2, 0.3), (0, 0, 0, 1)),
+    ikde.Target.from_rpy((0.4, 0.2, 0.3), (0, 0, np.pi)),
+]
+
+result: ikde.SolveResult = ikde.solve(robot, targets[0])
+result = ikde.solve("ur5", (0.4, 0.2, 0.3), {"timeout_s": 1.0}, method="lm")
+result = ikde.solve(Path("my.yaml"), T_world_tool, near=result.q, freeze=["q1"], weights={"q2": 1.0})
+result = ikde.solve(robot, [0.4, 0.2, 0.3], ikde.SolveSettings(method="de", de=ikde.DeSettings(strategy="best/1")))
+ikde.solve(robot, targets[0], method="foo")  # type: ignore[arg-type]
+ikde.solve_many(robot, targets, method="foo")  # type: ignore[arg-type]
+ikde.solve_distinct(robot, targets[0], 3, rank="foo")  # type: ignore[arg-type]
+ikde.SolveSettings(method="foo")  # type: ignore[arg-type]
+ikde.DeSettings(strategy="foo")  # type: ignore[arg-type]
+ikde.BulkOptions(verify="foo")  # type: ignore[arg-type]
+print(result.reached, result.q.round(3), result.stop_reason is ikde.StopReason.REACHED)
+
+rows = ikde.solve_many(robot, np.zeros((3, 3)), bulk=ikde.BulkOptions(threads=1))
+rows = ikde.solve_many(robot, [targets[0], T_world_tool, (0.4, 0.2, 0.3)])
+rows = ikde.solve_many(robot, ikde.Targets(np.zeros((3, 3))))
+rows = ikde.solve_many(robot, targets[0])
+print(rows.q.mean(), rows.reached.sum(), rows[0].clearance_m)
+for solution in ikde.solve_distinct("ur5", (0.4, 0.2, 0.3), 3, rank="clearance"):
+    print(solution.q, solution.family)
+
+detector = ikde.Detector(name="wide", spheres="default", pairs="non_adjacent", safe_distance_m=0.02)
+checked: ikde.CheckResult = ikde.check(robot, robot.home, detector)
+grade: ikde.Grade = ikde.verify(robot, (0.4, 0.2, 0.3), result.q, settings={"position_tolerance_m": 1e-3})
+branch: str | None = ikde.family("ur5", robot.home)
+pairs = ikde.CollisionModel.of(robot, detector).left_out_pairs
+own = ikde.from_convention(robot, ikde.to_convention(robot, robot.home, None), None)
+print({robot: "found"}[robot], robot == ikde.load_robot("ur5"), ikde.robot_names(), checked.pairs, grade.accepted)
+
+texts = [ikde.format_urdf(robot), ikde.format_mjcf(robot, collision="none")]
+imported: ikde.Robot = ikde.import_urdf("my.urdf")
+details: ikde.ImportedUrdf = ikde.read_urdf("my.urdf")
+options = ikde.ImportOptions()
+composed = ikde.compose(robot, imported, np.eye(4))
+
+batch = ikde.load_batch("batch.yaml")
+ikde.run_batch(batch, "run")
+table = ikde.read_batch("run")
+track = ikde.load_track("track.yaml")
+motion: ikde.Trajectory = ikde.run_track(track)
+ikde.write_trajectory("motion", motion)
+path = ikde.ToolPath(p_world_tool=np.zeros((5, 3)), dt_s=0.1)
+ikde.follow_path(robot, path, limits=ikde.MotionLimits.of(robot), settings=ikde.ContinuationSettings())
+ikde.follow_path(robot, path, method="foo")  # type: ignore[arg-type]
+ikde.follow_path(robot, path, method="optimized", settings=ikde.OptimizedSettings())
+ikde.follow_path(robot, path, method="typical", settings=ikde.TypicalSettings())
+stop: ikde.TrackStop | None = motion.stop
+ends = stop is not None and stop.reason is ikde.TrackStopReason.SPEED_LIMIT
+surface = ikde.check_surface(robot, robot.home)
+with ikde.compile_clock() as clock:
+    ikde.solve(robot, targets[0])
+print(clock.seconds)
+try:
+    ikde.solve(robot, "here")
+except ikde.FileError as error:
+    print(error.where)
+except (ikde.InputError, ikde.VerificationError, ikde.IkdeError) as error:
+    print(error)
