@@ -13,9 +13,8 @@ from ikde.io.urdf_import.description import Description
 from ikde.io.urdf_import.frames import Skeleton
 from ikde.io.urdf_import.free_home import find_free_home
 from ikde.io.urdf_import.options import ImportOptions
-from ikde.io.xml_file import reserve_name
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import NO_DETECTOR, WORLD, AdjacentPair, Detector, Drive, Frame, Joint, Robot, SphereRow
+from ikde.model.robot import NO_DETECTOR, WORLD, AdjacentPair, Detector, Drive, FreeSpheres, Joint, Robot
 from ikde.model.validate import NON_ADJACENT, check_robot
 from ikde.solver.touching import CONFIGURATIONS, find_always_touching
 
@@ -63,35 +62,33 @@ def add_spheres(
     Returns:
         The robot, checked, and what is worth a warning.
     """
-    points, rows = _make_rows(skeleton, covered)
-    frames = (*draft.frames, *points)
+    free = _place_spheres(skeleton, covered)
     for what, number, most in (
         ("joints", len(draft.joints), MAX_JOINTS),
-        ("frames", len(frames), MAX_ENTRIES),
-        ("spheres", len(rows), MAX_ENTRIES),
+        ("frames", len(draft.frames), MAX_ENTRIES),
+        ("spheres", sum(own.count for own in free), MAX_ENTRIES),
     ):
         if number > most:
             raise InputError(f"a robot has at most {most:,} {what}, and this one {number:,}", (what,))
-    if not rows:
+    if not free:
         return check_robot(draft), ["no link has spheres: self-collision is not checked"]
-    adjacent, notes = _read_disabled(skeleton, {row.component for row in rows}, srdf)
-    draft = replace(draft, frames=frames, approximations={SPHERES: tuple(rows)}, adjacent=adjacent)
+    adjacent, notes = _read_disabled(skeleton, {own.component for own in free}, srdf)
+    draft = replace(draft, approximations={SPHERES: free}, adjacent=adjacent)
     robot, more = _leave_out_touching(draft)
     return robot, notes + more
 
 
-def _make_rows(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tuple[list[Frame], list[SphereRow]]:
-    """A sphere a row, and key points for those that do not stand at the origin of their link."""
-    points, rows = [], []
-    for link, own in covered.items():
-        frame = skeleton.frame_of[link]
-        for index, (centre, radius) in enumerate(zip(own.centres, own.radii, strict=True)):
-            point = frame
-            if centre.any():
-                point = reserve_name(f"{frame}/sphere_{index}", skeleton.frame_names)
-                points.append(Frame(name=point, parent=frame, p_parent_frame=centre, R_parent_frame=np.eye(3)))
-            rows.append(SphereRow(component=frame, start=point, end=point, radius_m=float(radius)))
-    return points, rows
+def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tuple[FreeSpheres, ...]:
+    """The spheres of each link that has any, in its frame."""
+    return tuple(
+        FreeSpheres(
+            component=skeleton.frame_of[link],
+            frame=skeleton.frame_of[link],
+            spheres=tuple((*map(float, centre), float(r)) for centre, r in zip(own.centres, own.radii, strict=True)),
+        )
+        for link, own in covered.items()
+        if len(own.radii)
+    )
 
 
 def _leave_out_touching(draft: Robot) -> tuple[Robot, list[str]]:

@@ -88,7 +88,7 @@ def test_a_home_that_cannot_be_moved_stays_and_that_is_said(tmp_path, monkeypatc
     assert imported.robot.home.tolist() == [0.0, 0.25]
 
 
-@pytest.mark.parametrize(("limit", "what", "number"), [("MAX_JOINTS", "joints", 2), ("MAX_ENTRIES", "frames", 5)])
+@pytest.mark.parametrize(("limit", "what", "number"), [("MAX_JOINTS", "joints", 2), ("MAX_ENTRIES", "frames", 4)])
 def test_what_no_robot_file_could_hold_is_refused(tmp_path, monkeypatch, limit, what, number):
     monkeypatch.setattr(assemble, limit, number)
     assert load(tmp_path, ARM).robot
@@ -102,3 +102,15 @@ def test_so_are_more_spheres(tmp_path, monkeypatch):
     more = '<collision><geometry><sphere radius="0.05"/></geometry></collision>' * 4
     with pytest.raises(FileError, match="spheres: a robot has at most 6 spheres, and this one 7"):
         load(tmp_path, change('<link name="fore">', f'<link name="fore">{more}'))
+
+
+def test_a_link_is_one_entry_of_spheres_in_its_own_frame(tmp_path):
+    more = '<link name="fore"><collision><geometry><box size="0.05 0.05 0.2"/></geometry></collision>'
+    robot = load(tmp_path, change('<link name="fore">', more)).robot
+    entries = robot.approximations[assemble.SPHERES]
+    assert [(entry.component, entry.start, entry.end) for entry in entries] == [
+        (name, name, name) for name in ("base_link", "upper", "fore")
+    ]
+    assert not [frame.name for frame in robot.frames if "sphere" in frame.name]
+    assert CollisionModel.of(robot).pairs == (("base_link", "fore"),)
+    assert entries[2].count > 1

@@ -1,0 +1,40 @@
+"""The spheres of a link: every shape covered where it stands."""
+
+import numpy as np
+import pytest
+
+from ikde.errors import InputError
+from ikde.spheres import cover_shapes
+from ikde.spheres.primitives import cover_box, cover_capsule, cover_cylinder
+from ikde.spheres.shapes import Shape
+
+QUARTER = np.array([[0.0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])
+
+
+def test_each_shape_gets_its_own_spheres_where_it_stands() -> None:
+    shapes = [
+        Shape(kind="box", size=(0.3, 0.1, 0.1), T_link_shape=QUARTER),
+        Shape(kind="cylinder", size=(0.03, 0.4), T_link_shape=np.eye(4)),
+        Shape(kind="capsule", size=(0.02, 0.2), T_link_shape=np.eye(4)),
+        Shape(kind="sphere", size=(0.7,), T_link_shape=QUARTER),
+    ]
+    box, cylinder = cover_box((0.3, 0.1, 0.1), 0.01), cover_cylinder(0.03, 0.4, 0.01)
+    capsule = cover_capsule(0.02, 0.2, 0.01)
+    turned = np.stack([1 - box.centres[:, 1], 2 + box.centres[:, 0], 3 + box.centres[:, 2]], axis=1)
+    cover = cover_shapes(shapes, 0.01)
+    np.testing.assert_allclose(
+        cover.centres, np.concatenate([turned, cylinder.centres, capsule.centres, [[1, 2, 3]]]), atol=1e-15
+    )
+    np.testing.assert_array_equal(cover.radii, [*box.radii, *cylinder.radii, *capsule.radii, 0.7])
+    assert cover.covered == 1.0
+    assert cover.protrusion_m == max(box.protrusion_m, cylinder.protrusion_m, capsule.protrusion_m) <= 0.01
+
+
+def test_spheres_stand_out_by_two_centimetres_at_most_unless_more_is_asked() -> None:
+    shape = Shape(kind="box", size=(0.3, 0.1, 0.1), T_link_shape=np.eye(4))
+    assert len(cover_shapes([shape]).radii) == len(cover_box((0.3, 0.1, 0.1), 0.02).radii)
+
+
+def test_a_mesh_is_refused_with_the_way_out() -> None:
+    with pytest.raises(InputError, match="a mesh cannot be covered with spheres yet; --no-spheres"):
+        cover_shapes([Shape(kind="mesh", size=(), T_link_shape=np.eye(4))])
