@@ -1,11 +1,14 @@
 """The spheres of a link: every shape covered where it stands."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from ikde.errors import InputError
 from ikde.spheres import cover_shapes
-from ikde.spheres.primitives import cover_box, cover_capsule, cover_cylinder
+from ikde.spheres.cover_mesh import MeshCover
+from ikde.spheres.parts import PartCounts
+from ikde.spheres.primitives import Rows, cover_box, cover_capsule, cover_cylinder
 from ikde.spheres.shapes import Shape
 
 QUARTER = np.array([[0.0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])
@@ -35,6 +38,17 @@ def test_spheres_stand_out_by_two_centimetres_at_most_unless_more_is_asked() -> 
     assert len(cover_shapes([shape]).radii) == len(cover_box((0.3, 0.1, 0.1), 0.02).radii)
 
 
-def test_a_mesh_is_refused_with_the_way_out() -> None:
-    with pytest.raises(InputError, match="a mesh cannot be covered with spheres yet; --no-spheres"):
-        cover_shapes([Shape(kind="mesh", size=(), T_link_shape=np.eye(4))])
+def test_a_mesh_is_covered_where_it_stands_and_counts_by_its_area(monkeypatch) -> None:
+    parts = PartCounts(closed=1, hulls=2, sheets=1)
+    made = [
+        MeshCover(Rows(np.array([[0.1, 0, 0]]), np.array([0.2]), 0.01), 3.0, 1.0, parts, ("large",)),
+        MeshCover(Rows(np.zeros((1, 3)), np.array([0.3]), 0.02), 1.0, 0.6, parts, ()),
+    ]
+    asked = []
+    monkeypatch.setattr("ikde.spheres.cover.cover_mesh", lambda *own: (asked.append(own), made[len(asked) - 1])[1])
+    mesh = Shape(kind="mesh", size=(), T_link_shape=QUARTER, mesh=Path("a.stl"), scale=(1.0, -1.0, 1.0))
+    cover = cover_shapes([mesh, mesh], 0.02)
+    assert asked == [(Path("a.stl"), (1.0, -1.0, 1.0), 0.02)] * 2
+    np.testing.assert_array_equal(cover.centres, [[1, 2.1, 3], [1, 2, 3]])
+    assert (cover.covered, cover.protrusion_m, cover.warnings) == (pytest.approx(0.9), 0.02, ("large",))
+    assert cover.how == "greedy, certified, hulls of 4 open parts, 2 flat parts"

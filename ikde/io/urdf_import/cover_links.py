@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ikde.errors import FileError, InputError
 from ikde.io.urdf_import.chain import LinkTree
 from ikde.io.urdf_import.description import Description, UrdfShape
 from ikde.io.urdf_import.imported import CoveredLink
@@ -25,6 +26,7 @@ class LinkSpheres:
     radii: Floats
     """[S] m"""
     report: CoveredLink
+    warnings: tuple[str, ...] = ()
 
 
 PLURALS = {"box": "boxes", "mesh": "meshes"}
@@ -33,7 +35,16 @@ PLURALS = {"box": "boxes", "mesh": "meshes"}
 def cover_links(description: Description, tree: LinkTree, options: ImportOptions) -> dict[str, LinkSpheres]:
     """Spheres of each link that has shapes; every mesh is found before any is covered."""
     shapes = {name: _find_shapes(description, description.links[name].shapes, options) for name in tree.order}
-    return {name: _cover(name, own, options.protrusion_m) for name, own in shapes.items() if own}
+    covered = {}
+    for name, own in shapes.items():
+        try:
+            if own:
+                covered[name] = _cover(name, own, options.protrusion_m)
+        except FileError:
+            raise
+        except InputError as error:
+            raise FileError(description.path, error.message, ("link", name)) from None
+    return covered
 
 
 def _find_shapes(description: Description, shapes: Iterable[UrdfShape], options: ImportOptions) -> list[Shape]:
@@ -58,14 +69,17 @@ def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
     radii = np.array([shape.size[0] for shape in own])
     others = [shape for shape in shapes if shape.kind != "sphere"]
     covered, protrusion, how = None, 0.0, "as they are"
+    warnings: tuple[str, ...] = ()
     if others:
         cover = cover_shapes(others, protrusion_m)
         centres, radii = np.vstack([centres, cover.centres]), np.concatenate([radii, cover.radii])
         covered, protrusion, how = cover.covered, cover.protrusion_m, cover.how
+        warnings = tuple(f"link {link}: {warning}" for warning in cover.warnings)
     return LinkSpheres(
         centres=centres,
         radii=radii,
         report=CoveredLink(
             link=link, shapes=words, spheres=len(radii), covered=covered, protrusion_m=protrusion, how=how
         ),
+        warnings=warnings,
     )

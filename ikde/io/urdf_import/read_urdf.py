@@ -103,7 +103,13 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         links=tuple(covered[link].report for link in covered),
         home=home,
         is_home_free=is_free,
-        warnings=(*description.warnings, *skeleton.warnings, *_list_followers(description, held), *notes),
+        warnings=(
+            *description.warnings,
+            *skeleton.warnings,
+            *_list_followers(description, held),
+            *(warning for own in covered.values() for warning in own.warnings),
+            *notes,
+        ),
     )
 
 

@@ -1,0 +1,74 @@
+"""Spheres that cover a mesh: chosen greedily among many, and certified afterwards."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ikde.kernels.arrays import Floats
+from ikde.spheres.candidates import Candidates, find_candidates
+from ikde.spheres.certificate import certify
+from ikde.spheres.greedy import cover_greedily
+from ikde.spheres.mesh_file import import_trimesh, read_mesh
+from ikde.spheres.parts import PartCounts, make_solid
+from ikde.spheres.patches import make_patches, patch_size
+from ikde.spheres.primitives import Rows
+from ikde.spheres.solid import Solid
+
+MOST_INSIDE = 6_000
+"""Points of the grid inside a body, about."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshCover:
+    """Spheres of one mesh, in its own frame."""
+
+    rows: Rows
+    area_m2: float
+    covered: float
+    """Share of the area that is proved to be covered."""
+    parts: PartCounts
+    warnings: tuple[str, ...]
+
+
+def cover_mesh(path: Path, scale: tuple[float, float, float], protrusion_m: float) -> MeshCover:
+    """Spheres that cover the surface of a mesh and protrude no more than is allowed.
+
+    Raises:
+        FileError: for a file that is no mesh, or too large.
+        InputError: without trimesh, and for a surface too large for spheres that protrude so little.
+    """
+    triangles, warnings = read_mesh(path, scale)
+    solid, parts = make_solid(triangles, convex_hull)
+    rows = cover_solid(solid, protrusion_m)
+    certificate = certify(solid.surface.corners, rows.centres, rows.radii)
+    return MeshCover(rows, certificate.area_m2, certificate.covered, parts, warnings)
+
+
+def cover_solid(solid: Solid, protrusion_m: float) -> Rows:
+    """Spheres that cover the surface of a solid."""
+    size = patch_size(float(solid.surface.areas.sum()), protrusion_m)
+    patches = make_patches(solid.surface.corners, size)
+    candidates = find_candidates(solid, patches, protrusion_m, MOST_INSIDE)
+    covers = list(candidates.covers)
+    while True:
+        chosen = cover_greedily(covers, len(patches.centres))
+        wrong = [index for index in chosen if _is_too_large(candidates, index, solid, protrusion_m)]
+        if not wrong:
+            return Rows(candidates.centres[chosen], candidates.radii[chosen], protrusion_m)
+        for index in wrong:
+            covers[index] = covers[index][:0]
+
+
+def _is_too_large(candidates: Candidates, index: int, solid: Solid, protrusion_m: float) -> bool:
+    """Whether a centre lies less deep than was counted along its line of the grid, by solid angles."""
+    return candidates.radii[index] > solid.depth(candidates.centres[index]) + protrusion_m
+
+
+def convex_hull(points: Floats) -> Floats | None:
+    """The triangles [T, 3, 3] of the hull of points [N, 3]; None where they lie in a plane."""
+    trimesh = import_trimesh()
+    away = points - points.mean(axis=0)
+    if len(points) < 4 or np.linalg.matrix_rank(away, tol=1e-6 * np.abs(away).max()) < 3:
+        return None
+    return np.array(trimesh.convex.convex_hull(points).triangles, dtype=np.float64)

@@ -1,0 +1,89 @@
+"""A body given by triangles: how far points are from its surface, and which are inside."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikde.kernels.arrays import Floats, Ints
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Triangles:
+    """Triangles with what distances need of them, in m."""
+
+    corners: Floats
+    """[T, 3, 3]: triangle, corner, coordinate."""
+    edges: Floats
+    """[T, 3, 3] from each corner to the next."""
+    normals: Floats
+    """[T, 3], as long as twice the triangle's area."""
+    inward: Floats
+    """[T, 3, 3] in the triangle's plane, at right angles to each edge."""
+
+    @staticmethod
+    def of(corners: Floats) -> "Triangles":
+        """What distances need of triangles [T, 3, 3] in m."""
+        edges = np.roll(corners, -1, axis=1) - corners
+        normals = np.cross(edges[:, 0], edges[:, 1])
+        return Triangles(corners, edges, normals, np.cross(normals[:, None], edges))
+
+    def take(self, rows: Ints | Bools) -> "Triangles":
+        """Some of them."""
+        return Triangles(self.corners[rows], self.edges[rows], self.normals[rows], self.inward[rows])
+
+    @property
+    def areas(self) -> Floats:
+        """[T] m2."""
+        return 0.5 * np.sqrt((self.normals**2).sum(axis=1))
+
+    def distances(self, points: Floats) -> Floats:
+        """[P] m from points [P, 3] to the nearest of these triangles.
+
+        The nearest point of a triangle is the foot of the perpendicular where that is inside, else a point of an edge.
+        """
+        size = _dot(self.normals, self.normals)
+        away = points[:, None] - self.corners[:, 0]
+        plane = _dot(away, self.normals) ** 2 / np.where(size > 0.0, size, 1.0)
+        over = np.broadcast_to(size > 0.0, plane.shape)
+        nearest = np.full(plane.shape, np.inf)
+        for k in range(3):
+            edge, away = self.edges[:, k], points[:, None] - self.corners[:, k]
+            length = _dot(edge, edge)
+            along = np.clip(_dot(away, edge) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+            foot = away - along[..., None] * edge
+            nearest = np.minimum(nearest, _dot(foot, foot))
+            over = over & (_dot(away, self.inward[:, k]) >= 0.0)
+        return np.sqrt(np.where(over, plane, nearest).min(axis=1))
+
+    def winding(self, point: Floats) -> float:
+        """How often they go round a point [3]: the sum of their signed solid angles / 4 pi [Jacobson2013]."""
+        a, b, c = np.moveaxis(self.corners - point, 1, 0)
+        la, lb, lc = (np.sqrt(_dot(x, x)) for x in (a, b, c))
+        volume = _dot(a, np.cross(b, c))
+        flat = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
+        return float(np.arctan2(volume, flat).sum() / (2.0 * np.pi))
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    """Of vectors along the last axis, in one order: the same bits on every machine."""
+    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solid:
+    """Parts that enclose a volume, their normals outwards, and sheets that enclose none."""
+
+    surface: Triangles
+    is_closed: Bools
+    """[T] False for the triangles of sheets."""
+
+    def depth(self, point: Floats) -> float:
+        """How deep a point [3] is inside in m, at least; negative outside, where it is the distance.
+
+        Surfaces inside another part count as well: where parts overlap, this is less than the true depth.
+        """
+        distance = float(self.surface.distances(point[None])[0])
+        return distance if self.surface.take(self.is_closed).winding(point) > 0.5 else -distance

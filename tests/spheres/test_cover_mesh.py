@@ -1,0 +1,87 @@
+"""Meshes covered with spheres: all of the surface, and no farther out than asked."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from ikde.spheres import cover_mesh as module
+from ikde.spheres.certificate import certify
+from ikde.spheres.cover_mesh import convex_hull, cover_mesh, cover_solid
+from tests.mesh_bodies import box, make_l, on_surface, solid_of, write_stl
+
+BODIES = {"box": box(0.2, 0.1, 0.05), "L": make_l()}
+
+
+@pytest.fixture(scope="module", params=list(BODIES))
+def covered(request: pytest.FixtureRequest):
+    body = BODIES[request.param]
+    return body, cover_solid(solid_of(body), 0.02)
+
+
+def test_all_of_the_surface_is_covered_by_proof_and_by_a_sampler(covered) -> None:
+    body, rows = covered
+    assert certify(body, rows.centres, rows.radii).covered == 1.0
+    points = on_surface(body, 5_000)
+    assert (np.linalg.norm(points[:, None] - rows.centres, axis=2) <= rows.radii).any(axis=1).all()
+
+
+def test_no_point_of_a_sphere_is_farther_out_than_allowed(covered) -> None:
+    body, rows = covered
+    draw = np.random.default_rng(5).normal(size=(200, 3))
+    ways = draw / np.linalg.norm(draw, axis=1)[:, None]
+    points = (rows.centres[:, None] + rows.radii[:, None, None] * ways).reshape(-1, 3)
+    solid = solid_of(body)
+    assert min(solid.depth(point) for point in points[::5]) >= -0.02
+    assert rows.protrusion_m == 0.02
+
+
+def test_less_is_proved_without_the_first_sphere(covered) -> None:
+    body, rows = covered
+    assert certify(body, rows.centres[1:], rows.radii[1:]).covered < 0.95
+
+
+def test_the_same_body_gets_the_same_bits(covered) -> None:
+    body, rows = covered
+    again = cover_solid(solid_of(body), 0.02)
+    digests = {hashlib.sha256(own.centres.tobytes() + own.radii.tobytes()).hexdigest() for own in (rows, again)}
+    assert len(digests) == 1
+
+
+def test_a_candidate_that_is_too_large_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = module.find_candidates
+
+    def enlarge(*own):
+        candidates = real(*own)
+        candidates.radii[0] = 9.0
+        candidates.covers[0] = np.arange(10_000)[: len(own[1].centres)]
+        return candidates
+
+    monkeypatch.setattr(module, "find_candidates", enlarge)
+    rows = cover_solid(solid_of(BODIES["box"]), 0.02)
+    assert rows.radii.max() < 0.1
+    assert certify(BODIES["box"], rows.centres, rows.radii).covered == 1.0
+
+
+def test_an_open_box_is_covered_as_its_hull(tmp_path) -> None:
+    pytest.importorskip("trimesh")
+    cover = cover_mesh(write_stl(tmp_path / "open.stl", box(0.2, 0.1, 0.05)[:-2]), (1.0, 1.0, 1.0), 0.02)
+    assert (cover.parts.hulls, cover.parts.closed, cover.covered) == (1, 0, 1.0)
+    assert cover.area_m2 == pytest.approx(2 * (0.02 + 0.01 + 0.005))
+
+
+def test_a_mirrored_mesh_is_covered_where_it_stands(tmp_path) -> None:
+    pytest.importorskip("trimesh")
+    path = write_stl(tmp_path / "l.stl", make_l())
+    rows = cover_mesh(path, (-1.0, 1.0, 1.0), 0.02).rows
+    assert certify(make_l() * (-1.0, 1.0, 1.0), rows.centres, rows.radii).covered > 0.999999
+
+
+def test_points_in_a_plane_have_no_hull() -> None:
+    pytest.importorskip("trimesh")
+    flat = np.array([[0.0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]])
+    assert convex_hull(flat) is None
+    assert convex_hull(flat[:3]) is None
+    hull = convex_hull(np.concatenate([flat, flat - (0, 0, 1)]))
+    assert hull is not None
+    assert hull.shape == (12, 3, 3)
