@@ -8,7 +8,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.spheres.candidates import Candidates, find_candidates
 from ikde.spheres.certificate import certify
-from ikde.spheres.greedy import cover_greedily
+from ikde.spheres.greedy import cover_greedily, drop_needless
 from ikde.spheres.mesh_file import import_trimesh, read_mesh
 from ikde.spheres.parts import PartCounts, make_solid
 from ikde.spheres.patches import make_patches, patch_size
@@ -52,7 +52,8 @@ def cover_solid(solid: Solid, protrusion_m: float) -> Rows:
     candidates = find_candidates(solid, patches, protrusion_m, MOST_INSIDE)
     covers = list(candidates.covers)
     while True:
-        chosen = cover_greedily(covers, len(patches.centres))
+        count = len(patches.centres)
+        chosen = drop_needless(covers, cover_greedily(covers, count), count)
         wrong = [index for index in chosen if _is_too_large(candidates, index, solid, protrusion_m)]
         if not wrong:
             return Rows(candidates.centres[chosen], candidates.radii[chosen], protrusion_m)

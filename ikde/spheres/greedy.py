@@ -25,3 +25,15 @@ def cover_greedily(covers: list[Ints], count: int) -> list[int]:
             chosen.append(index)
             left[covers[index]] = False
     return chosen
+
+
+def drop_needless(covers: list[Ints], chosen: list[int], count: int) -> list[int]:
+    """Those that are chosen, without those whose patches the others cover; the first chosen go first."""
+    times = np.bincount(np.concatenate([covers[index] for index in chosen]), minlength=count)
+    kept = []
+    for index in chosen:
+        if (times[covers[index]] > 1).all():
+            times[covers[index]] -= 1
+        else:
+            kept.append(index)
+    return kept

@@ -36,9 +36,9 @@ def test_no_point_of_a_sphere_is_farther_out_than_allowed(covered) -> None:
     assert rows.protrusion_m == 0.02
 
 
-def test_less_is_proved_without_the_first_sphere(covered) -> None:
+def test_less_is_proved_with_every_other_sphere_alone(covered) -> None:
     body, rows = covered
-    assert certify(body, rows.centres[1:], rows.radii[1:]).covered < 0.95
+    assert certify(body, rows.centres[::2], rows.radii[::2]).covered < 0.95
 
 
 def test_the_same_body_gets_the_same_bits(covered) -> None:

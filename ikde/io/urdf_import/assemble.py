@@ -84,7 +84,7 @@ def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tu
         FreeSpheres(
             component=skeleton.frame_of[link],
             frame=skeleton.frame_of[link],
-            spheres=tuple((*map(float, centre), float(r)) for centre, r in zip(own.centres, own.radii, strict=True)),
+            spheres=tuple((x, y, z, r) for x, y, z, r in np.column_stack([own.centres, own.radii]).tolist()),
         )
         for link, own in covered.items()
         if len(own.radii)

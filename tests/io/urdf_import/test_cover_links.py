@@ -72,5 +72,5 @@ def test_a_mesh_is_handed_on_with_its_file_and_scale(tmp_path, monkeypatch):
 
 def test_a_link_that_takes_too_many_spheres_is_named(tmp_path):
     second = '<collision><geometry><box size="9 9 9"/></geometry></collision><inertial>'
-    with pytest.raises(FileError, match=r"arm\.urdf: link\.upper: a box would take more than 2,000 spheres"):
+    with pytest.raises(FileError, match=r"arm\.urdf → link\.upper: a box would take more than 2,000 spheres"):
         cover_file(tmp_path, change("<inertial>", second), protrusion_m=0.01)
