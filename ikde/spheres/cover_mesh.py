@@ -15,7 +15,7 @@ from ikde.spheres.patches import make_patches, patch_size
 from ikde.spheres.primitives import Rows
 from ikde.spheres.solid import Solid
 
-MOST_INSIDE = 6_000
+MAX_INSIDE = 6_000
 """Points of the grid inside a body, about."""
 
 
@@ -49,7 +49,7 @@ def cover_solid(solid: Solid, protrusion_m: float) -> Rows:
     """Spheres that cover the surface of a solid."""
     size = patch_size(float(solid.surface.areas.sum()), protrusion_m)
     patches = make_patches(solid.surface.corners, size)
-    candidates = find_candidates(solid, patches, protrusion_m, MOST_INSIDE)
+    candidates = find_candidates(solid, patches, protrusion_m, MAX_INSIDE)
     covers = list(candidates.covers)
     while True:
         count = len(patches.centres)

@@ -7,7 +7,7 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats, Ints
 
-MOST_PIECES = 3_000_000
+MAX_PIECES = 3_000_000
 PATCHES = 8_000
 """About so many for one body; four times as many take 5 times as long for 5 % fewer spheres, on the UR5's links."""
 FINEST, COARSEST = 0.1, 0.4
@@ -74,9 +74,9 @@ def split(corners: Floats, size_m: float) -> tuple[Floats, Ints]:
         count += int(small.sum())
         corners = halve(corners[~small], edges[~small].argmax(axis=1))
         source = np.repeat(source[~small], 2)
-        if count + len(corners) > MOST_PIECES:
+        if count + len(corners) > MAX_PIECES:
             raise InputError(
-                f"the surface would be cut into more than {MOST_PIECES:,} pieces of {size_m * 1e3:.2g} mm; "
+                f"the surface would be cut into more than {MAX_PIECES:,} pieces of {size_m * 1e3:.2g} mm; "
                 "let spheres protrude further"
             )
     return np.concatenate(done), np.concatenate(sources)

@@ -14,7 +14,7 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 
-MOST = 2_000
+MAX_SPHERES = 2_000
 """Spheres of one shape."""
 
 
@@ -79,7 +79,7 @@ def cover_cylinder(radius_m: float, length_m: float, protrusion_m: float) -> Row
     Of all numbers of rings, with the fewest slices that will do, the one that takes the fewest spheres.
     """
     best: list[tuple[float, float, int]] | None = None
-    fewest, slices, finest = MOST + 1, 1, 4.0 / protrusion_m
+    fewest, slices, finest = MAX_SPHERES + 1, 1, 4.0 / protrusion_m
     for rings in range(1, _count(radius_m * finest) + 1):
         if 3 * rings - 2 >= fewest:
             break
@@ -155,16 +155,16 @@ def _norm(vector: Floats) -> float:
 
 def _count(ratio: float) -> int:
     """Of parts that are no longer than 1 / `ratio`, bounded so that no search gets long."""
-    return max(1, int(np.ceil(min(ratio, MOST))))
+    return max(1, int(np.ceil(min(ratio, MAX_SPHERES))))
 
 
 def _refuse_many(count: int, kind: str, protrusion_m: float) -> None:
-    if count > MOST:
+    if count > MAX_SPHERES:
         raise _too_many(kind, protrusion_m)
 
 
 def _too_many(kind: str, protrusion_m: float) -> InputError:
     return InputError(
-        f"a {kind} would take more than {MOST:,} spheres that protrude {protrusion_m * 1e3:.3g} mm at most; "
+        f"a {kind} would take more than {MAX_SPHERES:,} spheres that protrude {protrusion_m * 1e3:.3g} mm at most; "
         "allow more with --protrusion"
     )

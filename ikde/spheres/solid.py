@@ -59,7 +59,7 @@ class Triangles:
         return np.sqrt(np.where(over, plane, nearest).min(axis=1))
 
     def winding(self, point: Floats) -> float:
-        """How often they go round a point [3]: the sum of their signed solid angles / 4 pi [Jacobson2013]."""
+        """How often they go round a point [3]: the sum of their signed solid angles / 4 pi."""
         a, b, c = np.moveaxis(self.corners - point, 1, 0)
         la, lb, lc = (np.sqrt(_dot(x, x)) for x in (a, b, c))
         volume = _dot(a, np.cross(b, c))

@@ -10,7 +10,7 @@ from ikde.spheres.certificate import certify
 from ikde.spheres.cover_mesh import convex_hull, cover_mesh, cover_solid
 from tests.mesh_bodies import box, make_l, on_surface, solid_of, write_stl
 
-BODIES = {"box": box(0.2, 0.1, 0.05), "L": make_l()}
+BODIES = {"box": box(0.12, 0.05, 0.04), "L": 0.5 * make_l()}
 
 
 @pytest.fixture(scope="module", params=list(BODIES))
@@ -65,16 +65,16 @@ def test_a_candidate_that_is_too_large_is_not_taken(monkeypatch: pytest.MonkeyPa
 
 def test_an_open_box_is_covered_as_its_hull(tmp_path) -> None:
     pytest.importorskip("trimesh")
-    cover = cover_mesh(write_stl(tmp_path / "open.stl", box(0.2, 0.1, 0.05)[:-2]), (1.0, 1.0, 1.0), 0.02)
+    cover = cover_mesh(write_stl(tmp_path / "open.stl", box(0.06, 0.05, 0.04)[:-2]), (1.0, 1.0, 1.0), 0.02)
     assert (cover.parts.hulls, cover.parts.closed, cover.covered) == (1, 0, 1.0)
-    assert cover.area_m2 == pytest.approx(2 * (0.02 + 0.01 + 0.005))
+    assert cover.area_m2 == pytest.approx(2 * (0.003 + 0.0024 + 0.002))
 
 
 def test_a_mirrored_mesh_is_covered_where_it_stands(tmp_path) -> None:
     pytest.importorskip("trimesh")
-    path = write_stl(tmp_path / "l.stl", make_l())
+    path = write_stl(tmp_path / "l.stl", BODIES["L"])
     rows = cover_mesh(path, (-1.0, 1.0, 1.0), 0.02).rows
-    assert certify(make_l() * (-1.0, 1.0, 1.0), rows.centres, rows.radii).covered > 0.999999
+    assert certify(BODIES["L"] * (-1.0, 1.0, 1.0), rows.centres, rows.radii).covered > 0.999999
 
 
 def test_points_in_a_plane_have_no_hull() -> None:

@@ -51,7 +51,7 @@ def test_a_triangle_is_cut_at_the_edge_asked_for() -> None:
 
 
 def test_a_surface_that_takes_too_many_pieces_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MOST_PIECES", 100)
+    monkeypatch.setattr(module, "MAX_PIECES", 100)
     with pytest.raises(InputError, match="more than 100 pieces of 10 mm; let spheres protrude further"):
         split(box(1, 1, 1), 0.01)
 
