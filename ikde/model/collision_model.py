@@ -22,12 +22,16 @@ CollisionChoice = Union[str, Detector, "CollisionModel", None]
 """How a caller names a collision model: a detector's name, `"none"`, a `Detector`, a model, or None for the default."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class CollisionModel:
     """A robot and what is compared on it. Without a detector no pair is: nothing is checked, nothing is called free."""
 
     robot: Robot
     detector: Detector | None
+
+    def __repr__(self) -> str:
+        """In a line, whatever the robot."""
+        return f"<CollisionModel {self.robot.name}: detector {self.name}, {len(self.pairs)} pairs>"
 
     @classmethod
     def of(cls, robot: Robot, choice: CollisionChoice = None) -> "CollisionModel":

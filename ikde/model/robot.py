@@ -167,7 +167,7 @@ class LeftOutPair:
     """`one body`, `joined by joint NAME`, `adjacent: REASON` as in the robot's file, or `not in the pair list NAME`."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, weakref_slot=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False, weakref_slot=True)
 class Robot(Value):
     """A robot that has been checked: parents come before children and every name resolves (`model.validate`)."""
 
@@ -199,6 +199,10 @@ class Robot(Value):
     """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
     file_ranges: tuple[tuple[float, float], ...] = ()
     """What `drawn` was by the robot's file, m or rad, where a run has put other limits in their place; else nothing."""
+
+    def __repr__(self) -> str:
+        """In a line: a robot written out has tens of thousands of characters."""
+        return f"<Robot {self.name}: {len(self.joints)} joints, tool {self.tool}, detector {self.default_detector}>"
 
     @property
     def joint_names(self) -> tuple[str, ...]:

@@ -117,7 +117,7 @@ class Target(Value):
         object.__setattr__(self, "T_world_tool", T_world_tool)
 
 
-@dataclass(frozen=True, slots=True, init=False, eq=False)
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Targets(Value):
     """Many targets as arrays: a sequence of `Target`, and the cheap way to have a million of them.
 
@@ -172,6 +172,12 @@ class Targets(Value):
         targets = cls.__new__(cls)
         targets._set(kind, T_world_tool)
         return targets
+
+    def __repr__(self) -> str:
+        """In a line, however many there are."""
+        counts = np.bincount(self.kind, minlength=len(KINDS)).tolist()
+        kinds = ", ".join(f"{count} {kind}" for kind, count in zip(KINDS, counts, strict=True) if count)
+        return f"<Targets: {kinds or 'none'}>"
 
     @property
     def p_world_tool(self) -> Floats:

@@ -47,6 +47,12 @@ class Outcomes:
         """By the kernels' grader."""
         return self.found.metrics
 
+    def take(self, rows: Ints, found: SearchState) -> "Outcomes":
+        """Those of some rows [K], which `found` has."""
+        kept = {place: self.explanations[row] for place, row in enumerate(rows.tolist()) if row in self.explanations}
+        columns = {name: getattr(self, name)[rows] for name in ("verdicts", "asked", "reached")}
+        return Outcomes(problem=self.problem, found=found, explanations=kept, **columns)
+
     @cached_property
     def collision(self) -> MaskedBools:
         """Whether each row collides [T]; masked where it was not checked."""

@@ -24,7 +24,7 @@ SEARCHED_TURNS = 2.0  # either way, of a joint without limits: half to a seed, a
 ROUNDING = 1e-12  # m, rad: the search keeps this far from every bound, so that rounding cannot turn `verify`'s verdict
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Problem:
     """Everything about a search but the target and the seed."""
 
@@ -39,6 +39,11 @@ class Problem:
     """[N] of the joints in the motion from `centre`, per m or rad."""
     descends: bool = True
     """Whether what is found is moved to a local minimum of the motion from `near`."""
+
+    def __repr__(self) -> str:
+        """In a line: what may move, and near what."""
+        held = f", {len(self.frozen)} frozen" if self.frozen else ""
+        return f"<Problem {self.robot.name}, detector {self.collision.name}{held}{', near' * (self.near is not None)}>"
 
     @property
     def robot(self) -> Robot:

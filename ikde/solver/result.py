@@ -55,7 +55,9 @@ class SolveResult:
     __slots__ = ("__dict__", "_parts")
 
     def __repr__(self) -> str:
-        return f"SolveResult({', '.join(f'{name}={getattr(self, name)!r}' for name in FIELDS if name != 'verify')})"
+        """In a line; what else is known is an attribute each."""
+        values = ", ".join(f"{name}={value:.6g}" for name, value in zip(self.joint_names, self.q, strict=True))
+        return f"<SolveResult {self.stop_reason} by {self._maker.problem.robot.name}: {values}>"
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"cannot assign to {name!r}: a result stays as it is")

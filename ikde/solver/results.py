@@ -1,10 +1,13 @@
 """Many solves at once, a row each: searched on all cores, graded, explained."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from typing import Any
+from typing import Any, overload
 
+import numpy as np
+
+from ikde.errors import InputError
 from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
 from ikde.model.target import KINDS, Target, Targets
@@ -22,6 +25,7 @@ from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, MaskedBools
 
 MEASURED = ("position_error_m", "orientation_error_rad", "clearance_m")
+FIGURES = (*MEASURED, "attempts", "evaluations", "rejected")
 EVERY_ROW = BulkOptions(verify="all")
 
 
@@ -32,7 +36,8 @@ class SolveResults:
     problem: Problem
     targets: Targets
     seed: int
-    first_stream: int
+    streams: Sequence[int]
+    """Which random stream of the seed each row has."""
     found: SearchState
     outcomes: Outcomes
     compile_seconds: float
@@ -116,11 +121,46 @@ class SolveResults:
     def __iter__(self) -> Iterator[SolveResult]:
         return (self[index] for index in range(len(self)))
 
-    def __getitem__(self, index: int) -> SolveResult:
+    @overload
+    def __getitem__(self, index: int) -> SolveResult: ...
+
+    @overload
+    def __getitem__(self, index: slice | Sequence[int] | Ints | Bools) -> "SolveResults": ...
+
+    def __getitem__(self, index: Any) -> "SolveResult | SolveResults":
         count = len(self)
+        if not isinstance(index, int | np.integer):
+            return self._take(read_rows(index, count))
         if not -count <= index < count:
             raise IndexError(f"row {index} of {count}")
-        return self.row(index % count)
+        return self.row(int(index) % count)
+
+    def __repr__(self) -> str:
+        return f"<SolveResults: {len(self)} rows, {int(self.reached.sum())} reached by {self.problem.robot.name}>"
+
+    def to_arrow(self) -> Any:
+        """A `pyarrow.Table`, a row a target: what came of it, q by joint name in m and rad, and the figures."""
+        import pyarrow as pa
+
+        names = np.array([str(stop) for stop in STOP_REASONS])
+        columns = {"reached": self.reached, "stop_reason": names[self.stop_reasons]}
+        columns |= {f"q_{name}": self.q[:, k].copy() for k, name in enumerate(self.problem.robot.joint_names)}
+        columns |= {name: np.array(getattr(self, name)) for name in FIGURES}
+        unchecked = {"clearance_m": self.closest_pair < 0, "collision": np.ma.getmaskarray(self.collision)}
+        columns["collision"] = np.ma.getdata(self.collision)
+        return pa.table({name: pa.array(values, mask=unchecked.get(name)) for name, values in columns.items()})
+
+    def to_pandas(self) -> Any:
+        """The same as a `pandas.DataFrame`; raises `InputError` without pandas."""
+        try:
+            return self.to_arrow().to_pandas()
+        except ImportError:
+            raise InputError("to_pandas needs pandas: install it, or use to_arrow") from None
+
+    def _take(self, rows: Ints) -> "SolveResults":
+        found = self.found.take(rows)
+        outcomes, streams = self.outcomes.take(rows, found), tuple(self.streams[row] for row in rows.tolist())
+        return replace(self, targets=self.targets.take(rows), streams=streams, found=found, outcomes=outcomes)
 
     def reason(self, index: int) -> str:
         """One line: what happened in this row."""
@@ -157,7 +197,7 @@ class SolveResults:
         measured = [getattr(metrics, name)[index] for name in MEASURED]
         blocked = found.pair_counts.row(index)
         row = pack_row(found.q[index], measured, metrics.closest_pair[index], found.counts[index], blocked)
-        lane = self.targets[index], self.seed, self.first_stream + index, float(found.seconds[index])
+        lane = self.targets[index], self.seed, self.streams[index], float(found.seconds[index])
         result = _find_maker(self.problem, NAMES[found.engine[index]]).make(row, *lane)
         own: dict[str, Any] = {"compile_seconds": self.compile_seconds}
         if outcomes.asked[index]:
@@ -167,6 +207,18 @@ class SolveResults:
             own |= {name: getattr(story, name) for name in ("stop_reason", "reason", "hint", "blocking_pairs")}
             own |= {"reached": False}
         return result.with_changes(**own)
+
+
+def read_rows(index: Any, count: int) -> Ints:
+    """Places [K] of what a slice, a mask [T] or an array of places chooses; raises `IndexError` for what is none."""
+    if isinstance(index, slice):
+        return np.arange(count)[index]
+    chosen = np.asarray(index)
+    if chosen.dtype == np.bool_ and chosen.shape != (count,):
+        raise IndexError(f"expected a mask of {count} rows, got shape {chosen.shape}")
+    if chosen.ndim != 1 or (chosen.dtype.kind not in "biu" and chosen.size):
+        raise IndexError("expected a place, a slice, a mask or an array of places")
+    return np.arange(count)[chosen.astype(np.int64) if not chosen.size and chosen.dtype.kind == "f" else chosen]
 
 
 @lru_cache(maxsize=64)
@@ -215,7 +267,7 @@ def solve_rows(
         problem=problem,
         targets=targets,
         seed=seed,
-        first_stream=first_stream,
+        streams=where["streams"],
         found=found,
         outcomes=outcomes,
         compile_seconds=clock.seconds,
