@@ -40,7 +40,7 @@ class PairCounts:
         parts = [taken._entries]
         for place, row in enumerate(rows.tolist()):
             first, last = np.searchsorted(self._entries[:, 0], (row, row + 1))
-            parts.append(self._entries[first:last] + [[place - row, 0, 0]])
+            parts.append(self._entries[first:last] + np.array([place - row, 0, 0]))
         taken._entries = np.concatenate(parts)
         return taken
 
