@@ -35,7 +35,9 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.model.target import Targets as Targets
     from ikde.paper.surface import check_surface as check_surface
     from ikde.solver.check import CheckResult as CheckResult
+    from ikde.solver.check import CheckResults as CheckResults
     from ikde.solver.check import check as check
+    from ikde.solver.check import check_many as check_many
     from ikde.solver.distinct import solve_distinct as solve_distinct
     from ikde.solver.families import family as family
     from ikde.solver.forward import forward as forward
@@ -101,8 +103,10 @@ _HOME = {
     "family": "ikde.solver.families",
     "forward": "ikde.solver.forward",
     "check": "ikde.solver.check",
+    "check_many": "ikde.solver.check",
     "check_surface": "ikde.paper.surface",
     "CheckResult": "ikde.solver.check",
+    "CheckResults": "ikde.solver.check",
     "verify": "ikde.solver.verify",
     "Grade": "ikde.solver.verify",
     "compose": "ikde.model.compose",

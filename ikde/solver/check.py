@@ -2,11 +2,19 @@
 
 from dataclasses import dataclass
 
-from ikde.kernels.arrays import Floats
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikde.errors import InputError
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.solver.joints import JointValues, joints_outside, read_configuration
+from ikde.model.robot import Pairs
+from ikde.solver.joints import JointValues, joints_outside, read_configuration, read_joints
 from ikde.solver.plain import compute_gaps
+from ikde.solver.verify import Bools, MaskedBools
+
+AT_ONCE = 256  # configurations: more do not fit into the cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +44,32 @@ class CheckResult:
     """Joints of `q` outside their limits."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CheckResults:
+    """What a detector sees of K configurations, as columns."""
+
+    q: Floats
+    """[K, N] in the robot's own convention, m and rad."""
+    collision: MaskedBools
+    """[K]; masked where no pair was compared: not checked."""
+    clearance_m: Floats
+    """[K]; inf where no pair was compared."""
+    closest_pair: Ints
+    """[K] index into `pairs`; -1 where no pair was compared."""
+    pairs: Pairs
+    """P pairs of components, in the detector's order."""
+    gaps_m: Floats
+    """[K, P] clearance of every pair."""
+    inside_limits: Bools
+    """[K] whether every joint is inside its limits."""
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __repr__(self) -> str:
+        return f"<CheckResults: {len(self)} configurations, {int(self.collision.sum() or 0)} in collision>"
+
+
 def check(
     robot: RobotLike, q: JointValues, collision: CollisionChoice = None, convention: str | None = None
 ) -> CheckResult:
@@ -62,6 +96,39 @@ def check(
         detector=model.name,
         safe_distance_m=model.limit_m,
         outside_limits=joints_outside(robot, values),
+    )
+
+
+def check_many(
+    robot: RobotLike, q: ArrayLike, collision: CollisionChoice = None, convention: str | None = None
+) -> CheckResults:
+    """`check` of many configurations at once, as columns.
+
+    Args:
+        robot: the robot, its name or the path of its file.
+        q: joint values [K, N]; m and rad.
+        collision: as for `check`.
+        convention: as for `check`.
+
+    Raises:
+        InputError: for a wrong shape or count, an unknown detector or convention, NaN or infinity.
+    """
+    robot = read_robot(robot)
+    values = read_joints(robot, q, convention)
+    if values.ndim != 2:
+        raise InputError(f"expected configurations [K, {len(robot.joints)}], got shape {values.shape}", ("q",))
+    model = CollisionModel.of(robot, collision)
+    gaps_m = np.concatenate([compute_gaps(model, values[k : k + AT_ONCE]) for k in range(0, len(values) or 1, AT_ONCE)])
+    clearance_m = gaps_m.min(axis=1, initial=np.inf)
+    unchecked = np.full(len(values), not model.pairs)
+    return CheckResults(
+        q=values,
+        collision=np.ma.masked_array(clearance_m <= model.limit_m, mask=unchecked),
+        clearance_m=clearance_m,
+        closest_pair=gaps_m.argmin(axis=1) if model.pairs else np.full(len(values), -1),
+        pairs=model.pairs,
+        gaps_m=gaps_m,
+        inside_limits=((robot.lower <= values) & (values <= robot.upper)).all(axis=1),
     )
 
 

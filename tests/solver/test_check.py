@@ -109,3 +109,29 @@ def test_a_detector_of_ones_own_is_used(qiao):
 def test_what_does_not_fit_the_robot_is_refused(qiao, q, options, words):
     with pytest.raises(InputError, match=words):
         ikde.check(qiao, q, **options)
+
+
+@every_detector
+def test_many_are_checked_as_one_is(name, detector, rng):
+    robot = ikde.load_robot(name)
+    Q = np.array([random_q(robot, rng) for _ in range(7)])
+    Q[0] += np.where(robot.is_prismatic, 100.0, 9.0)
+    many = ikde.check_many(robot, Q, detector)
+    for k, q in enumerate(Q):
+        one = ikde.check(robot, q, detector)
+        assert many.clearance_m[k] == one.clearance_m
+        assert bool(many.collision[k]) == one.collision
+        assert many.pairs[many.closest_pair[k]] == (one.pairs[0].a, one.pairs[0].b)
+        assert sorted(many.gaps_m[k]) == [pair.clearance_m for pair in one.pairs]
+        assert many.inside_limits[k] == (not one.outside_limits)
+    assert not many.inside_limits[0]
+
+
+def test_of_many_nothing_is_said_that_was_not_checked(qiao):
+    many = ikde.check_many(qiao, [qiao.home] * 3, "none")
+    assert many.collision.tolist() == [None] * 3
+    assert many.closest_pair.tolist() == [-1] * 3
+    assert np.isinf(many.clearance_m).all()
+    assert len(ikde.check_many(qiao, np.empty((0, 9)))) == 0
+    with pytest.raises(InputError, match=r"q: expected configurations \[K, 9\], got shape \(9,\)"):
+        ikde.check_many(qiao, qiao.home)
