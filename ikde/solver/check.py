@@ -128,7 +128,7 @@ def check_many(
         closest_pair=gaps_m.argmin(axis=1) if model.pairs else np.full(len(values), -1),
         pairs=model.pairs,
         gaps_m=gaps_m,
-        inside_limits=((robot.lower <= values) & (values <= robot.upper)).all(axis=1),
+        inside_limits=np.all((robot.lower <= values) & (values <= robot.upper), axis=1),
     )
 
 
