@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from ikde.batch.columns import WORDS
 from ikde.batch.manifest import Manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part
 from ikde.errors import FileError
+from ikde.solver.columns import WORDS
 
 ALWAYS = {
     SOLUTIONS: ("arm", "target", "repeat", "reached", "collision", "verified", "stop_reason"),

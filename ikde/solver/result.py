@@ -41,6 +41,8 @@ class StopReason(StrEnum):
 
 Parts = tuple["ResultMaker", Floats, Target, int, int, float]
 """Maker, row of numbers (`kernels/answer.py`), target, seed, stream, seconds of the search."""
+MADE_ANEW = ("q", "near")
+"""Arrays that would arrive writable elsewhere."""
 NOT_FIELDS = ("with_changes", "grade", "family")
 
 STOP_REASONS = tuple(StopReason)  # in the order of their numbers in `SolveResults.stop_reasons`
@@ -62,8 +64,12 @@ class SolveResult:
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"cannot assign to {name!r}: a result stays as it is")
 
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"cannot delete {name!r}: a result stays as it is")
+
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restore, (self._parts, self.__dict__)
+        known = {name: value for name, value in self.__dict__.items() if name not in MADE_ANEW}
+        return _restore, (self._parts, known)
 
     def with_changes(self, **changes: Any) -> "SolveResult":
         """A copy of which something else is known; its grade, unless given, is made anew."""
@@ -96,9 +102,7 @@ class SolveResult:
     @cached_property
     def q(self) -> Floats:
         """[N] in the robot's own convention, m and rad: the solution, or the best configuration found."""
-        q = self._row[: self._maker.joints]
-        q.setflags(write=False)
-        return q
+        return _freeze(self._row[: self._maker.joints])
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
@@ -124,10 +128,7 @@ class SolveResult:
     def near(self) -> Floats | None:
         """[N] what `q` was to stay close to, brought inside the joint ranges; None: nothing."""
         near = self._maker.problem.near
-        if near is not None:
-            near = near.view()
-            near.setflags(write=False)
-        return near
+        return None if near is None else _freeze(near)
 
     @cached_property
     def motion(self) -> float:
@@ -279,6 +280,11 @@ def _restore(parts: Parts, known: Mapping[str, Any]) -> SolveResult:
     _set_parts(result, parts)
     result.__dict__.update(known)
     return result
+
+
+def _freeze(values: Floats) -> Floats:
+    """A copy [N] that nothing makes writable: numpy gives that flag back to whoever owns the memory, bytes to none."""
+    return np.frombuffer(values.tobytes())
 
 
 def count_blocking_pairs(pairs: Pairs, counts: Sequence[int] | NDArray[np.int64]) -> dict[tuple[str, str], int]:

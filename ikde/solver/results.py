@@ -25,7 +25,6 @@ from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, MaskedBools
 
 MEASURED = ("position_error_m", "orientation_error_rad", "clearance_m")
-FIGURES = (*MEASURED, "attempts", "evaluations", "rejected")
 EVERY_ROW = BulkOptions(verify="all")
 
 
@@ -129,7 +128,7 @@ class SolveResults:
 
     def __getitem__(self, index: Any) -> "SolveResult | SolveResults":
         count = len(self)
-        if not isinstance(index, int | np.integer):
+        if isinstance(index, bool) or not isinstance(index, int | np.integer):
             return self._take(read_rows(index, count))
         if not -count <= index < count:
             raise IndexError(f"row {index} of {count}")
@@ -139,16 +138,10 @@ class SolveResults:
         return f"<SolveResults: {len(self)} rows, {int(self.reached.sum())} reached by {self.problem.robot.name}>"
 
     def to_arrow(self) -> Any:
-        """A `pyarrow.Table`, a row a target: what came of it, q by joint name in m and rad, and the figures."""
-        import pyarrow as pa
+        """A `pyarrow.Table`, a row a target: seed, stream, method, and the columns of a batch."""
+        from ikde.solver.columns import tabulate
 
-        names = np.array([str(stop) for stop in STOP_REASONS])
-        columns = {"reached": self.reached, "stop_reason": names[self.stop_reasons]}
-        columns |= {f"q_{name}": self.q[:, k].copy() for k, name in enumerate(self.problem.robot.joint_names)}
-        columns |= {name: np.array(getattr(self, name)) for name in FIGURES}
-        unchecked = {"clearance_m": self.closest_pair < 0, "collision": np.ma.getmaskarray(self.collision)}
-        columns["collision"] = np.ma.getdata(self.collision)
-        return pa.table({name: pa.array(values, mask=unchecked.get(name)) for name, values in columns.items()})
+        return tabulate(self)
 
     def to_pandas(self) -> Any:
         """The same as a `pandas.DataFrame`; raises `InputError` without pandas."""
@@ -210,10 +203,14 @@ class SolveResults:
 
 
 def read_rows(index: Any, count: int) -> Ints:
-    """Places [K] of what a slice, a mask [T] or an array of places chooses; raises `IndexError` for what is none."""
+    """Places [K] of what a slice, a mask [T] (what is masked in it is False) or an array of places chooses.
+
+    Raises:
+        IndexError: for what is none.
+    """
     if isinstance(index, slice):
         return np.arange(count)[index]
-    chosen = np.asarray(index)
+    chosen = np.asarray(np.ma.filled(index, False) if isinstance(index, np.ma.MaskedArray) else index)
     if chosen.dtype == np.bool_ and chosen.shape != (count,):
         raise IndexError(f"expected a mask of {count} rows, got shape {chosen.shape}")
     if chosen.ndim != 1 or (chosen.dtype.kind not in "biu" and chosen.size):

@@ -3,9 +3,9 @@
 import numpy as np
 
 import ikde
-from ikde.batch.columns import GROUPS
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.sources import ListSource
+from ikde.solver.columns import GROUPS
 from tests.flat_settings import flat_settings
 from tests.problems import problem_of
 

@@ -8,10 +8,11 @@ import pyarrow.parquet as pq
 import pytest
 
 import ikde
-from ikde.batch.columns import GROUPS, WORDS, make_solutions, make_timing
+from ikde.batch.columns import make_solutions, make_timing
 from ikde.batch.parts import serialize
 from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_quat_wxyz
+from ikde.solver.columns import GROUPS, WORDS
 from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions
 from tests.batch.small import FAR, ROBOT, make_arm

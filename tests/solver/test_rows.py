@@ -55,6 +55,8 @@ def test_a_choice_of_a_choice(rows):
         ([[1]], "expected a place"),
         ([0.5], "expected a place"),
         ("a", "expected a place"),
+        (True, "expected a mask of 8 rows"),
+        (None, "expected a place"),
     ],
 )
 def test_what_chooses_nothing_is_refused(rows, index, words):
@@ -64,7 +66,13 @@ def test_what_chooses_nothing_is_refused(rows, index, words):
 
 @pytest.mark.parametrize(
     ("index", "places"),
-    [([], []), (slice(1, 3), [1, 2]), ([True, False, False, True], [0, 3]), ([-1, 0], [3, 0])],
+    [
+        (np.ma.masked_array([True, True, True, False], mask=[False, True, False, False]), [0, 2]),
+        ([], []),
+        (slice(1, 3), [1, 2]),
+        ([True, False, False, True], [0, 3]),
+        ([-1, 0], [3, 0]),
+    ],
 )
 def test_places_are_those_of_an_array(index, places):
     assert read_rows(index, 4).tolist() == places

@@ -1,5 +1,7 @@
 """`solve` and `solve_many`: targets are met, metrics are true, and equal seeds give equal bits."""
 
+import copy
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -214,8 +216,11 @@ def test_unreached_targets_are_told_from_bound_and_counts_alone(qiao):
     [
         ({"method": "ga"}, "no method is called 'ga'"),
         ({"method": ["lm"]}, r"^method: expected the name of a method, got \['lm'\]$"),
-        ({"settings": DeSettings()}, "^settings: expected SolveSettings, which take these as `de`, got DeSettings"),
-        ({"settings": {"restarts": 3}}, "^settings: expected SolveSettings, got {'restarts': 3}$"),
+        (
+            {"settings": DeSettings()},
+            "^settings: expected SolveSettings, which take these as `de`, or a mapping of them, got DeSettings",
+        ),
+        ({"settings": {"restart": 3}}, r"^settings: no setting is called 'restart' \(did you mean 'restarts'\?\)$"),
         (
             {"collision": ["improved"]},
             r"^collision: expected a name, a Detector or a CollisionModel, got \['improved'\]$",
@@ -242,3 +247,24 @@ def test_a_stream_is_a_whole_number(qiao, stream):
 def test_what_names_no_joints_freezes_nothing(qiao):
     with pytest.raises(InputError, match="freeze: expected names of joints, or values by name, got 3"):
         ikde.solve(qiao, ikde.Target((0.8, 0.5, 1.0)), freeze=3)
+
+
+def test_nothing_makes_a_result_writable(qiao):
+    result = ikde.solve(qiao, TARGET, near=qiao.home)
+    for same in (result, copy.copy(result), copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
+        for name in ("q", "near"):
+            array = getattr(same, name)
+            while isinstance(array, np.ndarray):
+                with pytest.raises(ValueError, match="WRITEABLE"):
+                    array.setflags(write=True)
+                array = array.base
+            assert getattr(same, name).tobytes() == getattr(result, name).tobytes()
+
+
+def test_what_a_result_says_can_not_be_taken_away(qiao):
+    result = ikde.solve(qiao, ikde.Target((99.0, 0.0, 1.0)))
+    for name in ("q", "reached", "reason"):
+        _ = getattr(result, name)
+        with pytest.raises(AttributeError, match=f"cannot delete '{name}': a result stays as it is"):
+            delattr(result, name)
+    assert not result.reached
