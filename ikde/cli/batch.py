@@ -87,7 +87,7 @@ def _solve_again(plan: "Batch", out: Path | None, row: str, as_json: bool) -> Ex
     result = confirm(plan.robot, result)
     same = out is not None and compare_row(out, plan, asked, solution)
     if as_json:
-        print_json({"row": str(asked), "same_as_run": same, **solve_json(plan.robot, result)})
+        print_json({"row": str(asked), "same_as_run": same or None, **solve_json(plan.robot, result)})
     else:
         print_result(format_solve(plan.robot, result, Units(), **layout()))
         if same:

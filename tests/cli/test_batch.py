@@ -135,6 +135,27 @@ def test_a_dry_run_leaves_the_cluster_alone_and_says_so(cli, spec, monkeypatch):
     )
 
 
+def test_a_row_alone_is_that_of_the_run(cli, spec, tmp_path):
+    out = tmp_path / "run"
+    cli("batch", spec, "--out", out)
+    rows = ikde.read_batch(out).to_pylist()
+    there = next(row for row in rows if (row["target"], row["repeat"]) == (1, 2))
+    outcome = cli("batch", spec, "--out", out, "--row", "auto/1/2", "--json")
+    assert (outcome.code, outcome.data["row"], outcome.data["same_as_run"]) == (0, "auto/1/2", True)
+    assert outcome.data["q"] == {name: there[f"q_{name}"] for name in outcome.data["q"]}
+    said = cli("batch", spec, "--out", out, "--row", "auto/1/2")
+    assert said.out.startswith("reached by qiao2021")
+    assert said.err == f"the same bits as in {out}\n"
+
+
+def test_a_row_without_a_run_is_compared_with_nothing(cli, spec, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert cli("batch", spec, "--row", "auto/1", "--json").data["same_as_run"] is None
+    assert cli("batch", spec, "--row", "auto/1").err == ""
+    assert cli("batch", far(spec), "--row", "auto/1").code == 1
+    assert list(tmp_path.iterdir()) == [spec]
+
+
 def test_a_run_of_another_file_is_replaced_only_if_told_to(cli, spec, tmp_path):
     out = tmp_path / "run"
     cli("batch", spec, "--out", out)
@@ -157,6 +178,8 @@ def test_a_run_of_another_file_is_replaced_only_if_told_to(cli, spec, tmp_path):
         ("--out run --dask local --threads 2", "threads: workers of a cluster use one thread each"),
         ("--dry-run --threads -1", "threads: expected a whole number of at least 1"),
         ("--dry-run --threads 0", "threads: expected a whole number of at least 1"),
+        ("--row auto", "row: expected ARM/TARGET/REPEAT"),
+        ("--row auto/2", "row: there is no target 2; expected 0 to 1"),
         ("--dry-run --workers 2", "workers: the number of workers"),
         ("--dry-run --dask nowhere", "dask: expected 'local' or an address"),
         ("--dry-run --dask local --threads 2", "threads: workers of a cluster use one thread each"),

@@ -3,7 +3,19 @@
 import numpy as np
 import pytest
 
-from ikde.report.numbers import Units, count_of, fixed, format_fixed, percent, significant, vector, with_interval
+from ikde.report.numbers import (
+    Units,
+    angle,
+    count_of,
+    fixed,
+    format_fixed,
+    length,
+    percent,
+    seconds,
+    significant,
+    vector,
+    with_interval,
+)
 
 MM_DEG = Units("mm", "deg")
 
@@ -71,3 +83,37 @@ def test_a_joint_has_the_unit_of_its_kind(qiao):
 @pytest.mark.parametrize(("number", "text"), [(0, "0 arms"), (1, "1 arm"), (1200, "1,200 arms")])
 def test_one_is_no_plural(number, text):
     assert count_of(number, "arm") == text
+
+
+@pytest.mark.parametrize(
+    ("write", "value", "text"),
+    [
+        (seconds, 0.0, "0"),
+        (seconds, 9.994e-10, "< 1 ns"),
+        (seconds, 9.996e-10, "1 ns"),  # rounds to 1
+        (seconds, 2.3e-8, "23 ns"),
+        (seconds, 9.994e-7, "999 ns"),
+        (seconds, 9.996e-7, "1 µs"),  # not 1,000 ns
+        (seconds, 2.30e-5, "23 µs"),
+        (seconds, 9.996e-4, "1 ms"),
+        (seconds, 1.0, "1 s"),
+        (seconds, 1250.0, "1,250 s"),
+        (length, 5e-10, "< 1 nm"),
+        (length, -5e-10, "< 1 nm"),
+        (length, 5.1e-8, "51 nm"),
+        (length, 7.9e-6, "7.9 µm"),
+        (length, 9.996e-6, "0.01 mm"),
+        (length, 5e-5, "0.05 mm"),
+        (length, -1.5079e-3, "-1.51 mm"),
+        (length, 9.99, "9,990 mm"),
+        (length, 12.4, "12.4 m"),
+        (angle, 0.0, "0"),
+        (angle, 5e-10, "< 1 nrad"),
+        (angle, 5.1e-8, "51 nrad"),
+        (angle, 7.9e-6, "7.9 µrad"),
+        (angle, np.radians(0.05), "0.05 deg"),
+        (angle, np.radians(-120.0), "-120 deg"),
+    ],
+)
+def test_units_follow_the_magnitude(write, value, text):
+    assert write(value) == text

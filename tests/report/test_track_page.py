@@ -75,6 +75,16 @@ def test_without_a_detector_the_page_says_not_checked(qiao):
     assert "certified" not in text
 
 
+def test_the_caption_of_the_margins_says_certified_where_something_is(qiao, page):
+    def caption(page):
+        return next(section for section in page.sections if section.title == "Clearance and limits").blocks[0].caption
+
+    assert caption(page).startswith("The smallest clearance of any pair, at the samples and certified between them. ")
+    alone = caption(make_page(make_measured(qiao, steps=0, further=5)))
+    assert alone.startswith("The smallest clearance of any pair, at the samples. ")
+    assert caption(make_page(make_measured(qiao, detector="none"))).startswith("The least share of a joint's range")
+
+
 def test_it_says_what_measured(page):
     figures = next(section for section in page.sections if section.title == "Figures")
     assert figures.blocks[0].caption == "Measured by plain numpy, not by the kernels that search"
