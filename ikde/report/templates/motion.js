@@ -31,7 +31,7 @@ function layOut(motion, width) {
     top: bottom[view.row] - (view.row ? y : z) * scale,
     at(p) { const [u, v] = view.flat(p); return [this.left + (u - this.box[0]) * scale, this.bottom - (v - this.box[1]) * scale]; }}));
   const low = [boxes[0][0], boxes[1][0], Math.min(0, boxes[0][1])], high = [boxes[0][2], boxes[1][2], boxes[0][3]];
-  const space = {name: "in space: drag it, or use the arrow keys", left: 2 * PAD + x * scale, top: PAD + 2 * LABEL + z * scale, width: room, tall: lower, low, high};
+  const space = {name: "in space: drag it, or use the arrow keys", brief: "in space: drag it", left: 2 * PAD + x * scale, top: PAD + 2 * LABEL + z * scale, width: room, tall: lower, low, high};
   return {height: space.top + lower + PAD, views, space};
 }
 // The view in space as it is turned: like a flat view, with the same scale whatever the turn about z.
@@ -77,7 +77,8 @@ function drawBody(c, motion, view, frame, ink) {
 }
 function drawView(c, motion, view, frame, ink, soft) {
   c.globalAlpha = 1; c.fillStyle = soft;
-  c.fillText(view.name, view.left, view.top - 6);
+  const fits = !view.brief || c.measureText(view.name).width <= view.width;
+  c.fillText(fits ? view.name : view.brief, view.left, view.top - 6);
   if (view.low) drawGround(c, view, soft);
   const path = motion.path_mm.map((p) => view.at(p));
   c.globalAlpha = .6; stroke(c, path, soft, 1.2);
