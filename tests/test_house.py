@@ -22,7 +22,7 @@ NO_TEST_OF_ITS_OWN = {
     "io/sphere_entries.py": "tests/model/test_free_spheres.py reads every kind of row",
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
-    "kernels/arrays.py": "tuples without code; tests/model/test_pack.py fills them",
+    "kernels/arrays.py": "tuples, and `read_only`; tests/model/test_pack.py fills them",
     "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
     "spheres/shapes.py": "a dataclass; tests/io/urdf_import/test_cover_links.py",

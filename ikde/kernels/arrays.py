@@ -9,7 +9,7 @@ A *body* is what one joint moves. Body 0 is the world; body b > 0 is moved by on
 axis of its own frame (`pack` aligns every joint axis with z, so that one formula serves all). Parents come first.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,13 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Indices = NDArray[np.uint64]
+Array = TypeVar("Array", bound=np.ndarray[Any, Any])
+
+
+def read_only(array: Array) -> Array:
+    """The same array, which nothing writes to by mistake from now on."""
+    array.setflags(write=False)
+    return array
 
 
 class RobotArrays(NamedTuple):

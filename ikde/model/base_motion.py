@@ -10,15 +10,14 @@ from functools import lru_cache
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Floats, Ints
+from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Floats, Ints, read_only
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.pairs import component_bodies
 from ikde.model.robot import DRIVES, Drive, Robot, Wheels
 from ikde.model.tree import build_tree
 
-NO_BASE = np.array([-1, -1, -1])
-NO_BASE.setflags(write=False)
+NO_BASE = read_only(np.array([-1, -1, -1]))
 HEADING = 3  # the body that a base's third joint rotates
 
 
@@ -44,9 +43,7 @@ def find_planar_base(robot: Robot) -> Ints:
     carries_all &= bool((bodies[4:, PARENT] >= HEADING).all())
     if not (is_plane and carries_all):
         return NO_BASE
-    base = np.array([x, y, heading])
-    base.setflags(write=False)
-    return base
+    return read_only(np.array([x, y, heading]))
 
 
 def base_joints(robot: Robot) -> tuple[str, ...]:

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, ClosedFormArrays, Floats, RobotArrays
-from ikde.model.pack import pack_robot
+from ikde.model.pack import pack_floats, pack_indices, pack_robot
 from ikde.model.robot import Robot
 from ikde.model.rotation import snap
 from ikde.model.tree import transform
@@ -91,13 +90,11 @@ def pack_ur_arm(arm: URArm, weights: Floats | None = None) -> ClosedFormArrays:
     """Pack an arm for the kernels; `weights` [N]: how much a radian of each joint counts as motion, by default 1."""
     own = np.ones(6) if weights is None else weights[list(arm.coordinates)]
     squares, scale = arm.a2 * arm.a2 + arm.a3 * arm.a3, 0.5 / (arm.a2 * arm.a3)
-    coordinates = np.array(arm.coordinates, dtype=np.uint64)
-    coordinates.setflags(write=False)
     return ClosedFormArrays(
-        coordinates=coordinates,
-        transforms=_floats([np.linalg.inv(T)[:3] for T in (arm.T_carrier_base, arm.T_wrist_tool)]),
-        lengths=_floats([arm.a1, arm.a2, arm.a3, arm.a4, arm.d4, arm.d5, squares, scale]),
-        angles=_floats([arm.signs, arm.offsets, own]),
+        coordinates=pack_indices(arm.coordinates),
+        transforms=pack_floats([np.linalg.inv(T)[:3] for T in (arm.T_carrier_base, arm.T_wrist_tool)]),
+        lengths=pack_floats([arm.a1, arm.a2, arm.a3, arm.a4, arm.d4, arm.d5, squares, scale]),
+        angles=pack_floats([arm.signs, arm.offsets, own]),
     )
 
 
@@ -198,9 +195,3 @@ def _sign(value: float) -> float:
 
 def _angle(vector: Floats) -> float:
     return float(np.arctan2(vector[1], vector[0]))
-
-
-def _floats(values: ArrayLike) -> Floats:
-    array = np.array(values, dtype=np.float64, order="C")
-    array.setflags(write=False)
-    return array

@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.kernels.arrays import CollisionArrays, Floats, Indices, Ints, RobotArrays, TargetArrays
+from ikde.kernels.arrays import CollisionArrays, Floats, Indices, Ints, RobotArrays, TargetArrays, read_only
 from ikde.model.robot import WORLD, Detector, FreeSpheres, Robot
 from ikde.model.rotation import rotation_with_z
 from ikde.model.spheres import Sphere, bounding_sphere, expand_rows
@@ -28,10 +28,10 @@ def pack_robot(robot: Robot) -> RobotArrays:
     T_body_frame = [T_body_aligned[tree.frame_body[f]].T @ tree.T_body_frame[f] for f in frames]
     carries_tool = _ancestors(tree.bodies, tree.frame_body[robot.tool])
     return RobotArrays(
-        bodies=_ints([_body_row(robot, body, c) for body, c in zip(tree.bodies, carries_tool, strict=True)]),
-        T_parent_body=_floats([T[:3] for T in T_parent_body]),
-        frame_body=_indices([tree.frame_body[f] for f in frames]),
-        T_body_frame=_floats([T[:3] for T in T_body_frame]),
+        bodies=pack_ints([_body_row(robot, body, c) for body, c in zip(tree.bodies, carries_tool, strict=True)]),
+        T_parent_body=pack_floats([T[:3] for T in T_parent_body]),
+        frame_body=pack_indices([tree.frame_body[f] for f in frames]),
+        T_body_frame=pack_floats([T[:3] for T in T_body_frame]),
     )
 
 
@@ -52,13 +52,13 @@ def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
     indices = [sorted((components.index(a), components.index(b)), key=lambda c: -len(groups[c])) for a, b in pairs]
     return CollisionArrays(
         safe_distance=float(detector.safe_distance_m if detector else 0.0),
-        p_body_sphere=_floats(np.reshape(centres, (-1, 3)).T),
-        radius=_floats([s.radius_m for s in spheres]),
+        p_body_sphere=pack_floats(np.reshape(centres, (-1, 3)).T),
+        radius=pack_floats([s.radius_m for s in spheres]),
         components=_table([(g[0].body, ends[i], ends[i + 1]) for i, g in enumerate(groups)], 3),
-        bounds=_floats(np.reshape([[*_map(aligned[body], p), r] for body, p, r in bounds], (-1, 4))),
+        bounds=pack_floats(np.reshape([[*_map(aligned[body], p), r] for body, p, r in bounds], (-1, 4))),
         pairs=_table(indices, 2),
         rows=_table(_list_rows(robot, detector.spheres, spheres) if detector else (), 4),
-        offset=_floats([s.offset_m for s in spheres]),
+        offset=pack_floats([s.offset_m for s in spheres]),
     )
 
 
@@ -114,23 +114,20 @@ def _ancestors(bodies: tuple[Body, ...], last: int) -> list[bool]:
     return carries
 
 
-def _floats(values: ArrayLike) -> Floats:
-    array = np.array(values, dtype=np.float64, order="C")
-    array.setflags(write=False)
-    return array
+def pack_floats(values: ArrayLike) -> Floats:
+    """A copy as kernels take numbers."""
+    return read_only(np.array(values, dtype=np.float64, order="C"))
 
 
-def _ints(values: ArrayLike) -> Ints:
-    array = np.array(values, dtype=np.int64, order="C")
-    array.setflags(write=False)
-    return array
+def pack_ints(values: ArrayLike) -> Ints:
+    """A copy as kernels take whole numbers."""
+    return read_only(np.array(values, dtype=np.int64, order="C"))
 
 
-def _indices(values: ArrayLike) -> Indices:
-    array = np.array(values, dtype=np.uint64, order="C")
-    array.setflags(write=False)
-    return array
+def pack_indices(values: ArrayLike) -> Indices:
+    """A copy as kernels take indices."""
+    return read_only(np.array(values, dtype=np.uint64, order="C"))
 
 
 def _table(rows: Sequence[Sequence[int]], columns: int) -> Indices:
-    return _indices(np.reshape(rows, (-1, columns)))
+    return pack_indices(np.reshape(rows, (-1, columns)))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import AXIS, POSE, POSITION, Floats, Ints
+from ikde.kernels.arrays import AXIS, POSE, POSITION, Floats, Ints, read_only
 from ikde.model.numbers import read_numbers
 from ikde.model.rotation import (
     TOLERANCE,
@@ -111,10 +111,8 @@ class Target(Value):
         return Target.packed, (self.kind, self.T_world_tool)  # arrays that travel arrive writable
 
     def _set(self, kind: TargetKind, T_world_tool: Floats) -> None:
-        T_world_tool = np.ascontiguousarray(T_world_tool)  # kernels compile once more for any other layout
-        T_world_tool.setflags(write=False)
         object.__setattr__(self, "kind", kind)
-        object.__setattr__(self, "T_world_tool", T_world_tool)
+        object.__setattr__(self, "T_world_tool", read_only(np.ascontiguousarray(T_world_tool)))
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -219,11 +217,8 @@ class Targets(Value):
         return Targets.packed, (self.kind, self.T_world_tool)  # arrays that travel arrive writable
 
     def _set(self, kind: Ints, T_world_tool: Floats) -> None:
-        kind, T_world_tool = np.ascontiguousarray(kind), np.ascontiguousarray(T_world_tool)
-        kind.setflags(write=False)
-        T_world_tool.setflags(write=False)
-        object.__setattr__(self, "kind", kind)
-        object.__setattr__(self, "T_world_tool", T_world_tool)
+        object.__setattr__(self, "kind", read_only(np.ascontiguousarray(kind)))
+        object.__setattr__(self, "T_world_tool", read_only(np.ascontiguousarray(T_world_tool)))
 
 
 Rows = tuple[()] | tuple[str]

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, read_only
 from ikde.model.base_motion import find_planar_base
 from ikde.model.numbers import is_number
 from ikde.model.robot import Robot
@@ -35,8 +35,7 @@ def read_weights(robot: Robot, weights: Weights | None) -> Floats:
                 f"expected a number from {MIN_WEIGHT:g} to {MAX_WEIGHT:g}, got {quoted(value)}", ("weights", name)
             )
         read[names.index(name)] = value
-    read.setflags(write=False)
-    return read
+    return read_only(read)
 
 
 @lru_cache(maxsize=64)
@@ -48,9 +47,7 @@ def default_weights(robot: Robot) -> Floats:
     lower, upper = robot.drawn
     widths = upper - lower
     widths[[k for k in find_planar_base(robot)[:2] if k >= 0]] = 1.0
-    weights = np.clip(1.0 / np.where(widths > 0.0, widths, 1.0), MIN_WEIGHT, MAX_WEIGHT)
-    weights.setflags(write=False)
-    return weights
+    return read_only(np.clip(1.0 / np.where(widths > 0.0, widths, 1.0), MIN_WEIGHT, MAX_WEIGHT))
 
 
 def measure_motion(weights: Floats, start: Floats, q: Floats) -> Floats:

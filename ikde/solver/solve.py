@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import Any
 
 from ikde.errors import InputError
+from ikde.kernels.arrays import read_only
 from ikde.model.arguments import RobotLike, TargetLike, TargetsLike, read_robot, read_target, read_targets
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
@@ -134,6 +135,6 @@ def solve_many(
 def _find_problem(collision: CollisionModel, settings: SolveSettings) -> Problem:
     """The whole robot's question: what is prepared for it (`search`, `engines.lm`) is prepared once."""
     problem = make_problem(collision.robot, settings, collision=collision, near=None, freeze=None)
-    for array in (problem.lower, problem.upper):
-        array.setflags(write=False)
+    read_only(problem.lower)
+    read_only(problem.upper)
     return problem

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, read_only
 from ikde.model.robot import WORLD, Robot
 from ikde.solver.settings import SolveSettings
 
@@ -102,5 +102,4 @@ def _read_row(value: ArrayLike, name: str, *, may_be_zero: bool) -> Floats:
     if row.ndim != 1 or not good.all():
         least = "at least" if may_be_zero else "above"
         raise InputError(f"expected a number {least} 0 for each joint, got {row.tolist()}", ("limits", name))
-    row.setflags(write=False)
-    return row
+    return read_only(row)

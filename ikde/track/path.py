@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, read_only
 from ikde.model.target import Targets
 from ikde.track.slerp import PathOrientation, slerp
 
@@ -56,8 +56,7 @@ class ToolPath:
             raise InputError(f"expected {len(p) - 1} poses, one fewer than samples, got {len(half)}", ("p_half",))
         own = {"p_world_tool": p, "R_world_tool": R, "p_half": half.p_world_tool, "R_half": half.R_world_tool}
         for key, array in own.items():
-            array.setflags(write=False)
-            object.__setattr__(self, key, array)
+            object.__setattr__(self, key, read_only(array))
 
     @classmethod
     def through(

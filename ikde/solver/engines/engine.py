@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ikde.kernels.arrays import REACHED, DescentArrays, Floats, Ints, TargetArrays
+from ikde.kernels.arrays import REACHED, DescentArrays, Floats, Ints, TargetArrays, read_only
 from ikde.model.pack import pack_targets
 from ikde.model.target import Targets
 from ikde.solver.engines.pool import rotation_length_m
@@ -67,9 +67,7 @@ class SearchInputs:
 def make_ranges(problem: Problem) -> Floats:
     """Lower, upper, and the middle of boxes [3, N]."""
     near = 0.5 * (problem.lower + problem.upper) if problem.near is None else problem.near
-    ranges = np.array([problem.lower, problem.upper, near])
-    ranges.setflags(write=False)
-    return ranges
+    return read_only(np.array([problem.lower, problem.upper, near]))
 
 
 def make_descent(problem: Problem, kind: str) -> DescentArrays:

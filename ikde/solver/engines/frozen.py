@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PRISMATIC, Floats, Ints, RobotArrays, SeedArrays
+from ikde.kernels.arrays import COORDINATE, MOVES_TOOL, PRISMATIC, Floats, Ints, RobotArrays, SeedArrays, read_only
 from ikde.solver.engines.draws import place_bodies, place_tools, sin_cos
 from ikde.solver.engines.grids import find_cells, sort_cells
 
@@ -89,7 +89,7 @@ def set_frozen(pools: FrozenPools, values: Floats) -> SeedArrays:
     q[:, pools.joints] = values
     asked = np.take(tools[pools.asked], order, axis=1).T.copy()
     for array in (q, asked, starts):
-        array.setflags(write=False)
+        read_only(array)
     return pools.seeds._replace(q=q, T_world_tool=asked, cell_start=starts)
 
 
@@ -144,5 +144,5 @@ def _coarsen(seeds: SeedArrays) -> SeedArrays:
     grid[:, 1] = (grid[:, 1] + 1) // 2
     scale = seeds.grid_scale * np.stack([np.ones(len(grid)), grid[:, 1] / seeds.grid[:, 1]], axis=1)
     for array in (grid, scale):
-        array.setflags(write=False)
+        read_only(array)
     return seeds._replace(grid=grid, grid_scale=scale)

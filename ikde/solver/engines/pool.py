@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, Ints, SeedArrays
+from ikde.kernels.arrays import Floats, Ints, SeedArrays, read_only
 from ikde.kernels.seeds import COMPARED
 from ikde.model.base_motion import NO_BASE, find_planar_base
 from ikde.model.collision_model import CollisionModel
@@ -212,7 +212,7 @@ def sort_pool(
     order, starts = sort_cells(grid, cells)
     q, asked = np.take(q, order, axis=0), np.take(T_world_tool[list(KEPT[kind])], order, axis=1).T.copy()
     for array in (q, asked, base, grid, scale, starts):  # numba takes what can be written for another type
-        array.setflags(write=False)
+        read_only(array)
     return SeedArrays(
         q=q,
         T_world_tool=asked,
