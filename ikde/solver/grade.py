@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ikde.errors import VerificationError
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.robot import Robot
 from ikde.model.target import Targets
 from ikde.solver.engines.search_state import SearchState
@@ -61,7 +61,7 @@ class Outcomes:
     @cached_property
     def verified(self) -> MaskedBools:
         """Whether plain numpy agrees [T]; masked where it was not asked."""
-        return np.ma.masked_array(self.verdicts, mask=~self.asked)
+        return np.ma.masked_array(self.verdicts, mask=read_only(~self.asked))
 
     @cached_property
     def stop_reasons(self) -> Ints:
@@ -70,7 +70,7 @@ class Outcomes:
         codes = np.where(self.reached, STOP_REASONS.index(StopReason.REACHED), unreached)
         for row, story in self.explanations.items():
             codes[row] = STOP_REASONS.index(story.stop_reason)
-        return codes
+        return read_only(codes)
 
 
 def grade(

@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.errors import VerificationError
 from ikde.kernels import grade_many as kernels
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.kernels.flat_arguments import Terms, flatten_grader
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
@@ -133,8 +133,8 @@ def compute_clearances(collision: CollisionModel, Q: Floats) -> Clearances:
 
 def judge_clearances(metrics: Metrics, collision: CollisionModel) -> MaskedBools:
     """Whether configurations collide [T], by their clearance; masked where no pair was compared: not checked."""
-    collides = ~(metrics.clearance_m > collision.limit_m)
-    return np.ma.masked_array(collides, mask=metrics.closest_pair < 0)
+    collides = read_only(~(metrics.clearance_m > collision.limit_m))
+    return np.ma.masked_array(collides, mask=read_only(metrics.closest_pair < 0))
 
 
 def compute_disagreement(targets: Targets | Sequence[Target], metrics: Metrics, verdicts: Grades) -> Floats:

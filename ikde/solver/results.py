@@ -1,7 +1,7 @@
 """Many solves at once, a row each: searched on all cores, graded, explained."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache, partial
 from typing import Any, overload
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.answer import pack_row
-from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints
+from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints, read_only
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.engine_table import NAMES
@@ -113,6 +113,13 @@ class SolveResults:
     def engines(self) -> Ints:
         """Which engine answered [T]: its place in `engine_table.NAMES`."""
         return self.found.engine
+
+    def __post_init__(self) -> None:
+        """What was graded stays what it is: no column can be written to by mistake."""
+        for known in (self.found, self.found.metrics, self.outcomes):
+            for column in (getattr(known, field.name) for field in fields(known)):
+                if isinstance(column, np.ndarray):
+                    read_only(column)
 
     def __len__(self) -> int:
         return len(self.targets)

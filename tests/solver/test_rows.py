@@ -5,7 +5,7 @@ import pyarrow as pa
 import pytest
 
 import ikde
-from ikde.solver.results import read_rows
+from ikde.solver.results import SolveResults, read_rows
 from tests.problems import problem_of
 from tests.three_joints import ROBOT, free_q, meet
 
@@ -40,6 +40,24 @@ def test_what_is_chosen_keeps_all_that_is_known_of_it(rows, index):
             assert getattr(ours, name) == getattr(theirs, name), name
         again = ikde.solve(ROBOT, ours.target, seed=ours.seed, stream=ours.stream)
         assert again.q.tobytes() == ours.q.tobytes()
+
+
+COLUMNS = [name for name, known in vars(SolveResults).items() if isinstance(known, property)]
+MEASURED_ANEW = {"motion"}
+
+
+@pytest.mark.parametrize("name", [name for name in COLUMNS if name not in MEASURED_ANEW])
+@pytest.mark.parametrize("chosen", [slice(None), slice(1, 5, 2), [0, 0, 7]], ids=str)
+def test_no_column_of_what_was_graded_can_be_written_to(rows, name, chosen):
+    some = rows if chosen == slice(None) else rows[chosen]
+    column = getattr(some, name)
+    before = column.tolist()
+    with pytest.raises(ValueError, match="read-only"):
+        column[0] = column[-1]
+    if isinstance(column, np.ma.MaskedArray):
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = np.ma.masked
+    assert getattr(some, name).tolist() == before
 
 
 def test_a_choice_of_a_choice(rows):
