@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ikde.kernels.draws import MAX_DRAWS
 from ikde.kernels.sampling import place_tools, sample_ball, sample_box
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
-from ikde.model.target import POSE, Targets
+from ikde.model.target import POSE, TargetKind, Targets
 from ikde.solver.engines.pool import load_kernels
 
 
@@ -60,7 +60,7 @@ class ReachableSource:
     lower: Floats
     upper: Floats
     """[N] joint ranges, m or rad."""
-    goal: Literal["position", "axis", "pose"]
+    goal: TargetKind
     count: int
     seed: int
     names: None = None

@@ -18,6 +18,7 @@ from ikde.formats.entries import (
 )
 from ikde.formats.names import Name, Text
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
+from ikde.model.target import TargetKind
 from ikde.solver.engine_table import Method
 from ikde.solver.settings import Collision, Update
 
@@ -33,7 +34,7 @@ class ReachableEntry(Entry):
 
     count: Count
     """How many targets."""
-    goal: Literal["position", "axis", "pose"] = "position"
+    goal: TargetKind = "position"
     """What is asked of the tool there."""
     detector: Name | None = None
     """What the configurations are free for: a detector's name or `none` (default: the robot's own)."""

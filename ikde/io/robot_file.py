@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
@@ -25,6 +25,9 @@ from ikde.model.robot import (
     Frame,
     Inertia,
     Joint,
+    JointKind,
+    Origin,
+    Pairs,
     Provenance,
     Robot,
     Wheels,
@@ -32,7 +35,6 @@ from ikde.model.robot import (
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import check_robot
 
-Pairs = tuple[tuple[str, str], ...]
 MAX_JOINTS, MAX_ENTRIES, MAX_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
 MAX_SPHERES = 100_000  # of a robot's approximations together
 OfLists = Field(max_length=MAX_LISTS)
@@ -46,7 +48,7 @@ LIMITS_BY_KIND: JsonDict = {
 class SourceEntry(Entry):
     """Where numbers come from."""
 
-    kind: Literal["published", "derived", "calibrated"]
+    kind: Origin
     text: Text
 
 
@@ -55,7 +57,7 @@ class JointEntry(SourcedEntry):
 
     model_config = ConfigDict(json_schema_extra=LIMITS_BY_KIND)
 
-    kind: Literal["revolute", "prismatic", "continuous"]
+    kind: JointKind
     """What it does: a continuous joint rotates without end, and has no limits."""
     lower: Number | None = None
     upper: Number | None = None

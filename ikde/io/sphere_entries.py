@@ -1,6 +1,6 @@
 """Spheres in a robot's file: rows between key points, and free spheres in a frame."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
@@ -9,7 +9,7 @@ from ikde.errors import InputError
 from ikde.formats.entries import Entry, Number
 from ikde.formats.names import Name
 from ikde.io.yaml_file import Where
-from ikde.model.robot import FreeSpheres, SphereRow, Spheres
+from ikde.model.robot import FreeSpheres, Spacing, SphereRow, Spheres
 
 ROW_OR_FREE: JsonDict = {
     "oneOf": [
@@ -43,7 +43,7 @@ class SphereRowEntry(SourcedEntry):
     frame: Name | None = None
     spheres: Annotated[list[FreeSphere], Field(min_length=1, max_length=10_000)] | None = None
     count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
-    spacing: Literal["touching", "even"] = "touching"
+    spacing: Spacing = "touching"
 
 
 def to_spheres(entry: SphereRowEntry, length: float, where: Where) -> Spheres:

@@ -6,11 +6,12 @@ best as well, so what it prints as current2best/2 is current-to-best/1 here.
 """
 
 import math
+from typing import Literal, get_args
 
 from ikde.kernels.jit import inline_kernel
 from ikde.kernels.rng import next_index, next_uniform
 
-STRATEGIES = (
+Strategy = Literal[
     "rand/1",
     "best/1",
     "rand/2",
@@ -19,11 +20,13 @@ STRATEGIES = (
     "rand-to-best/2",
     "current-to-best/1",
     "current-to-best/2",
-)
+]
+STRATEGIES: tuple[Strategy, ...] = get_args(Strategy)
 RAND_1, BEST_1, RAND_2, BEST_2, RAND_TO_BEST_1, RAND_TO_BEST_2, CURRENT_TO_BEST_1, CURRENT_TO_BEST_2 = range(8)
 MAX_DRAWN = 5
 
-REPAIRS = ("redraw", "clip", "parent", "midpoint", "none")
+Repair = Literal["redraw", "clip", "parent", "midpoint", "none"]
+REPAIRS: tuple[Repair, ...] = get_args(Repair)
 REDRAW, CLIP, PARENT, MIDPOINT, NONE = range(5)
 MAX_VALUE = 1e5  # m or rad: where nothing is repaired a population may run away, and sines end here
 

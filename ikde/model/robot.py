@@ -21,6 +21,7 @@ MAX_MAGNITUDE = 1e5  # m or rad, of all that a robot is made of: beyond it an an
 FULL_TURN_RAD = 2.0 * np.pi - 1e-12  # but for rounding
 
 JointKind = Literal["revolute", "prismatic", "continuous"]
+Origin = Literal["published", "derived", "calibrated"]
 Spacing = Literal["touching", "even"]
 Drive = Literal["differential", "omnidirectional"]
 DRIVES: tuple[Drive, ...] = get_args(Drive)
@@ -141,7 +142,7 @@ class Wheels:
 class Provenance:
     """Where a number comes from: printed, forced by printed numbers, or chosen inside what they leave free."""
 
-    kind: Literal["published", "derived", "calibrated"]
+    kind: Origin
     text: str
 
 

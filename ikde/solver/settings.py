@@ -8,22 +8,11 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.kernels.mutation import MAX_DRAWN, REPAIRS, STRATEGIES
+from ikde.kernels.mutation import MAX_DRAWN, REPAIRS, STRATEGIES, Repair, Strategy
 from ikde.model.numbers import is_number
 from ikde.solver.engine_table import AUTO, ENGINES, Method
 
 Collision = Literal["reject", "feasibility"]
-Repair = Literal["redraw", "clip", "parent", "midpoint", "none"]
-Strategy = Literal[
-    "rand/1",
-    "best/1",
-    "rand/2",
-    "best/2",
-    "rand-to-best/1",
-    "rand-to-best/2",
-    "current-to-best/1",
-    "current-to-best/2",
-]
 Update = Literal["generation", "in_place"]
 Verify = Literal["all", "sample", "none"]
 Rule = tuple[Callable[[Any], bool], str]
