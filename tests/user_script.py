@@ -56,7 +56,7 @@ texts = [ikde.format_urdf(robot), ikde.format_mjcf(robot, collision="none")]
 imported: ikde.Robot = ikde.import_urdf("my.urdf")
 details: ikde.ImportedUrdf = ikde.read_urdf("my.urdf")
 options = ikde.ImportOptions()
-composed = ikde.compose(robot, imported, np.eye(4))
+composed = ikde.compose("qiao2021", imported, np.eye(4))
 
 batch = ikde.load_batch("batch.yaml")
 ikde.run_batch(batch, "run")
@@ -68,7 +68,7 @@ path = ikde.ToolPath(p_world_tool=np.zeros((5, 3)), dt_s=0.1)
 ikde.follow_path(robot, path, limits=ikde.MotionLimits.of(robot), settings=ikde.ContinuationSettings())
 ikde.follow_path(robot, path, method="foo")  # type: ignore[arg-type]
 ikde.follow_path(robot, path, method="optimized", settings=ikde.OptimizedSettings())
-ikde.follow_path(robot, path, method="typical", settings=ikde.TypicalSettings())
+ikde.follow_path("ur5", path, method="typical", settings=ikde.TypicalSettings())
 stop: ikde.TrackStop | None = motion.stop
 ends = stop is not None and stop.reason is ikde.TrackStopReason.SPEED_LIMIT
 surface = ikde.check_surface(robot, robot.home)

@@ -16,6 +16,7 @@ from ikde.io.xml_file import (
     list_components,
     name_components,
 )
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import WORLD, Frame, Joint, Robot
 from ikde.model.rotation import quat_wxyz_from_rotation
@@ -23,7 +24,7 @@ from ikde.model.rotation import quat_wxyz_from_rotation
 JOINT_TYPES = {"revolute": "hinge", "prismatic": "slide", "continuous": "hinge"}
 
 
-def format_mjcf(robot: Robot, *, collision: CollisionChoice = None) -> str:
+def format_mjcf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     """The robot as the text of an MJCF file, in m and rad; its contacts are the detector's collisions.
 
     Every frame is a body of its name and every joint keeps its name; the key frame `home` is the robot's home. Each
@@ -33,12 +34,13 @@ def format_mjcf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     is not in the file, since MuJoCo's versions differ in what a margin is. Gravity is off.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         collision: whose spheres and pairs to write, as for `ikde.solve`.
 
     Raises:
         InputError: for an unknown detector, or a name that XML cannot hold.
     """
+    robot = read_robot(robot)
     model = CollisionModel.of(robot, collision)
     root = ET.Element("mujoco", model=robot.name)
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")

@@ -19,12 +19,13 @@ from ikde.io.xml_file import (
     reserve_name,
 )
 from ikde.kernels.arrays import Floats
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import WORLD, Frame, Robot
 from ikde.model.spheres import Sphere
 
 
-def format_urdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
+def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     """The robot as the text of a URDF file, in m and rad.
 
     Every frame is a link of its name and every joint keeps its name; a fixed frame hangs on the joint `fixed_<frame>`.
@@ -33,12 +34,13 @@ def format_urdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     that is taken gets an underscore. URDF cannot say which pairs count: `format_srdf` writes that.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         collision: whose spheres to write, as for `ikde.solve`.
 
     Raises:
         InputError: for an unknown detector, or a name that XML cannot hold.
     """
+    robot = read_robot(robot)
     model = CollisionModel.of(robot, collision)
     root = ET.Element("robot", name=robot.name)
     links, joints = name_components(model), set(robot.joint_names)

@@ -8,6 +8,7 @@ from typing import Union
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import CollisionArrays
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
@@ -34,8 +35,9 @@ class CollisionModel:
         return f"<CollisionModel {self.robot.name}: detector {self.name}, {len(self.pairs)} pairs>"
 
     @classmethod
-    def of(cls, robot: Robot, choice: CollisionChoice = None) -> "CollisionModel":
+    def of(cls, robot: RobotLike, choice: CollisionChoice = None) -> "CollisionModel":
         """Resolve a choice; raises `InputError` for an unknown name, or for what does not fit the robot."""
+        robot = read_robot(robot)
         if isinstance(choice, CollisionModel):
             if choice.robot != robot:
                 other = f"this is a model of another Robot object ({choice.robot.name}), not of this {robot.name}"

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionModel
 from ikde.model.names import MAX_NAME_LENGTH
 from ikde.model.robot import (
@@ -42,7 +43,7 @@ class _Assembly:
     end: str = WORLD
 
 
-def compose(base: Robot, arm: Robot, T_base_arm: Floats, tool: Robot | None = None) -> Robot:
+def compose(base: RobotLike, arm: RobotLike, T_base_arm: Floats, tool: RobotLike | None = None) -> Robot:
     """An arm on a platform, and a tool at its end.
 
     Names that are taken get the word `arm_` or `tool_` before them. Spheres, and pairs that are left out, are those of
@@ -50,14 +51,16 @@ def compose(base: Robot, arm: Robot, T_base_arm: Floats, tool: Robot | None = No
     where numbers come from, are left behind.
 
     Args:
-        base: the platform; its tool is what the arm stands on.
-        arm: the arm.
+        base: the platform, its name or the path of its file; its tool is what the arm stands on.
+        arm: the arm, likewise.
         T_base_arm: [4, 4] m, the arm's world in the platform's tool.
-        tool: what the arm's tool carries: its joints are frozen at home, its tool is the new one.
+        tool: what the arm's tool carries, likewise: its joints are frozen at home, its tool is the new one.
 
     Raises:
         InputError: if what comes of it is no robot.
     """
+    base, arm = read_robot(base, ("base",)), read_robot(arm, ("arm",))
+    tool = None if tool is None else read_robot(tool, ("tool",))
     assembly = _Assembly()
     _add(assembly, base, "base", np.eye(4), is_last=False)
     _add(assembly, arm, "arm", T_base_arm, is_last=tool is None)

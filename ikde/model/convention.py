@@ -8,6 +8,7 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.robot import Robot
 
 
@@ -22,11 +23,11 @@ def convention_offsets(robot: Robot, convention: str | None) -> Floats:
     return np.array([offsets.get(name, 0.0) for name in robot.joint_names])
 
 
-def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
+def from_convention(robot: RobotLike, q: Floats, convention: str | None) -> Floats:
     """From the named convention to the robot's own, inside the limits where a full turn allows it.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         q: joint values [..., N] in the named convention, m and rad.
         convention: its name; None or the robot's own leaves `q` as it is.
 
@@ -36,6 +37,7 @@ def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
     Raises:
         InputError: for an unknown convention.
     """
+    robot = read_robot(robot)
     if convention is None or convention == robot.convention:
         return q
     offsets = convention_offsets(robot, convention)
@@ -47,11 +49,11 @@ def from_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
     return np.where(offsets == 0.0, q, own)
 
 
-def to_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
+def to_convention(robot: RobotLike, q: Floats, convention: str | None) -> Floats:
     """From the robot's own convention to the named one; a shifted joint comes out in (-pi, pi].
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         q: joint values [..., N] in the robot's own convention, m and rad.
         convention: the wanted one; None or the robot's own leaves `q` as it is.
 
@@ -61,6 +63,7 @@ def to_convention(robot: Robot, q: Floats, convention: str | None) -> Floats:
     Raises:
         InputError: for an unknown convention.
     """
+    robot = read_robot(robot)
     offsets = convention_offsets(robot, convention)
     return np.where(offsets == 0.0, q, _wrap(q + offsets))
 

@@ -15,6 +15,7 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.paper import compute_surface_from_centres, compute_surface_gap, judge_surfaces
 from ikde.kernels.spheres import compute_centres
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Robot
@@ -55,7 +56,7 @@ class SurfaceCheck:
 
 
 def check_surface(
-    robot: Robot,
+    robot: RobotLike,
     q: JointValues,
     collision: CollisionChoice = None,
     *,
@@ -70,7 +71,7 @@ def check_surface(
     seen by neither: centres ([Qiao2021, eq. 21], `check`) do not have that flaw.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         q: joint values [N] or a mapping by joint name; m and rad.
         collision: a detector's name, a `Detector`, a `CollisionModel`, or None for the robot's default.
         rule: `"eq. 18"` or `"eq. 20"`.
@@ -80,6 +81,7 @@ def check_surface(
     Raises:
         InputError: without a detector, and as `check` does.
     """
+    robot = read_robot(robot)
     model, directions, covering_angle, limit = _read_judgement(robot, collision, rule, m_steps, n_steps)
     arrays, packed = pack_robot(robot), model.arrays
     T_world_body = np.empty((arrays.bodies.shape[0], 3, 4))

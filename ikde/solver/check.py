@@ -27,7 +27,7 @@ class PairClearance:
     collides: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class CheckResult:
     """What a detector sees. Without a detector there are no pairs; collision and clearance are None."""
 
@@ -42,6 +42,12 @@ class CheckResult:
     safe_distance_m: float
     outside_limits: tuple[str, ...]
     """Joints of `q` outside their limits."""
+
+    def __repr__(self) -> str:
+        if not self.pairs:
+            return "<CheckResult: self-collision not checked>"
+        verdict, closest = "in collision" if self.collision else "free of self-collision", self.pairs[0]
+        return f"<CheckResult: {verdict}, {closest.a} - {closest.b} {1e3 * closest.clearance_m:.6g} mm>"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

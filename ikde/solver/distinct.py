@@ -37,6 +37,13 @@ UNEXPLAINED = BulkOptions(verify="all", explain=False)
 Rank = Literal["motion", "clearance", "limits", "found"]
 
 
+class DistinctResults(list[SolveResult]):
+    """Solutions, best first; a list that a notebook shows in a line."""
+
+    def __repr__(self) -> str:
+        return f"<DistinctResults: {len(self)}, {sum(result.reached for result in self)} reached>"
+
+
 class Question(TypedDict, total=False):
     """What `solve` is asked beside the target, too."""
 
@@ -56,7 +63,7 @@ def solve_distinct(
     seed: int = 0,
     method: Method = "auto",
     **question: Unpack[Question],
-) -> list[SolveResult]:
+) -> DistinctResults:
     """Up to `count` distinct solutions: any two differ by more than 0.1 rad or 50 mm in a joint.
 
     The list is shorter if no more are found; unreached, it holds one result with the reason. Plain numpy has graded
@@ -87,10 +94,10 @@ def solve_distinct(
     options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
     first = confirm(robot, solve(robot, target, chosen, seed=seed, **question))
     if not first.reached or count == 1 or problem.is_fixed:
-        return [first]
+        return DistinctResults([first])
     look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(replace(problem, descends=False), target, count, first, options)
-    return sort_solutions(robot, solutions, rank)[:count]
+    return DistinctResults(sort_solutions(robot, solutions, rank)[:count])
 
 
 def check_rank(rank: str) -> None:

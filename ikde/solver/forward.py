@@ -9,7 +9,14 @@ from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.plain import compute_frames
 
 
-def forward(robot: RobotLike, q: JointValues, convention: str | None = None) -> dict[str, Floats]:
+class FramePoses(dict[str, Floats]):
+    """Frame name -> T_world_frame [..., 4, 4], m; a dictionary that a notebook shows in a line."""
+
+    def __repr__(self) -> str:
+        return f"<FramePoses of {len(self)} names, the tool's among them>"
+
+
+def forward(robot: RobotLike, q: JointValues, convention: str | None = None) -> FramePoses:
     """Pose of every frame in the world [Qiao2021, eq. 3, 5-9].
 
     Args:
@@ -26,4 +33,4 @@ def forward(robot: RobotLike, q: JointValues, convention: str | None = None) -> 
     """
     robot = read_robot(robot)
     Ts_world = compute_frames(robot, read_joints(robot, q, convention))
-    return {name: T for name, T in Ts_world.items() if name != WORLD} | {TOOL: Ts_world[robot.tool]}
+    return FramePoses({name: T for name, T in Ts_world.items() if name != WORLD} | {TOOL: Ts_world[robot.tool]})

@@ -27,7 +27,7 @@ BLOCK, SAMPLED = 4096, 64  # the last 64 streams of each 4096, wherever a batch 
 AT_ONCE = 256  # rows that plain numpy grades in a call: 11 us each (qiao2021); 38 with 16 of them
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Outcomes:
     """The grades of T rows, whether they agree, and why rows ended."""
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
+from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.base_motion import base_joints, find_planar_base
 from ikde.model.collision_model import CollisionChoice
 from ikde.model.robot import Drive, Robot
@@ -34,7 +35,7 @@ METHODS: Mapping[TrackMethod, Method] = {
 
 
 def follow_path(
-    robot: Robot,
+    robot: RobotLike,
     path: ToolPath,
     *,
     drive: Drive | None = None,
@@ -49,7 +50,7 @@ def follow_path(
     """Follow the path inside all limits, free of self-collision at the samples and between them if there is a detector.
 
     Args:
-        robot: the robot.
+        robot: the robot, its name or the path of its file.
         path: poses of the tool, a sample every `path.dt_s`.
         drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself. None: on arcs if
             the robot has a base. `typical` ignores it: every joint moves independently.
@@ -70,11 +71,11 @@ def follow_path(
     Raises:
         InputError: for what does not fit the robot, and a start that is not at the first pose or collides.
     """
-    for value, kind, name in ((robot, Robot, "robot"), (path, ToolPath, "path"), (limits, MotionLimits, "limits")):
+    for value, kind, name in ((path, ToolPath, "path"), (limits, MotionLimits, "limits")):
         if not isinstance(value, kind) and not (value is None and name == "limits"):
             raise InputError(f"expected a {kind.__name__}, got {type(value).__name__}", (name,))
     plan = TrackPlan.of(
-        robot,
+        read_robot(robot),
         path,
         drive=drive,
         method=method,

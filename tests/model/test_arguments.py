@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import ikde
 from ikde.errors import FileError, InputError
 from ikde.io.robots import load_robot, robot_path
 from ikde.model.arguments import read_robot, read_target, read_targets
@@ -43,6 +44,34 @@ def test_three_numbers_are_a_position(given):
 def test_a_matrix_is_a_pose_also_that_of_another_library(given):
     assert read_target(given) == POSE
     assert list(read_targets(given)) == [POSE]
+
+
+def test_a_pose_of_pinocchio_is_taken():
+    pin = pytest.importorskip("pinocchio")
+    assert read_target(pin.SE3(T[:3, :3], T[:3, 3])) == POSE
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        ikde.format_urdf,
+        ikde.format_mjcf,
+        ikde.CollisionModel.of,
+        lambda robot: ikde.check_surface(robot, [0.0] * 6),
+        lambda robot: ikde.to_convention(robot, np.zeros(6), None).tolist(),
+        lambda robot: ikde.from_convention(robot, np.zeros(6), None).tolist(),
+        lambda robot: ikde.compose(robot, robot, np.eye(4), tool=robot),
+    ],
+)
+def test_each_function_takes_a_robot_by_its_name(call):
+    assert call("ur5") == call(load_robot("ur5"))
+    with pytest.raises(InputError, match=r"(robot|base): expected a Robot, a robot's name or a path, got 3"):
+        call(3)
+
+
+def test_a_path_is_followed_by_a_robot_of_that_name():
+    with pytest.raises(InputError, match="robot: no robot is called 'ur6'"):
+        ikde.follow_path("ur6", ikde.ToolPath(p_world_tool=np.zeros((5, 3)), dt_s=0.1))
 
 
 @pytest.mark.parametrize(

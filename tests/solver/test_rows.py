@@ -119,8 +119,14 @@ def test_pandas_has_the_same(rows):
 def test_a_notebook_shows_a_line_of_each(rows):
     robot, targets = ikde.load_robot("qiao2021"), ikde.Targets.of(TARGETS)
     shown = [robot, targets, targets[0], rows, rows[0], ikde.CollisionModel.of(robot), problem_of(robot)]
+    q = robot.home
+    shown += [ikde.check(robot, q), ikde.check_many(robot, [q]), ikde.forward(robot, q), rows.found, rows.outcomes]
+    shown += [ikde.solve_distinct(ROBOT, TARGETS[0], 5, {"timeout_s": 5.0}), ikde.verify(robot, (0.8, 0.5, 1.0), q)]
     for thing in (*shown, ikde.SolveSettings(), rows[0].target, ikde.BulkOptions()):
         assert len(repr(thing)) <= 400, type(thing)
     assert repr(robot) == "<Robot qiao2021: 9 joints, tool O6, detector improved>".replace("O6", robot.tool)
     assert repr(targets) == "<Targets: 8 position>"
+    assert repr(ikde.check(robot, q, "none")) == "<CheckResult: self-collision not checked>"
+    closest = ikde.check(robot, q).pairs[0]
+    assert f"{closest.a} - {closest.b}" in repr(ikde.check(robot, q))
     assert repr(rows) == f"<SolveResults: 8 rows, {rows.reached.sum()} reached by three_joints>"

@@ -251,6 +251,7 @@ def test_what_names_no_joints_freezes_nothing(qiao):
 
 def test_nothing_makes_a_result_writable(qiao):
     result = ikde.solve(qiao, TARGET, near=qiao.home)
+    _ = result.q, result.near  # what was read before is not packed: it would arrive as numpy's own, writable
     for same in (result, copy.copy(result), copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
         for name in ("q", "near"):
             array = getattr(same, name)

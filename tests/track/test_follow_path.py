@@ -270,7 +270,7 @@ def test_what_is_refused(given, where):
 @pytest.mark.parametrize("key", ["robot", "path", "limits"])
 def test_what_is_something_else_is_refused(key):
     told = {"robot": robot(), "path": load_task("task1").path, "limits": None, key: {"speed": 1}}
-    with pytest.raises(InputError, match=rf"^{key}: expected a \w+, got dict"):
+    with pytest.raises(InputError, match=rf"^{key}: expected a \w+, .*got (dict|{{)"):
         follow_path(**told)
 
 

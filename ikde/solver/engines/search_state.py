@@ -52,7 +52,7 @@ class PairCounts:
         return counts
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SearchState:
     """What the kernels found, a row a target."""
 
