@@ -2,7 +2,7 @@
 
 A direction that is fixed in the tool keeps its angle to the axis of the last revolute joint. Seen from the axis
 before, that angle lies in an interval, given by the angle between the two axes; and so on to the first joint, whose
-axis does not move. Ranges of joints do not count, but a joint that may not rotate at all is part of its link.
+axis does not move. Joint ranges are ignored, except that a revolute joint with an empty range is part of its link.
 """
 
 import math

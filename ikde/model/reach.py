@@ -165,7 +165,7 @@ class _Run:
 def bound_reach(chain: Chain) -> Reach:
     """The bound, ready to be asked about positions. Sound for any tree; sharp for the usual ones.
 
-    Ranges of revolute joints do not count, but one that may not rotate at all is part of its link.
+    Ranges of revolute joints are ignored, except that one with an empty range is part of its link.
     """
     links = chain.links
     first = next((i for i, link in enumerate(links) if link.is_revolute), len(links))

@@ -7,7 +7,7 @@ from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
 from ikde.report.markup import verbatim
 from ikde.report.numbers import fixed, percent, seconds, significant
 
-ALIKE = 1.5  # medians whose ratio is smaller are not told apart
+ALIKE = 1.5  # medians whose ratio is smaller are called alike
 FEW = 20  # from here on a ratio is a whole number
 
 

@@ -75,7 +75,7 @@ def say_how_to_go_on(run: RunAnswers) -> str:
 def _headline(run: RunAnswers) -> list[Block]:
     if not run.parts_done:
         return []
-    difference = [Text(told)] if (told := tell_difference(run)) else []
+    difference = [Text(text)] if (text := tell_difference(run)) else []
     if len(run.arms) == 1:
         return [Numbers((_reached("reached", run.rate, run.arms), *_cost(run.arms[0])))]
     if len(run.arms) > MAX_NUMBERS:
