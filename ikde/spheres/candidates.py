@@ -38,7 +38,7 @@ def find_candidates(solid: Solid, patches: Patches, protrusion_m: float, most: i
     centres = np.concatenate([inside, patches.centres])
     radii, covers = np.empty(len(centres)), [np.empty(0, dtype=np.int64)] * len(centres)
     sign = np.where(np.arange(len(centres)) < len(inside), 1.0, -1.0)
-    for block in _neighbours(centres, 2.0 * protrusion_m):
+    for block in _neighbours(centres, protrusion_m):
         near = _patches_near(patches, centres[block], protrusion_m)
         depth = sign[block] * _distances(solid, patches, centres[block])
         radii[block] = depth + protrusion_m - WITHIN

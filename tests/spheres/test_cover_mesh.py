@@ -7,7 +7,8 @@ import pytest
 
 from ikde.spheres import cover_mesh as module
 from ikde.spheres.certificate import certify
-from ikde.spheres.cover_mesh import convex_hull, cover_mesh, cover_solid
+from ikde.spheres.cover_mesh import convex_hull, cover_mesh, cover_solid, drop_needless
+from ikde.spheres.primitives import Rows
 from tests.mesh_bodies import box, make_l, on_surface, solid_of, write_stl
 
 BODIES = {"box": box(0.12, 0.05, 0.04), "L": 0.5 * make_l()}
@@ -36,9 +37,18 @@ def test_no_point_of_a_sphere_is_farther_out_than_allowed(covered) -> None:
     assert rows.protrusion_m == 0.02
 
 
-def test_less_is_proved_with_every_other_sphere_alone(covered) -> None:
+def test_less_is_proved_without_any_one_of_the_spheres(covered) -> None:
     body, rows = covered
-    assert certify(body, rows.centres[::2], rows.radii[::2]).covered < 0.95
+    for out in range(len(rows.radii)):
+        centres, radii = np.delete(rows.centres, out, axis=0), np.delete(rows.radii, out)
+        assert certify(body, centres, radii).covered < 1.0
+
+
+def test_a_sphere_that_others_make_needless_is_dropped(covered) -> None:
+    body, rows = covered
+    twice = Rows(np.concatenate([rows.centres, rows.centres[:1]]), np.append(rows.radii, 0.9 * rows.radii[0]), 0.02)
+    left = drop_needless(body, 0.004, twice)
+    assert left.radii.tolist() == rows.radii.tolist()
 
 
 def test_the_same_body_gets_the_same_bits(covered) -> None:
