@@ -37,7 +37,7 @@ def make_l(height: float = 0.1) -> Floats:
 
 def solid_of(triangles: Floats) -> Solid:
     """A closed body."""
-    return Solid(Triangles.of(triangles), np.ones(len(triangles), dtype=np.bool_))
+    return Solid(Triangles.of(triangles), Triangles.of(triangles))
 
 
 def write_stl(path: Path, triangles: Floats) -> Path:

@@ -76,7 +76,7 @@ def _distances(solid: Solid, patches: Patches, block: Floats) -> Floats:
 
 def grid_inside(solid: Solid, protrusion_m: float, most: int) -> Floats:
     """[.., 3] points of a grid inside the closed parts: along each vertical line the faces passed are counted."""
-    triangles = solid.surface.corners[solid.is_closed]
+    triangles = solid.parts.corners
     if not len(triangles):
         return np.empty((0, 3))
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))

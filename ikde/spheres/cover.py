@@ -65,7 +65,9 @@ def _say_how(meshes: Sequence[MeshCover], has_others: bool) -> Iterator[str]:
         yield "rows and grids in closed form"
     if meshes:
         yield "greedy, certified"
-    if hulls := sum(mesh.parts.hulls for mesh in meshes):
+    if parts := sum(mesh.parts.hulls for mesh in meshes if mesh.only_hulls):
+        yield f"hulls of {parts} parts, for fewer spheres" if parts > 1 else "hull, for fewer spheres"
+    if hulls := sum(mesh.parts.hulls for mesh in meshes if not mesh.only_hulls):
         yield f"hulls of {hulls} open parts" if hulls > 1 else "hull of an open part"
     if sheets := sum(mesh.parts.sheets for mesh in meshes):
         yield f"{sheets} flat parts" if sheets > 1 else "a flat part"

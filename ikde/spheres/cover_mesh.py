@@ -17,10 +17,10 @@ from ikde.spheres.solid import Solid
 
 MAX_INSIDE = 6_000
 """Points of the grid inside a body, about."""
-EXCHANGES = 120_000_000
-"""Work of exchanging spheres for fewer: about 0.6 s a mesh."""
-MAX_PROVED = 100
-"""Of so many spheres each is tried without, which takes a proof each."""
+EXCHANGES = 80_000_000
+"""Work of exchanging spheres for fewer, where they are not far too many anyway: about 0.5 s a mesh."""
+MAX_SPHERES = 60
+"""Of one mesh, unless the hulls of its parts take more: a thin wall has room for small spheres only."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,20 +33,34 @@ class MeshCover:
     """Share of the area that is proved to be covered."""
     parts: PartCounts
     warnings: tuple[str, ...]
+    only_hulls: bool = False
+    """Whether the parts' hulls are covered, closed ones as well; protrusion is measured from them then."""
 
 
 def cover_mesh(path: Path, scale: tuple[float, float, float], protrusion_m: float) -> MeshCover:
     """Spheres that cover the surface of a mesh and protrude no more than is allowed.
+
+    Where that takes more than `MAX_SPHERES`, the parts' convex hulls are covered instead, if that takes fewer.
 
     Raises:
         FileError: for a file that is no mesh, or too large.
         InputError: without trimesh, and for a surface too large for spheres that protrude so little.
     """
     triangles, warnings = read_mesh(path, scale)
-    solid, parts = make_solid(triangles, convex_hull)
+    cover = _cover_triangles(triangles, protrusion_m, warnings, only_hulls=False)
+    if len(cover.rows.radii) <= MAX_SPHERES:
+        return cover
+    coarse = _cover_triangles(triangles, protrusion_m, warnings, only_hulls=True)
+    return coarse if len(coarse.rows.radii) < len(cover.rows.radii) else cover
+
+
+def _cover_triangles(
+    triangles: Floats, protrusion_m: float, warnings: tuple[str, ...], *, only_hulls: bool
+) -> MeshCover:
+    solid, parts = make_solid(triangles, convex_hull, only_hulls=only_hulls)
     rows = cover_solid(solid, protrusion_m)
     certificate = certify(solid.surface.corners, rows.centres, rows.radii)
-    return MeshCover(rows, certificate.area_m2, certificate.covered, parts, warnings)
+    return MeshCover(rows, certificate.area_m2, certificate.covered, parts, warnings, only_hulls)
 
 
 def cover_solid(solid: Solid, protrusion_m: float) -> Rows:
@@ -57,11 +71,12 @@ def cover_solid(solid: Solid, protrusion_m: float) -> Rows:
     covers = list(candidates.covers)
     while True:
         chosen = cover_greedily(covers, len(patches.centres))
-        chosen = improve(covers, chosen, candidates.centres, EXCHANGES)
+        if len(chosen) <= 1.5 * MAX_SPHERES:
+            chosen = improve(covers, chosen, candidates.centres, EXCHANGES)
         wrong = [index for index in chosen if _is_too_large(candidates, index, solid, protrusion_m)]
         if not wrong:
             rows = Rows(candidates.centres[chosen], candidates.radii[chosen], protrusion_m)
-            return drop_needless(solid.surface.corners, size, rows) if len(chosen) <= MAX_PROVED else rows
+            return drop_needless(solid.surface.corners, size, rows) if len(chosen) <= MAX_SPHERES else rows
         for index in wrong:
             covers[index] = covers[index][:0]
 

@@ -8,6 +8,8 @@ from ikde.kernels.arrays import Floats, Ints
 
 ROUND = 200_000
 """What an exchange costs beside what it counts, in such counts."""
+SHARE = 0.5
+"""Rows that hold fewer patches than this share of what the chosen ones hold are not tried."""
 
 
 def cover_greedily(covers: list[Ints], count: int) -> list[int]:
@@ -56,8 +58,10 @@ class _Exchange:
 
     def __init__(self, covers: list[Ints], chosen: list[int], work: int) -> None:
         self.covers, self.chosen, self.work = covers, list(chosen), work
-        patches = np.concatenate(covers)
-        rows = np.repeat(np.arange(len(covers)), [len(row) for row in covers])
+        least = SHARE * np.median([len(covers[i]) for i in chosen])
+        large = sorted({*(i for i, row in enumerate(covers) if len(row) >= least), *chosen})
+        patches = np.concatenate([covers[i] for i in large])
+        rows = np.repeat(large, [len(covers[i]) for i in large])
         ends = np.cumsum(np.bincount(patches))
         self.holders = np.split(rows[np.argsort(patches, kind="stable")], ends[:-1])
         self.times = np.bincount(np.concatenate([covers[i] for i in chosen]), minlength=len(ends))

@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.spheres.solid import Solid, Triangles
+from ikde.spheres.union import outer_triangles
 
 MERGED = 1e-8
 """Corners closer than this share of a body's size along every axis are one: files round their numbers."""
@@ -21,32 +22,34 @@ class PartCounts:
 
     closed: int
     hulls: int
-    """Open ones of which the convex hull is taken."""
+    """Those of which the convex hull is taken: open ones, or all."""
     sheets: int
     """Open ones that lie in a plane, so that they have no hull either."""
 
 
-def make_solid(triangles: Floats, hull: Hull) -> tuple[Solid, PartCounts]:
+def make_solid(triangles: Floats, hull: Hull, *, only_hulls: bool = False) -> tuple[Solid, PartCounts]:
     """The solid that triangles [T, 3, 3] in m enclose, one connected part after the other, and what became of them.
 
     A part is closed if its faces pass each of their edges as often in one direction as in the other. An open part is
-    exchanged for its convex hull; one in a plane stays as it is, without an inside.
+    exchanged for its convex hull (with `only_hulls` each part is); one in a plane stays as it is, without an inside.
     """
     corners, faces = merge_corners(triangles)
     part = connect(faces)
-    pieces: list[Floats] = []
-    closed: list[bool] = []
-    counts = {"closed": 0, "hulls": 0, "sheets": 0}
+    closed: list[Floats] = []
+    sheets: list[Floats] = []
+    hulls = 0
     for index in range(int(part.max()) + 1):
         own = faces[part == index]
-        mesh, kind = corners[own], "closed"
-        if not is_closed(own):
-            around = hull(corners[np.unique(own)])
-            mesh, kind = (mesh, "sheets") if around is None else (around, "hulls")
-        counts[kind] += 1
-        pieces.append(turn_outwards(mesh) if kind != "sheets" else mesh)
-        closed.extend([kind != "sheets"] * len(mesh))
-    return Solid(Triangles.of(np.concatenate(pieces)), np.array(closed)), PartCounts(**counts)
+        if is_closed(own) and not only_hulls:
+            closed.append(turn_outwards(corners[own]))
+        elif (around := hull(corners[np.unique(own)])) is not None:
+            closed.append(turn_outwards(around))
+            hulls += 1
+        else:
+            sheets.append(corners[own])
+    inner = np.concatenate(closed) if closed else np.empty((0, 3, 3))
+    surface = np.concatenate([*outer_triangles(closed), *sheets])
+    return Solid(Triangles.of(surface), Triangles.of(inner)), PartCounts(len(closed) - hulls, hulls, len(sheets))
 
 
 def merge_corners(triangles: Floats) -> tuple[Floats, Ints]:

@@ -74,16 +74,14 @@ def _dot(a: Floats, b: Floats) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solid:
-    """Parts that enclose a volume, their normals outwards, and sheets that enclose none."""
+    """A body: all that closed parts enclose, and sheets, which enclose nothing."""
 
     surface: Triangles
-    is_closed: Bools
-    """[T] False for the triangles of sheets."""
+    """All of the body's surface, and of the parts what is not proved to lie inside another one."""
+    parts: Triangles
+    """Of the closed parts, their normals outwards."""
 
     def depth(self, point: Floats) -> float:
-        """How deep a point [3] is inside in m, at least; negative outside, where it is the distance.
-
-        Surfaces inside another part count as well: where parts overlap, this is less than the true depth.
-        """
+        """How deep a point [3] is inside in m, at least; negative outside, where it is the distance."""
         distance = float(self.surface.distances(point[None])[0])
-        return distance if self.surface.take(self.is_closed).winding(point) > 0.5 else -distance
+        return distance if self.parts.winding(point) > 0.5 else -distance

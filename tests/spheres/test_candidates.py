@@ -21,7 +21,7 @@ def test_no_more_points_than_allowed() -> None:
 
 
 def test_a_sheet_has_no_points_inside() -> None:
-    sheet = Solid(Triangles.of(box(1, 1, 1)), np.zeros(12, dtype=np.bool_))
+    sheet = Solid(Triangles.of(box(1, 1, 1)), Triangles.of(np.empty((0, 3, 3))))
     assert grid_inside(sheet, 0.02, 1000).shape == (0, 3)
 
 

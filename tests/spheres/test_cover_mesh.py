@@ -95,3 +95,15 @@ def test_points_in_a_plane_have_no_hull() -> None:
     hull = convex_hull(np.concatenate([flat, flat - (0, 0, 1)]))
     assert hull is not None
     assert hull.shape == (12, 3, 3)
+
+
+def test_where_a_mesh_takes_too_many_spheres_its_hull_is_covered(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("trimesh")
+    path = write_stl(tmp_path / "l.stl", BODIES["L"])
+    monkeypatch.setattr(module, "EXCHANGES", 1_000_000)
+    few = cover_mesh(path, (1.0, 1.0, 1.0), 0.04)
+    monkeypatch.setattr(module, "MAX_SPHERES", len(few.rows.radii) - 1)
+    again = cover_mesh(path, (1.0, 1.0, 1.0), 0.04)
+    assert not few.only_hulls
+    assert again.only_hulls == (len(again.rows.radii) < len(few.rows.radii))
+    assert again.covered == 1.0

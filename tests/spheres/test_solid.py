@@ -36,7 +36,7 @@ def test_the_notch_of_an_l_is_outside(point: tuple[float, ...], depth: float) ->
 
 
 def test_a_sheet_has_no_inside() -> None:
-    sheet = Solid(Triangles.of(box(1, 1, 1)), np.zeros(12, dtype=np.bool_))
+    sheet = Solid(Triangles.of(box(1, 1, 1)), Triangles.of(np.empty((0, 3, 3))))
     assert sheet.depth(np.array([0.5, 0.5, 0.5])) == pytest.approx(-0.5)
 
 
