@@ -18,7 +18,7 @@ from ikde.cli.options import (
     check_environment,
     read_robot,
 )
-from ikde.cli.output import layout, print_json, print_line, print_result, print_written
+from ikde.cli.output import layout, print_json, print_line, print_note, print_result, print_written
 from ikde.cli.robots_compose import compose_robot
 from ikde.cli.robots_import import import_robot
 
@@ -140,25 +140,37 @@ def export(
     urdf: Annotated[bool, typer.Option("--urdf", help="Write URDF.")] = False,
     srdf: Annotated[bool, typer.Option("--srdf", help="Write SRDF: pairs that are left out.")] = False,
     mjcf: Annotated[bool, typer.Option("--mjcf", help="Write MJCF, MuJoCo's format.")] = False,
+    curobo: Annotated[
+        bool, typer.Option("--curobo", help="Write cuRobo's robot file: spheres, ignored pairs.")
+    ] = False,
+    xrdf: Annotated[bool, typer.Option("--xrdf", help="Write XRDF: spheres, ignored pairs.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Where it goes (default: printed).")] = None,
     detector: DetectorOption = None,
 ) -> None:
     """Write a robot for other programs: frames, joints, limits, and the detector's spheres as collision shapes.
 
+    What cuRobo's file and XRDF cannot hold is listed, on the screen and in the file.
+
     Example: ikde robots export qiao2021 --urdf --out qiao2021.urdf
     """
     from ikde.errors import InputError
     from ikde.io.mjcf import format_mjcf
+    from ikde.io.sphere_writers import format_curobo, format_xrdf, list_unheld
     from ikde.io.srdf_writer import format_srdf
     from ikde.io.urdf import format_urdf
     from ikde.io.xml_file import write_xml
+    from ikde.model.collision_model import CollisionModel
 
-    wanted = [form for form, asked in ((format_urdf, urdf), (format_srdf, srdf), (format_mjcf, mjcf)) if asked]
+    forms = {format_urdf: urdf, format_srdf: srdf, format_mjcf: mjcf, format_curobo: curobo, format_xrdf: xrdf}
+    wanted = [form for form, is_asked in forms.items() if is_asked]
     if len(wanted) != 1:
-        raise InputError(f"expected one of --urdf, --srdf and --mjcf, got {len(wanted) or 'none'}")
-    text = wanted[0](read_robot(name), collision=detector)
+        raise InputError(f"expected one of --urdf, --srdf, --mjcf, --curobo and --xrdf, got {len(wanted) or 'none'}")
+    robot = read_robot(name)
+    text = wanted[0](robot, collision=detector)
     if out is None:
         print_result(text)
     else:
         write_xml(out, text)
         print_written(out)
+    if curobo or xrdf:
+        print_note(f"ikde: not held: {'; '.join(list_unheld(CollisionModel.of(robot, detector)))}")

@@ -43,7 +43,13 @@ def import_robot(
     package_path: Annotated[
         list[Path] | None, typer.Option(metavar="FOLDER", help="A further folder with meshes; as often as you like.")
     ] = None,
-    spheres: Annotated[bool, typer.Option(help="Cover the links with spheres, or check no collisions.")] = True,
+    spheres: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Take the links' spheres from cuRobo's robot file, an XRDF or an SRDF."),
+    ] = None,
+    no_spheres: Annotated[
+        bool, typer.Option("--no-spheres", help="Make no spheres: no collisions are checked.")
+    ] = False,
     protrusion: Annotated[
         float, typer.Option(metavar="MM", help="How far spheres may stand out of shapes, in mm.")
     ] = 20.0,
@@ -56,6 +62,7 @@ def import_robot(
 
     Example: ikde robots import arm.urdf --tool gripper_link --base omni -o arm.yaml
     """
+    from ikde.errors import InputError
     from ikde.io.robot_writer import write_robot
     from ikde.io.robots import is_file_name
     from ikde.io.urdf_import.imported import list_notes
@@ -65,6 +72,8 @@ def import_robot(
     from ikde.report.numbers import Units
     from ikde.report.robot_import import format_import, import_json
 
+    if spheres is not None and no_spheres:
+        raise InputError("expected one of --spheres and --no-spheres, got both")
     is_name = not is_file_name(file) and not Path(file).exists()
     path, folders = find_installed(file) if is_name else (Path(file), ())
     imported = read_urdf(
@@ -76,7 +85,7 @@ def import_robot(
             hold=read_holds(hold or []),
             srdf=srdf,
             package_paths=(*(package_path or []), *folders),
-            spheres=spheres,
+            spheres=spheres or not no_spheres,
             protrusion_m=protrusion / 1000.0,
             mesh_scale=mesh_scale,
         ),

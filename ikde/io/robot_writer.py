@@ -1,7 +1,5 @@
 """A robot as its YAML file, m and rad: what `load_robot` reads back is equal, rotations to the last digits."""
 
-import json
-import re
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -12,12 +10,11 @@ import numpy as np
 from ikde.errors import printable
 from ikde.io.urdf import rpy_from_rotation
 from ikde.io.xml_file import write_xml
+from ikde.io.yaml_text import format_flow
 from ikde.model.robot import Frame, FreeSpheres, Inertia, Joint, Provenance, Robot, Spheres
 from ikde.model.validate import NON_ADJACENT
 
 Entry = dict[str, Any]
-_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
-_NO_WORDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # to some readers of YAML
 _AS_SPHERES = "spheres"
 
 
@@ -46,10 +43,13 @@ def format_robot_file(robot: Robot, notes: Iterable[str] = ()) -> str:
     }
     texts = {key: _section(key, {n: sources.add(e, key, n) for n, e in own.items()}) for key, own in sections.items()}
     head = {"name": robot.name, "title": robot.title, "convention": robot.convention}
-    lines = [*(f"# {printable(note)}" for note in notes), *(f"{key}: {_flow(value)}" for key, value in head.items())]
-    below = [*texts["joints"], *texts["frames"], "", f"tool: {_flow(robot.tool)}", *_base_lines(robot, sources)]
+    lines = [
+        *(f"# {printable(note)}" for note in notes),
+        *(f"{key}: {format_flow(value)}" for key, value in head.items()),
+    ]
+    below = [*texts["joints"], *texts["frames"], "", f"tool: {format_flow(robot.tool)}", *_base_lines(robot, sources)]
     below += [*texts["conventions"], *_sphere_lines(robot, sources), *_adjacent_lines(robot, sources), *texts["pairs"]]
-    below += [*texts["detectors"], "", f"default_detector: {_flow(robot.default_detector)}", *texts["inertias"]]
+    below += [*texts["detectors"], "", f"default_detector: {format_flow(robot.default_detector)}", *texts["inertias"]]
     return "\n".join([*lines, *_section("sources", sources.entries), *below]) + "\n"
 
 
@@ -117,8 +117,10 @@ def _group(pairs: Iterable[tuple[str, str, str | None]]) -> Entry:
 def _sphere_lines(robot: Robot, sources: _Sources) -> list[str]:
     lines = ["", "spheres:"] if robot.approximations else []
     for name, rows in robot.approximations.items():
-        lines.append(f"  {_flow(name)}:{'' if rows else ' []'}")
-        lines += [f"    - {_flow(sources.add(_row_entry(row), _AS_SPHERES, name, k))}" for k, row in enumerate(rows)]
+        lines.append(f"  {format_flow(name)}:{'' if rows else ' []'}")
+        lines += [
+            f"    - {format_flow(sources.add(_row_entry(row), _AS_SPHERES, name, k))}" for k, row in enumerate(rows)
+        ]
     return lines
 
 
@@ -127,31 +129,22 @@ def _adjacent_lines(robot: Robot, sources: _Sources) -> list[str]:
         return []
     grouped = _group((pair.a, pair.b, pair.reason) for pair in robot.adjacent)
     source = sources.add({}, "adjacent")
-    lines = ["", "adjacent:", *(f"  {key}: {_flow(value)}" for key, value in source.items()), "  pairs:"]
-    return [*lines, *(f"    {_flow(a)}: {_flow(others)}" for a, others in grouped.items())]
+    lines = ["", "adjacent:", *(f"  {key}: {format_flow(value)}" for key, value in source.items()), "  pairs:"]
+    return [*lines, *(f"    {format_flow(a)}: {format_flow(others)}" for a, others in grouped.items())]
 
 
 def _base_lines(robot: Robot, sources: _Sources) -> list[str]:
     lines = [f"drive: {robot.drive}"] if robot.drive else []
     if robot.wheels:
         entry = {"radius": robot.wheels.radius_m, "half_track": robot.wheels.half_track_m}
-        lines.append(f"wheels: {_flow(sources.add(entry, 'wheels'))}")
+        lines.append(f"wheels: {format_flow(sources.add(entry, 'wheels'))}")
     return lines
 
 
 def _section(key: str, entries: Mapping[str, Entry]) -> list[str]:
     """A key with its entries, a line each; nothing for none."""
-    return ["", f"{key}:", *(f"  {_flow(name)}: {_flow(entry)}" for name, entry in entries.items())] if entries else []
-
-
-def _flow(value: Any) -> str:
-    """Plain data as YAML in one line."""
-    if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{_flow(key)}: {_flow(item)}' for key, item in value.items())}}}"
-    if isinstance(value, list):
-        return f"[{', '.join(map(_flow, value))}]"
-    if isinstance(value, float):
-        return repr(value + 0.0).removesuffix(".0")
-    if isinstance(value, str):
-        return value if _WORD.fullmatch(value) and value.lower() not in _NO_WORDS else json.dumps(value)
-    return str(value)
+    return (
+        ["", f"{key}:", *(f"  {format_flow(name)}: {format_flow(entry)}" for name, entry in entries.items())]
+        if entries
+        else []
+    )

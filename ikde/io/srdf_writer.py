@@ -2,7 +2,7 @@
 
 import xml.etree.ElementTree as ET
 
-from ikde.io.xml_file import describe_collision, format_document, format_numbers, name_components
+from ikde.io.xml_file import describe_collision, format_document, format_numbers, list_components, name_components
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 
@@ -13,8 +13,8 @@ def format_srdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     """The text of an SRDF file that belongs to what `format_urdf` writes for the same detector.
 
     The group `ikde` holds every joint of the robot, its state `home` their home in m and rad. Each pair of components
-    that the detector does not compare is a `disable_collisions` of their links with the reason. The safe distance is
-    in the comment only.
+    that the detector does not compare is a `disable_collisions` of their links with the reason; its spheres are the
+    `link_sphere_approximation` of its link. The safe distance is in the comment only.
 
     Args:
         robot: the robot.
@@ -30,6 +30,11 @@ def format_srdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     for joint in robot.joints:
         ET.SubElement(group, "joint", name=joint.name)
         ET.SubElement(state, "joint", name=joint.name, value=format_numbers([joint.home]))
+    for component, spheres in list_components(model).items():
+        approximation = ET.SubElement(root, "link_sphere_approximation", link=links[component])
+        for sphere in spheres:
+            center, radius = format_numbers(sphere.p_body_sphere), format_numbers([sphere.radius_m])
+            ET.SubElement(approximation, "sphere", center=center, radius=radius)
     for pair in model.left_out_pairs:
         ET.SubElement(root, "disable_collisions", link1=links[pair.a], link2=links[pair.b], reason=pair.reason)
     return format_document(root, (describe_collision(model), f"The tool is the link {robot.tool!r}."))

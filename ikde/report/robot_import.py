@@ -92,7 +92,7 @@ def _sphere_table(imported: ImportedUrdf, units: Units) -> Any:
     table = make_table(*heads, title=f"spheres: {total:,} on {count_of(len(imported.links), 'link')}")
     for link in imported.links:
         covered = "" if link.covered is None else f"{100.0 * link.covered:.2f} %"
-        out = f"{link.protrusion_m / LENGTHS_M[units.length]:.3g}"
+        out = "" if link.protrusion_m is None else f"{link.protrusion_m / LENGTHS_M[units.length]:.3g}"
         table.add_row(plain(link.link), link.shapes, str(link.spheres), covered, out, plain(link.how))
     return table
 

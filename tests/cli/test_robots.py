@@ -218,8 +218,8 @@ def test_a_robot_file_is_exported(cli, tmp_path):
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        ("ur5", "expected one of --urdf, --srdf and --mjcf, got none"),
-        ("ur5 --urdf --mjcf", "expected one of --urdf, --srdf and --mjcf, got 2"),
+        ("ur5", "expected one of --urdf, --srdf, --mjcf, --curobo and --xrdf, got none"),
+        ("ur5 --urdf --mjcf", "expected one of --urdf, --srdf, --mjcf, --curobo and --xrdf, got 2"),
         ("ur --urdf", "did you mean 'ur5'"),
         ("nope.yaml --urdf", "no such file"),
         ("--urdf", "Missing argument"),

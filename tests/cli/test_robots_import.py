@@ -66,3 +66,21 @@ def test_a_name_is_looked_for_in_installed_packages(cli, tmp_path, monkeypatch):
     path = write(tmp_path, ARM)
     monkeypatch.setattr("ikde.io.urdf_import.installed.find_installed", lambda name: (path, (tmp_path,)))
     assert cli("robots", "import", "arm", "--json").data["file"] == str(path)
+
+
+def test_spheres_come_from_a_file_and_go_to_one(cli, refuse, tmp_path):
+    path, out, curobo = write(tmp_path, ARM), tmp_path / "arm.yaml", tmp_path / "curobo.yml"
+    assert cli("robots", "import", path, "-o", out).code == 0
+    written = cli("robots", "export", out, "--curobo", "--out", curobo)
+    assert (written.code, written.out) == (0, f"wrote {curobo}\n")
+    assert written.err.startswith("ikde: not held: joint limits")
+    curobo.write_text(curobo.read_text().replace("upper:", "uper:"), encoding="utf-8")
+    outcome = cli("robots", "import", path, "--spheres", curobo, "--json")
+    assert [(own["link"], own["how"]) for own in outcome.data["spheres"]] == [
+        ("base_link", "as in curobo.yml (cuRobo)"),
+        ("fore", "as in curobo.yml (cuRobo)"),
+    ]
+    assert "curobo.yml has spheres for links that there are not: uper" in outcome.data["warnings"]
+    assert "which are not checked: upper" in cli("robots", "import", path, "--spheres", curobo).out
+    both = refuse("robots", "import", path, "--spheres", curobo, "--no-spheres")
+    assert "expected one of --spheres and --no-spheres" in both

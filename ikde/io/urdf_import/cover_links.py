@@ -9,7 +9,7 @@ import numpy as np
 from ikde.errors import FileError, InputError
 from ikde.io.urdf_import.chain import LinkTree
 from ikde.io.urdf_import.description import Description, UrdfShape
-from ikde.io.urdf_import.imported import CoveredLink
+from ikde.io.urdf_import.imported import AS_THEY_ARE, CoveredLink
 from ikde.io.urdf_import.meshes import find_mesh
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.kernels.arrays import Floats
@@ -68,7 +68,7 @@ def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
     centres = np.array([shape.T_link_shape[:3, 3] for shape in own]).reshape(-1, 3)
     radii = np.array([shape.size[0] for shape in own])
     others = [shape for shape in shapes if shape.kind != "sphere"]
-    covered, protrusion, how = None, 0.0, "as they are"
+    covered, protrusion, how = None, 0.0, AS_THEY_ARE
     warnings: tuple[str, ...] = ()
     if others:
         cover = cover_shapes(others, protrusion_m)

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from ikde.io.urdf_import.held import HeldJoint
 from ikde.model.robot import Robot
 
+AS_THEY_ARE = "as they are"
+"""How spheres are made of collision elements that are spheres."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoveredLink:
@@ -16,8 +19,8 @@ class CoveredLink:
     spheres: int
     covered: float | None
     """Share of the surface that lies inside spheres by proof; None: the shapes are spheres themselves."""
-    protrusion_m: float
-    """How far they stand out of the shapes at most."""
+    protrusion_m: float | None
+    """How far they stand out of the shapes at most; None: not checked."""
     how: str
 
 
@@ -47,4 +50,15 @@ def list_notes(imported: ImportedUrdf) -> list[str]:
     """Lines for the top of the robot's file: what a reader of it cannot see in it."""
     held = [f"frozen: {joint.name} ({joint.kind}) at {joint.value:.9g}: {joint.reason}" for joint in imported.held]
     warnings = [f"warning: {warning}" for warning in imported.warnings]
-    return [f"Imported from {imported.file}; m and rad.", *held, f"home: {imported.home}", *warnings]
+    made = [f"spheres of {describe_cover(link)}" for link in imported.links if link.how != AS_THEY_ARE]
+    return [f"Imported from {imported.file}; m and rad.", *held, f"home: {imported.home}", *made, *warnings]
+
+
+def describe_cover(link: CoveredLink) -> str:
+    """A line of a robot's file: what was covered how, and what is known of it."""
+    parts = [f"{link.link}: {link.spheres} for {link.shapes}, {link.how}"]
+    if link.covered is not None:
+        parts.append(f"{100.0 * link.covered:.6g} % proved to be covered")
+    if link.protrusion_m:
+        parts.append(f"at most {link.protrusion_m * 1e3:.3g} mm out")
+    return "; ".join(parts)

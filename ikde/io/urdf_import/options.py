@@ -30,8 +30,8 @@ class ImportOptions:
     """Folders that meshes may lie in, beside the file's own."""
     mesh_scale: float = 1.0
     """What all meshes are scaled by beside what the file says: 0.001 for meshes in mm."""
-    spheres: bool = True
-    """Whether links get spheres."""
+    spheres: bool | Path = True
+    """Whether links get spheres; a file (cuRobo's, XRDF or SRDF): those that it has for links, and no others."""
     protrusion_m: float = 0.02
     """How far spheres may stand out of the shapes that they cover."""
 

@@ -5,12 +5,14 @@ from os import PathLike
 from pathlib import Path
 
 from ikde.errors import FileError, InputError
+from ikde.io.sphere_files import read_spheres
 from ikde.io.srdf import Srdf, read_srdf
 from ikde.io.urdf_import.assemble import add_spheres, assemble, free_home, set_home
-from ikde.io.urdf_import.chain import choose_tool, find_tree
-from ikde.io.urdf_import.cover_links import cover_links
+from ikde.io.urdf_import.chain import LinkTree, choose_tool, find_tree
+from ikde.io.urdf_import.cover_links import LinkSpheres, cover_links
 from ikde.io.urdf_import.description import Description, read_description
 from ikde.io.urdf_import.frames import build_skeleton
+from ikde.io.urdf_import.given_spheres import give_spheres
 from ikde.io.urdf_import.held import HeldJoint, find_held
 from ikde.io.urdf_import.imported import ImportedUrdf
 from ikde.io.urdf_import.options import Base, ImportOptions
@@ -23,7 +25,7 @@ def import_urdf(
     tool: str | None = None,
     base: Base = "urdf",
     srdf: str | PathLike[str] | None = None,
-    spheres: bool = True,
+    spheres: bool | str | PathLike[str] = True,
     hold: Mapping[str, float] | None = None,
     package_paths: Sequence[str | PathLike[str]] = (),
     protrusion_m: float = 0.02,
@@ -39,7 +41,8 @@ def import_urdf(
         base: `urdf` takes the file as it is; `fixed` holds a floating or planar joint of the root; `omni` and
             `differential` put x, y (within 100 m) and a continuous yaw under the root.
         srdf: an SRDF, for the home configuration and pairs of links that need no test.
-        spheres: whether links get spheres; without, self-collision is not checked.
+        spheres: whether links get spheres; without, self-collision is not checked. A file of cuRobo's, an XRDF or SRDF:
+            the spheres that it has, and no others.
         hold: joints that stay where they are, m or rad; joints off the chain to the tool stay anyway.
         package_paths: folders that meshes may lie in, beside the file's own.
         protrusion_m: how far spheres may stand out of the shapes that they cover.
@@ -55,7 +58,7 @@ def import_urdf(
         hold=hold or {},
         srdf=None if srdf is None else Path(srdf),
         package_paths=tuple(map(Path, package_paths)),
-        spheres=spheres,
+        spheres=spheres if isinstance(spheres, bool) else Path(spheres),
         protrusion_m=protrusion_m,
         mesh_scale=mesh_scale,
     )
@@ -83,7 +86,7 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     skeleton = build_skeleton(description, tree, tool, options, held)
     if not skeleton.joints:
         raise FileError(description.path, f"no joint moves the tool {tool!r}; name another link or a base", ("tool",))
-    covered = cover_links(description, tree, options) if options.spheres else {}
+    covered, given = _find_spheres(description, tree, options)
     try:
         robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
         robot = set_home(robot, values)
@@ -108,9 +111,20 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
             *skeleton.warnings,
             *_list_followers(description, held),
             *(warning for own in covered.values() for warning in own.warnings),
+            *given,
             *notes,
         ),
     )
+
+
+def _find_spheres(
+    description: Description, tree: LinkTree, options: ImportOptions
+) -> tuple[dict[str, LinkSpheres], list[str]]:
+    """Spheres of links, made or given, and what is worth a warning of a file that gives them."""
+    if isinstance(options.spheres, Path):
+        links = {name: bool(description.links[name].shapes) for name in tree.order}
+        return give_spheres(read_spheres(options.spheres), links)
+    return (cover_links(description, tree, options) if options.spheres else {}), []
 
 
 def _list_followers(description: Description, held: Mapping[str, HeldJoint]) -> list[str]:
