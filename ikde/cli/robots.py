@@ -21,6 +21,7 @@ from ikde.cli.options import (
 from ikde.cli.output import layout, print_json, print_line, print_note, print_result, print_written
 from ikde.cli.robots_compose import compose_robot
 from ikde.cli.robots_import import import_robot
+from ikde.cli.robots_spheres import exchange_robot_spheres
 
 if TYPE_CHECKING:
     from ikde.model.collision_model import CollisionModel
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 robots = typer.Typer(cls=Group, help="The robots that ship with ikde, and files of your own.", no_args_is_help=False)
 robots.command("import", cls=Command)(import_robot)
 robots.command("compose", cls=Command)(compose_robot)
+robots.command("spheres", cls=Command)(exchange_robot_spheres)
 
 
 @robots.callback(invoke_without_command=True)

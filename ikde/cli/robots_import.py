@@ -64,9 +64,8 @@ def import_robot(
     """
     from ikde.errors import InputError
     from ikde.io.robot_writer import write_robot
-    from ikde.io.robots import is_file_name
+    from ikde.io.robots import find_urdf
     from ikde.io.urdf_import.imported import list_notes
-    from ikde.io.urdf_import.installed import find_installed
     from ikde.io.urdf_import.options import ImportOptions, read_holds
     from ikde.io.urdf_import.read_urdf import read_urdf
     from ikde.report.numbers import Units
@@ -74,8 +73,7 @@ def import_robot(
 
     if spheres is not None and no_spheres:
         raise InputError("expected one of --spheres and --no-spheres, got both")
-    is_name = not is_file_name(file) and not Path(file).exists()
-    path, folders = find_installed(file) if is_name else (Path(file), ())
+    path, folders = find_urdf(file)
     imported = read_urdf(
         path,
         ImportOptions(

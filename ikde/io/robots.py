@@ -26,6 +26,19 @@ def is_urdf(path: Path) -> bool:
     return path.suffix.lower() in OF_URDF
 
 
+def find_urdf(file: str) -> tuple[Path, tuple[Path, ...]]:
+    """A URDF by its path or, if there is no such file, by the name of an installed one; and folders of its meshes.
+
+    Raises:
+        InputError: for a name that no installed URDF has, with the nearest.
+    """
+    if is_file_name(file) or Path(file).exists():
+        return Path(file), ()
+    from ikde.io.urdf_import.installed import find_installed
+
+    return find_installed(file)
+
+
 def robot_path(name_or_path: str | Path) -> Path:
     """The file behind a name or a path; raises `InputError` for an unknown name."""
     text = str(name_or_path)

@@ -1,11 +1,12 @@
 """What an import made of a URDF: joints, what is frozen, spheres, pairs, home and warnings, as text and as JSON."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.urdf_import.held import HeldJoint
-from ikde.io.urdf_import.imported import ImportedUrdf
+from ikde.io.urdf_import.imported import CoveredLink, ImportedUrdf
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Joint
 from ikde.report.numbers import Units, count_of
@@ -49,7 +50,7 @@ def format_import(imported: ImportedUrdf, units: Units, *, color: bool = False, 
     head = f"[bold]{plain(robot.name)}[/] from {plain(imported.file)}: tool {plain(robot.tool)}{chosen}"
     tables = [_joint_table(imported, units)]
     tables += [_held_table(imported, units)] if imported.held else []
-    tables += [_sphere_table(imported, units)] if imported.links else []
+    tables += [sphere_table(imported.links, units)] if imported.links else []
     collision = CollisionModel.of(robot)
     tables += [_pair_table(collision)] if _list_told(collision) else []
     lines = [f"home: {plain(imported.home)}{_say_free(imported.is_home_free)}"]
@@ -86,11 +87,12 @@ def _format_held(held: HeldJoint, units: Units) -> str:
     return f"{held.value / scale:.5g} {unit}"
 
 
-def _sphere_table(imported: ImportedUrdf, units: Units) -> Any:
-    total = sum(link.spheres for link in imported.links)
+def sphere_table(links: Sequence[CoveredLink], units: Units) -> Any:
+    """A line a link: what was covered, with how many spheres, and what is proved of them."""
+    total = sum(link.spheres for link in links)
     heads = ("link", "shapes", ">spheres", ">covered", f">stand out [{units.length}]", "how")
-    table = make_table(*heads, title=f"spheres: {total:,} on {count_of(len(imported.links), 'link')}")
-    for link in imported.links:
+    table = make_table(*heads, title=f"spheres: {total:,} on {count_of(len(links), 'link')}")
+    for link in links:
         covered = "" if link.covered is None else f"{100.0 * link.covered:.2f} %"
         out = "" if link.protrusion_m is None else f"{link.protrusion_m / LENGTHS_M[units.length]:.3g}"
         table.add_row(plain(link.link), link.shapes, str(link.spheres), covered, out, plain(link.how))

@@ -1,6 +1,6 @@
 """Spheres that cover a mesh: chosen greedily among many, and certified afterwards."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,13 +34,14 @@ class MeshCover:
     parts: PartCounts
     warnings: tuple[str, ...]
     only_hulls: bool = False
-    """Whether the parts' hulls are covered, closed ones as well; protrusion is measured from them then."""
+    """Whether the parts' hulls are covered, closed ones as well; protrusion is that from the parts all the same."""
 
 
 def cover_mesh(path: Path, scale: tuple[float, float, float], protrusion_m: float) -> MeshCover:
     """Spheres that cover the surface of a mesh and protrude no more than is allowed.
 
-    Where that takes more than `MAX_SPHERES`, the parts' convex hulls are covered instead, if that takes fewer.
+    Where that takes more than `MAX_SPHERES`, the parts' convex hulls are covered instead, if that takes fewer. Spheres
+    in their hollows protrude further than is allowed; how far at most is in the result.
 
     Raises:
         FileError: for a file that is no mesh, or too large.
@@ -51,7 +52,11 @@ def cover_mesh(path: Path, scale: tuple[float, float, float], protrusion_m: floa
     if len(cover.rows.radii) <= MAX_SPHERES:
         return cover
     coarse = _cover_triangles(triangles, protrusion_m, warnings, only_hulls=True)
-    return coarse if len(coarse.rows.radii) < len(cover.rows.radii) else cover
+    if len(coarse.rows.radii) >= len(cover.rows.radii):
+        return cover
+    own, _ = make_solid(triangles, convex_hull)
+    out_m = bound_protrusion(own, coarse.rows.centres, coarse.rows.radii)
+    return replace(coarse, rows=coarse.rows._replace(protrusion_m=out_m))
 
 
 def _cover_triangles(
@@ -99,6 +104,15 @@ def drop_needless(corners: Floats, size_m: float, rows: Rows) -> Rows:
         if not holds[keep].any(axis=0).all() or certify(corners, rows.centres[keep], rows.radii[keep]).covered < 1.0:
             keep[index] = True
     return Rows(rows.centres[keep], rows.radii[keep], rows.protrusion_m)
+
+
+def bound_protrusion(solid: Solid, centres: Floats, radii: Floats) -> float:
+    """How far spheres [S, 3] and [S] stand out of a solid at most, in m.
+
+    The ball as large as a centre is deep lies in the solid, so the sphere stands out by the rest of its radius at most.
+    """
+    depths = [solid.depth(centre) for centre in centres]
+    return max(0.0, float((radii - depths).max()))
 
 
 def _is_too_large(candidates: Candidates, index: int, solid: Solid, protrusion_m: float) -> bool:

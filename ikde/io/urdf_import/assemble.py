@@ -74,7 +74,7 @@ def add_spheres(
         return check_robot(draft), ["no link has spheres: self-collision is not checked"]
     adjacent, notes = _read_disabled(skeleton, {own.component for own in free}, srdf)
     draft = replace(draft, approximations={SPHERES: free}, adjacent=adjacent)
-    robot, more = _leave_out_touching(draft)
+    robot, more = leave_out_touching(draft, Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT))
     return robot, notes + more
 
 
@@ -91,12 +91,17 @@ def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tu
     )
 
 
-def _leave_out_touching(draft: Robot) -> tuple[Robot, list[str]]:
-    """The robot, checked, with a detector of all pairs that do not always touch; and what is worth a warning."""
+def leave_out_touching(draft: Robot, detector: Detector) -> tuple[Robot, list[str]]:
+    """The robot, checked, with a detector of all pairs that do not always touch; and what is worth a warning.
+
+    Args:
+        draft: a robot without that detector, whose pairs that touch are not among its adjacent ones yet.
+        detector: of all pairs that are not adjacent; it becomes the default.
+    """
     notes: list[str] = []
     while pairs := check_robot(draft).pair_lists[NON_ADJACENT]:
-        detector = Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT)
-        robot = check_robot(replace(draft, detectors={SPHERES: detector}, default_detector=SPHERES))
+        detectors = {**draft.detectors, detector.name: detector}
+        robot = check_robot(replace(draft, detectors=detectors, default_detector=detector.name))
         touching = find_always_touching(CollisionModel.of(robot))
         if touching is None:
             return robot, notes

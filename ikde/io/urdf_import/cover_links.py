@@ -34,17 +34,23 @@ PLURALS = {"box": "boxes", "mesh": "meshes"}
 
 def cover_links(description: Description, tree: LinkTree, options: ImportOptions) -> dict[str, LinkSpheres]:
     """Spheres of each link that has shapes; every mesh is found before any is covered."""
-    shapes = {name: _find_shapes(description, description.links[name].shapes, options) for name in tree.order}
-    covered = {}
-    for name, own in shapes.items():
-        try:
-            if own:
-                covered[name] = _cover(name, own, options.protrusion_m)
-        except FileError:
-            raise
-        except InputError as error:
-            raise FileError(description.path, error.message, ("link", name)) from None
-    return covered
+    shapes = find_shapes(description, tree, options)
+    return {name: cover_link(description, name, own, options.protrusion_m) for name, own in shapes.items() if own}
+
+
+def find_shapes(description: Description, tree: LinkTree, options: ImportOptions) -> dict[str, list[Shape]]:
+    """The shapes of each link, their meshes found; raises `FileError` for one that is missing."""
+    return {name: _find_shapes(description, description.links[name].shapes, options) for name in tree.order}
+
+
+def cover_link(description: Description, link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
+    """Spheres of one link's shapes; raises `FileError` for what cannot be covered, with the link."""
+    try:
+        return _cover(link, shapes, protrusion_m)
+    except FileError:
+        raise
+    except InputError as error:
+        raise FileError(description.path, error.message, ("link", link)) from None
 
 
 def _find_shapes(description: Description, shapes: Iterable[UrdfShape], options: ImportOptions) -> list[Shape]:
@@ -61,9 +67,13 @@ def _find_shapes(description: Description, shapes: Iterable[UrdfShape], options:
     ]
 
 
-def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
+def describe_shapes(shapes: list[Shape]) -> str:
+    """How many there are of each kind: `2 boxes, 1 mesh`."""
     kinds = Counter(shape.kind for shape in shapes)
-    words = ", ".join(f"{n} {kind if n == 1 else PLURALS.get(kind, kind + 's')}" for kind, n in kinds.items())
+    return ", ".join(f"{n} {kind if n == 1 else PLURALS.get(kind, kind + 's')}" for kind, n in kinds.items())
+
+
+def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
     own = [shape for shape in shapes if shape.kind == "sphere"]
     centres = np.array([shape.T_link_shape[:3, 3] for shape in own]).reshape(-1, 3)
     radii = np.array([shape.size[0] for shape in own])
@@ -79,7 +89,12 @@ def _cover(link: str, shapes: list[Shape], protrusion_m: float) -> LinkSpheres:
         centres=centres,
         radii=radii,
         report=CoveredLink(
-            link=link, shapes=words, spheres=len(radii), covered=covered, protrusion_m=protrusion, how=how
+            link=link,
+            shapes=describe_shapes(shapes),
+            spheres=len(radii),
+            covered=covered,
+            protrusion_m=protrusion,
+            how=how,
         ),
         warnings=warnings,
     )
