@@ -1,6 +1,6 @@
 """Spheres for meshes, ours beside MorphIt and a plain grid: how many, at equal protrusion, once all is covered.
 
-Needs `pip install 'ikde[meshes]' morphit-rs example-robot-data`. Run: python benchmarks/spheres.py ROBOTS_FOLDER [MM]
+Needs `pip install 'ikde[meshes]' morphit-rs example-robot-data`. Run: python benchmarks/spheres.py ROBOTS_FOLDER
 
 The others' spheres leave parts of the surface bare. Their radii are grown by the largest gap, measured at 20,000 points
 of the surface, which says less than a proof; then their protrusion is measured at points of their spheres. MorphIt is
@@ -8,9 +8,11 @@ asked for ever more spheres until it protrudes no more than ours may; the grid g
 around each cell that holds some of the body.
 """
 
-import sys
+import time
+from argparse import ArgumentParser
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -21,12 +23,14 @@ from ikde.spheres.mesh_file import read_mesh
 from ikde.spheres.parts import make_solid
 from ikde.spheres.solid import Solid
 
-MESHES = {
-    "UR5": ("ur_description/meshes/ur5/collision", "*.stl"),
-    "Panda": ("panda_description/meshes/collision", "*.stl"),
-    "TIAGo": ("tiago_description/meshes/arm", "*collision*.dae"),
+URDFS = {
+    "UR5": "ur_description/urdf/ur5_robot.urdf",
+    "Panda": "panda_description/urdf/panda.urdf",
+    "TIAGo": "tiago_description/robots/tiago.urdf",
 }
-COUNTS = (2, 4, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100, 128, 160, 200)
+FIRST = 20
+"""Collision meshes of each robot, by path."""
+COUNTS = (1, 2, 4, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100, 128, 160, 200)
 CELLS = range(1, 40)
 POINTS = 20_000
 
@@ -98,20 +102,34 @@ def fewest(solid: Solid, tries: Callable[[Solid], Iterator[Spheres]], most_m: fl
     return "none"
 
 
+def list_meshes(folder: Path, urdf: str) -> list[Path]:
+    """The first collision meshes of a robot, by path; `package://example-robot-data/robots` is the folder."""
+    elements = ElementTree.parse(folder / urdf).getroot().iterfind("link/collision/geometry/mesh")
+    names = {element.get("filename", "").partition("example-robot-data/robots/")[2] for element in elements}
+    return [folder / name for name in sorted(names)][:FIRST]
+
+
 def main() -> None:
     """Print one line a mesh."""
-    folder, most_m = Path(sys.argv[1]), float(sys.argv[2]) / 1e3 if len(sys.argv) > 2 else 0.02
-    print("| mesh | covered, % | ours | MorphIt | grid |\n|---|---|---|---|---|")
-    for robot, (where, pattern) in MESHES.items():
-        for path in sorted((folder / where).glob(pattern)):
+    arguments = ArgumentParser(description=__doc__)
+    arguments.add_argument("folder", type=Path, help="example-robot-data's `robots`")
+    arguments.add_argument("--protrusion", type=float, default=20.0, metavar="MM")
+    arguments.add_argument("--robots", nargs="+", default=list(URDFS), choices=list(URDFS))
+    arguments.add_argument("--alone", action="store_true", help="ours alone")
+    asked = arguments.parse_args()
+    most_m = asked.protrusion / 1e3
+    print("| mesh | proved, % | at most out, mm | CPU s | ours | MorphIt | grid |\n|---|---|---|---|---|---|---|")
+    for robot in asked.robots:
+        for path in list_meshes(asked.folder, URDFS[robot]):
+            start = time.process_time()
             cover = cover_mesh(path, (1.0, 1.0, 1.0), most_m)
+            spent = time.process_time() - start
             solid, _ = make_solid(read_mesh(path)[0], convex_hull, only_hulls=cover.only_hulls)
-            others = " | ".join(fewest(solid, tries, most_m) for tries in (morphit, grid))
-            hull = " (its hull)" if cover.only_hulls else ""
-            print(
-                f"| {robot} {path.stem}{hull} | {100 * cover.covered:.4g} | {len(cover.rows.radii)} | {others} |",
-                flush=True,
-            )
+            tries = () if asked.alone else (morphit, grid)
+            counts = [str(len(cover.rows.radii)), *(fewest(solid, own, most_m) for own in tries)]
+            hull = ", hulls" if cover.only_hulls else ""
+            figures = [f"{100 * cover.covered:.5g}", f"{1e3 * cover.rows.protrusion_m:.3g}", f"{spent:.1f}"]
+            print(f"| {robot} {path.stem}{hull} | {' | '.join([*figures, *counts])} |", flush=True)
 
 
 if __name__ == "__main__":
