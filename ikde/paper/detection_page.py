@@ -6,7 +6,7 @@ from ikde.paper.columns import label, make_table, ours
 from ikde.paper.detection import Detection, SurfaceDifference
 from ikde.paper.inputs import Inputs
 from ikde.paper.section import name_pairs
-from ikde.report.numbers import fixed, significant
+from ikde.report.numbers import count_of, fixed, significant
 from ikde.report.page import Cell, Column, Section, Table, Text
 
 LIST_NAMES = {
@@ -93,7 +93,7 @@ def _make_surface(data: Detection) -> Table:
     return make_table(
         data.surface_differs,
         label("spheres", lambda row: row.approximation),
-        label("rule", lambda row: row.rule.replace(" ", "\N{NO-BREAK SPACE}")),
+        label("rule", lambda row: row.rule),
         (Column("points a sphere"), _name_grid),
         label("home", lambda row: Cell("collides", "off") if row.home_collides else "free", mark="ours"),
         ours("colliding by points", "", lambda row: f"{row.surface_collides:,}"),
@@ -117,7 +117,7 @@ def _make_times(data: Detection) -> Table:
         ours("every point", "ms", lambda row: significant(1e3 * row[2])),
         ours("every point / centres", "", lambda row: fixed(row[2] / row[1], 0)),
         caption="Median time of a verdict, pairs of Formula 22",
-        note=f"Every point: {settings['plain_verdicts']} configurations; the others {settings['timed_verdicts']}. Of "
-        f"the verdicts by every point {sum(row.same_verdicts for row in surface)} of "
+        note=f"Every point: {count_of(settings['plain_verdicts'], 'configuration')}; the others "
+        f"{settings['timed_verdicts']}. Of the verdicts by every point {sum(row.same_verdicts for row in surface)} of "
         f"{sum(row.every_point.timed for row in surface)} are those by the points that can matter.",
     )

@@ -14,7 +14,7 @@ from ikde.paper.inputs import Inputs, meant
 from ikde.paper.section import Computed, Misprint
 from ikde.plot.images import to_png
 from ikde.plot.pose import plot_frames
-from ikde.report.numbers import fixed, significant, vector
+from ikde.report.numbers import fixed, length, vector
 from ikde.report.page import Cell, Column, Figure, Gallery, Section, Table, Text
 from ikde.scene.drawn_pose import draw_frames
 from ikde.solver.forward import forward
@@ -123,10 +123,16 @@ def largest_error_mm(data: Kinematics) -> float:
 def _introduce(data: Kinematics) -> Text:
     return Text(
         f"Where the arm's frames stand at the classical home, q = (90, 0, 0, 0, 180, 0) deg. Both models are the same "
-        f"arm: their points differ by at most {significant(data.models_differ_mm, 2)} mm. With the misprints put "
+        f"arm: their points differ by {_at_most(data.models_differ_mm)}. With the misprints put "
         f"right, the largest difference from the print is {fixed(largest_error_mm(data), 3)} mm; its rounding allows "
         f"{data.settings['rounding_mm']} mm."
     )
+
+
+def _at_most(value_mm: float) -> str:
+    """`less than 1 nm`, or `at most 7.9 µm`."""
+    text = length(1e-3 * value_mm)
+    return text.replace("<", "less than") if "<" in text else f"at most {text}"
 
 
 def _make_table(points: list[Point]) -> Table:

@@ -167,7 +167,9 @@ def _make_clearance(motion: TrackSummary) -> Number:
 
 
 def _tell_black(motion: TrackSummary) -> str:
-    return "What collides is black." if motion.collision.pairs else "Self-collision was not checked."
+    if not motion.collision.pairs:
+        return "Self-collision was not checked."
+    return "What collides is black, white on a dark page."
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:

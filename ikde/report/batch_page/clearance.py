@@ -1,6 +1,6 @@
 """How good the answers are: clearance, errors, and what comes closest to what."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from ikde.plot.style import Axis
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
 from ikde.report.batch_page.cost import choose_curves, is_wide, name_curve
 from ikde.report.batch_page.success import CHECKED
-from ikde.report.numbers import fixed, significant
+from ikde.report.numbers import angle, fixed, length
 from ikde.report.page import Column, Figure, Gallery, Section, Table
 
 MAX_PAIRS = 12
@@ -26,13 +26,15 @@ class Measure:
     title: str
     unit: str
     factor: float
+    write: Callable[[float], str]
+    """A value, in m or rad, with its unit."""
 
 
 CLEARANCE_NOTE = "Clearance: the smallest distance between two spheres that the arm's detector compares."
-CLEARANCE = Measure("clearance_m", "clearance", "mm", 1e3)
+CLEARANCE = Measure("clearance_m", "clearance", "mm", 1e3, length)
 ERRORS = (
-    Measure("position_error_m", "position error", "mm", 1e3),
-    Measure("orientation_error_rad", "orientation error", "deg", float(np.degrees(1.0))),
+    Measure("position_error_m", "position error", "mm", 1e3, length),
+    Measure("orientation_error_rad", "orientation error", "deg", float(np.degrees(1.0)), angle),
 )
 
 
@@ -56,7 +58,7 @@ def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
     return Table(
         columns=(
             *Column.of("arm", "detector"),
-            *(Column(head, measure.unit, group=measure.title) for measure in measures for head in heads[measure]),
+            *(Column(head, group=measure.title) for measure in measures for head in heads[measure]),
         ),
         rows=tuple(
             (arm.name, arm.facts.detector, *(text for measure in measures for text in _format(arm, measure)))
@@ -68,14 +70,14 @@ def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
 
 
 def _format(arm: ArmAnswers, measure: Measure) -> tuple[str, str]:
-    values = measure.factor * arm.of_reached(measure.column)
+    values = arm.of_reached(measure.column)
     if not values.size:
         text = CHECKED[False] if measure is CLEARANCE and arm.collision_checked is False else "–"
         return text, text
-    middle = significant(float(np.median(values)))
+    middle = measure.write(float(np.median(values)))
     if measure is CLEARANCE:
-        return significant(float(values.min())), middle
-    return middle, significant(float(values.max()))
+        return measure.write(float(values.min())), middle
+    return middle, measure.write(float(values.max()))
 
 
 def _draw(run: RunAnswers, measure: Measure) -> Figure:

@@ -70,5 +70,8 @@ def _classify(clearance_m: np.ndarray, always: np.ndarray) -> list[tuple[str, np
         which = np.clip(np.searchsorted(ends, clearance_m, side="right") - 1, 0, max(len(ends) - 2, 0))
         for k, color in enumerate(CLASSES[: max(len(ends) - 1, 1)]):
             low, high = (significant(1e3 * float(ends[min(place, len(ends) - 1)])) for place in (k, k + 1))
-            groups.append((f"{low} to {high} mm" if low != high else f"{low} mm", known & (which == k), color))
+            label, members = f"{low} to {high} mm" if low != high else f"{low} mm", known & (which == k)
+            if label == groups[-1][0]:  # what reads the same is one class
+                members = members | groups.pop()[1]
+            groups.append((label, members, color))
     return groups

@@ -9,11 +9,17 @@ from ikde.report.batch_page.answers import RunAnswers
 from ikde.report.markup import verbatim
 from ikde.report.page import Block, Code, Column, Facts, Section, Table
 
+BY_JOINT = ("ranges", "near", "weights")  # what is said of each joint, by its name
+UNITS = ("m", "rad", "s")
+
 
 def make_recipe(run: RunAnswers) -> Section:
     """Robot, targets, arms and what differs between them, machine and versions."""
     manifest = run.manifest
     arms = {arm.name: dict(_flatten(_describe(manifest, arm))) for arm in manifest.arms}
+    for settings in arms.values():
+        if settings.get("settings: method") == settings.get("method"):
+            settings.pop("settings: method", None)  # it is one and the same
     keys = list(dict.fromkeys(key for settings in arms.values() for key in settings))
     differing = [key for key in keys if len({settings.get(key) for settings in arms.values()}) > 1]
     blocks: list[Block] = [_state_facts(run)]
@@ -52,8 +58,8 @@ def _state_facts(run: RunAnswers) -> Facts:
 
 def _compare(arms: Mapping[str, Mapping[str, str]], differing: list[str]) -> Table:
     return Table(
-        columns=Column.of("arm", *(key.removeprefix("settings: ").replace("_", " ") for key in differing)),
-        rows=tuple((name, *(settings.get(key, "–") for key in differing)) for name, settings in arms.items()),
+        columns=tuple(Column(title, align="left") for title in ("setting", *arms)),
+        rows=tuple((_name(key), *(settings.get(key, "–") for settings in arms.values())) for key in differing),
         caption="What differs between the arms",
         note="" if differing else "Nothing: only their names do.",
     )
@@ -62,10 +68,20 @@ def _compare(arms: Mapping[str, Mapping[str, str]], differing: list[str]) -> Tab
 def _list_settings(settings: Mapping[str, str], arms: int) -> Table:
     return Table(
         columns=Column.of("setting", "value"),
-        rows=tuple((key.replace("_", " "), value) for key, value in settings.items()),
+        rows=tuple((_name(key), value) for key, value in settings.items()),
         caption="What all arms have in common" if arms > 1 else "How it was solved",
         note="Lengths in m, angles in rad; joints in the robot's own convention.",
     )
+
+
+def _name(key: str) -> str:
+    """`settings: position_tolerance_m` as `position tolerance [m]`; names of joints stay as they are."""
+    above, _, name = key.removeprefix("settings: ").rpartition(": ")
+    if above not in BY_JOINT:
+        words = name.split("_")
+        unit = f" [{words.pop()}]" if len(words) > 1 and words[-1] in UNITS else ""
+        name = " ".join(words) + unit
+    return f"{above}: {name}" if above else name
 
 
 def _flatten(data: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, str]]:

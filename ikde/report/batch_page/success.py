@@ -72,10 +72,13 @@ def say_who_graded(run: RunAnswers) -> str:
     solves = sum(arm.solves for arm in run.arms)
     again = sum((arm.verified for arm in run.arms), Rate(0, 0))
     agrees = f", and agrees with {'all' if again.count == again.total else f'{again.count:,}'} of them"
+    grades = "the last 64 of each 4,096, and unreached ones that are explained"
+    numpy = f"plain numpy graded {again.total:,} of these again ({grades}){agrees}"
+    if not again.total:
+        numpy = f"plain numpy, which grades {grades}, graded none of them"
     return (
         f"The kernels' grader, code of its own on the tables of the search, graded {'all ' if solves > 1 else ''}"
-        f"{count_of(solves, 'solve')}; plain numpy graded {again.total:,} of these again (the last 64 of each 4,096, "
-        f"and unreached ones that are explained){agrees if again.total else ''}."
+        f"{count_of(solves, 'solve')}; {numpy}."
     )
 
 

@@ -150,7 +150,8 @@ def _draw(run: RunAnswers, row: Row, data: dict[str, Any], robot: Robot) -> Anim
         return None
     target = [data[name] for name in PLACE] if all(name in data for name in PLACE) else []
     still = json.dumps(make_animation(draw_still(collision, q, target)), separators=(",", ":"), allow_nan=False)
-    caption = "Its configuration, and the target as a ring. What collides is black." if target else "Its configuration."
+    caption = "Its configuration, and the target as a ring." if target else "Its configuration."
+    caption += " What collides is black, white on a dark page." if collision.pairs else ""
     return Animation(data=still, alt=f"the robot in row {row}", caption=caption)
 
 

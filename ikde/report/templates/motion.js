@@ -28,10 +28,10 @@ function layOut(motion, width) {
   const left = [PAD, 2 * PAD + x * scale + .5 * (room - y * scale)];
   const bottom = [LABEL + z * scale, PAD + 2 * LABEL + z * scale + .5 * (lower + y * scale)];
   const views = VIEWS.map((view, k) => ({...view, scale, left: left[view.column], bottom: bottom[view.row], box: boxes[k],
-    top: bottom[view.row] - (view.row ? y : z) * scale,
+    top: bottom[view.row] - (view.row ? y : z) * scale, head: view.row ? PAD + 2 * LABEL + z * scale : LABEL,
     at(p) { const [u, v] = view.flat(p); return [this.left + (u - this.box[0]) * scale, this.bottom - (v - this.box[1]) * scale]; }}));
   const low = [boxes[0][0], boxes[1][0], Math.min(0, boxes[0][1])], high = [boxes[0][2], boxes[1][2], boxes[0][3]];
-  const space = {name: "in space: drag it, or use the arrow keys", brief: "in space: drag it", left: 2 * PAD + x * scale, top: PAD + 2 * LABEL + z * scale, width: room, tall: lower, low, high};
+  const space = {name: "in space: drag it, or use the arrow keys", brief: "in space: drag it", left: 2 * PAD + x * scale, top: PAD + 2 * LABEL + z * scale, head: PAD + 2 * LABEL + z * scale, width: room, tall: lower, low, high};
   return {height: space.top + lower + PAD, views, space};
 }
 // The view in space as it is turned: like a flat view, with the same scale whatever the turn about z.
@@ -67,7 +67,7 @@ function drawBody(c, motion, view, frame, ink) {
   const links = motion.links_mm[frame];
   const things = motion.centres_mm[frame].map((p, s) => ({depth: view.depth(p), draw() {
     const role = roleOf(motion, frame, motion.parts[s]);
-    c.globalAlpha = role === "base" ? .3 : .55; dot(c, view.at(p), motion.radii_mm[s] * view.scale, motion.colors[role]);
+    c.globalAlpha = role === "base" ? .3 : .55; dot(c, view.at(p), motion.radii_mm[s] * view.scale, role === "colliding" ? ink : motion.colors[role]);
     c.globalAlpha = .35; c.strokeStyle = role === "colliding" ? ink : "#fff"; c.lineWidth = .7; c.stroke();
   }}));
   links.slice(1).forEach((p, k) => things.push({depth: (view.depth(p) + view.depth(links[k])) / 2, draw() {
@@ -78,7 +78,7 @@ function drawBody(c, motion, view, frame, ink) {
 function drawView(c, motion, view, frame, ink, soft) {
   c.globalAlpha = 1; c.fillStyle = soft;
   const fits = !view.brief || c.measureText(view.name).width <= view.width;
-  c.fillText(fits ? view.name : view.brief, view.left, view.top - 6);
+  c.fillText(fits ? view.name : view.brief, view.left, view.head - 6);
   if (view.low) drawGround(c, view, soft);
   const path = motion.path_mm.map((p) => view.at(p));
   c.globalAlpha = .6; stroke(c, path, soft, 1.2);

@@ -7,7 +7,7 @@ import pytest
 from ikde.report.batch_page import clearance
 from ikde.report.batch_page.clearance import make_clearance
 from ikde.report.batch_page.cost import MAX_CURVES
-from ikde.report.numbers import significant
+from ikde.report.numbers import length
 from tests.report.batch_page.blocks import column, figures, tables
 
 
@@ -20,12 +20,12 @@ def test_the_least_clearance_and_the_largest_error_are_shown(section, answers):
     table = tables(section)[0]
     careful = answers.arms[1]
     assert column(table, "detector") == ["none", "improved"]
-    assert column(table, "clearance: smallest [mm]") == [
+    assert column(table, "clearance: smallest") == [
         "not checked",
-        significant(1e3 * careful.of_reached("clearance_m").min()),
+        length(careful.of_reached("clearance_m").min()),
     ]
-    assert column(table, "position error: at most [mm]") == [
-        significant(1e3 * arm.of_reached("position_error_m").max()) for arm in answers.arms
+    assert column(table, "position error: at most") == [
+        length(arm.of_reached("position_error_m").max()) for arm in answers.arms
     ]
 
 

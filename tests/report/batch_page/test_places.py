@@ -42,5 +42,13 @@ def test_classes_of_clearance_hold_each_target_once():
     assert next(label for label, *_ in groups[1:]).startswith("1.00 to 1.75 mm")
 
 
+def test_classes_that_read_the_same_are_one():
+    clearance_m = np.array([0.001, 0.0139001, 0.0139002, 0.0139003, 0.0139004, 0.0139005])
+    groups = places._classify(clearance_m, np.full(6, True))
+    labels = [label for label, chosen, _ in groups if chosen.any()]
+    assert labels == ["1.00 to 13.9 mm", "13.9 mm"]
+    assert np.sum([chosen for _, chosen, _ in groups], axis=0).tolist() == [1] * 6
+
+
 def test_a_run_that_does_not_keep_places_has_no_such_section(bare):
     assert make_places(replace(bare, places_m={})) is None

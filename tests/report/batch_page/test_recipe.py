@@ -41,11 +41,11 @@ def test_a_file_with_brackets_is_shown_as_it_is(answers):
 
 def test_arms_are_compared_by_what_differs(answers):
     differing, common = tables(make_recipe(answers))
-    assert column(differing, "arm") == ["free", "careful"]
-    assert column(differing, "detector") == ["none", "improved"]
-    assert "position tolerance m" not in [column.title for column in differing.columns]
+    assert [column.title for column in differing.columns] == ["setting", "free", "careful"]
+    assert ("detector", "none", "improved") in differing.rows
+    assert "position tolerance [m]" not in column(differing, "setting")
     settings = dict(common.rows)
-    assert settings["settings: position tolerance m"] == "0.02"
+    assert settings["position tolerance [m]"] == "0.02"
     assert settings["method"] == "de"
     assert "detector" not in settings
 
@@ -53,7 +53,8 @@ def test_arms_are_compared_by_what_differs(answers):
 def test_arms_that_differ_in_nothing_say_so(answers):
     twins = tuple(replace(answers.manifest.arms[0], name=name) for name in "ab")
     table = tables(make_recipe(with_manifest(answers, arms=twins)))[0]
-    assert table.rows == (("a",), ("b",))
+    assert [column.title for column in table.columns] == ["setting", "a", "b"]
+    assert table.rows == ()
     assert "Nothing" in table.note
 
 
@@ -67,12 +68,12 @@ def test_the_recipe_knows_more_than_the_settings(bare):
     """A run that came from a file."""
     recipe = {
         "targets": {"grid": {}, "units": {}},
-        "arms": {"auto": {"ranges": {"q1": [0.0, 1 / 3]}, "near": None, "detector": {"name": "typical"}}},
+        "arms": {"auto": {"ranges": {"q_z": [0.0, 1 / 3]}, "near": None, "detector": {"name": "typical"}}},
     }
     section = make_recipe(with_manifest(bare, recipe=recipe))
     assert facts(section)["targets"] == "12 (grid)"
     assert dict(tables(section)[0].rows) == {
-        "ranges: q1": "0 to 0.333333",
+        "ranges: q_z": "0 to 0.333333",
         "near": "none",
         "detector: name": "typical",
     }
