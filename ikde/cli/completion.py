@@ -1,26 +1,25 @@
 """`ikde completion`: commands, options and names, completed by the shell."""
 
 import os
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
+from ikde.cli.candidates import offer
 from ikde.cli.output import print_result
 
 VARIABLE = "_IKDE_COMPLETE"
 """What a shell sets when it asks."""
 
 
-class Shell(StrEnum):
-    """Shells that ask."""
-
-    bash = "bash"
-    zsh = "zsh"
-    fish = "fish"
+SHELLS = ("bash", "zsh", "fish")
 
 
-def completion(shell: Annotated[Shell, typer.Argument(show_default=False)]) -> None:
+def completion(
+    shell: Annotated[
+        str | None, typer.Argument(metavar="|".join(SHELLS), show_default=False, autocompletion=offer(*SHELLS))
+    ] = None,
+) -> None:
     """Print what makes a shell complete commands, options, and names of robots, joints and detectors.
 
     bash, in ~/.bashrc: eval "$(ikde completion bash)". zsh, in ~/.zshrc after compinit: eval "$(ikde completion zsh)".
@@ -28,9 +27,14 @@ def completion(shell: Annotated[Shell, typer.Argument(show_default=False)]) -> N
 
     Example: ikde completion bash >> ~/.bashrc
     """
+    from ikde.errors import InputError, nearest, quoted
+
+    if shell not in SHELLS:
+        got = f"{quoted(shell)}{nearest(shell, SHELLS)}" if shell else "nothing"
+        raise InputError(f"expected a shell, one of {', '.join(SHELLS)}, got {got}", ("completion",))
     from typer.completion import get_completion_script  # type: ignore[attr-defined]
 
-    print_result(get_completion_script(prog_name="ikde", complete_var=VARIABLE, shell=shell.value))
+    print_result(get_completion_script(prog_name="ikde", complete_var=VARIABLE, shell=shell))
 
 
 def prepare_completion() -> None:

@@ -45,6 +45,9 @@ def judge(facts: Mapping[str, Any]) -> str:
         return "not good: a target within easy reach was not reached; please report it, with what stands below"
     if not facts["cache_is_writable"]:
         return "not good: the cache folder cannot be used, so every process compiles anew; set IKDE_CACHE_DIR"
+    if facts["compiling"] == "never":
+        took = seconds(facts["solve_seconds"])
+        return f"good, but slow: IKDE_COMPILE=never, so nothing is compiled, and a solve in plain Python takes {took}"
     compiled = "is compiled now, and need not be again" if facts["compile_seconds"] else "was compiled before"
     return f"all good: what this solve needs {compiled}, and the next one takes {seconds(facts['solve_seconds'])}"
 
@@ -57,7 +60,7 @@ def describe_machine() -> dict[str, Any]:
     import ikde
     from ikde.kernels.cache_folder import CACHE_FOLDER, CACHE_IS_WRITABLE
     from ikde.model.collision_model import CollisionModel
-    from ikde.solver.background import WAIT, compile_way
+    from ikde.solver.background import WAIT, choose_way, compile_way
     from ikde.solver.compile_note import name_work, note_compile
     from ikde.solver.search import usable_cores
     from ikde.solver.solve import solve
@@ -77,6 +80,7 @@ def describe_machine() -> dict[str, Any]:
         "cores": os.cpu_count(),
         "usable_cores": usable_cores(),
         **{package: version(package) for package in PACKAGES},
+        "compiling": choose_way(),
         "cache_folder": str(CACHE_FOLDER),
         "cache_is_writable": CACHE_IS_WRITABLE,
         "import_seconds": imported - started,

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 MINUS_SIGNS = str.maketrans("−–—‐‑", "-----")  # a row pasted from a paper carries a typographer's minus
 SEPARATORS = re.compile(r"[\s,;()\[\]]+")
 FILE_ENDINGS = (".yaml", ".yml", ".json")
+FORMS = "; give a number for each joint, joints by name as q1=0.5,q2=1, or a YAML or JSON file"
 
 
 def split_values(text: str) -> list[str]:
@@ -66,7 +67,7 @@ def _read(text: str, key: str) -> list[float] | dict[str, float]:
         return _read_file(Path(text.strip()))
     words = split_values(text)
     if not any("=" in word for word in words):
-        return [_number(word, (key,)) for word in words]
+        return [_number(word, (key,), FORMS) for word in words]
     pairs = {}
     for word in words:
         name, equals, value = word.partition("=")
@@ -92,11 +93,11 @@ def _read_file(path: Path) -> list[float] | dict[str, float]:
     return data
 
 
-def _number(word: str, where: tuple[Any, ...]) -> float:
+def _number(word: str, where: tuple[Any, ...], forms: str = "") -> float:
     try:
         return float(word)
     except ValueError:
-        raise InputError(f"expected a number, got {quoted(word)}", where) from None
+        raise InputError(f"expected a number, got {quoted(word)}{forms}", where) from None
 
 
 def _known(name: str, names: Any, key: str) -> str:

@@ -91,7 +91,7 @@ def _joint_table(robot: Robot, units: Units) -> Any:
 
 
 def _frame_table(robot: Robot, units: Units) -> Any:
-    table = make_table("frame", "parent", f"offset [{units.length}]", "joint", "from", title="frames")
+    table = make_table("frame", "parent", f"offset [{units.length}]", "joint", "?from", title="frames")
     for frame in robot.frames:
         offset = " ".join(f"{v / LENGTHS_M[units.length]:.6g}" for v in frame.p_parent_frame)
         names = map(plain, (frame.name, frame.parent, offset, frame.joint or ""))

@@ -33,7 +33,10 @@ def test_a_shell_gets_its_script(cli, shell):
 
 @pytest.mark.parametrize("words", [("tcsh",), ()])
 def test_another_shell_is_refused(refuse, words):
-    assert "shell" in refuse("completion", *words).lower()
+    got = "'tcsh'" if words else "nothing"
+    assert refuse("completion", *words).startswith(
+        f"ikde: completion: expected a shell, one of bash, zsh, fish, got {got}"
+    )
 
 
 @pytest.mark.parametrize(
@@ -48,6 +51,7 @@ def test_another_shell_is_refused(refuse, words):
         ("ikde solve --rank l", ["limits"]),
         ("ikde solve --method me", ["memetic"]),
         ("ikde schema t", ["track"]),
+        ("ikde completion z", ["zsh"]),
     ],
 )
 def test_a_shell_is_answered_without_anything_heavy(line, words):

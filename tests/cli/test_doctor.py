@@ -15,6 +15,7 @@ FACTS = {
     "cores",
     "usable_cores",
     *PACKAGES,
+    "compiling",
     "cache_folder",
     "cache_is_writable",
     "import_seconds",
@@ -44,7 +45,13 @@ def test_text_names_every_fact(cli):
     assert re.search(r"^ solve +[\d.]+ [µm]s$", outcome.out, re.MULTILINE)
 
 
-WELL = {"solve_reached": True, "cache_is_writable": True, "compile_seconds": 0.0, "solve_seconds": 2.3e-5}
+WELL = {
+    "solve_reached": True,
+    "compiling": "background",
+    "cache_is_writable": True,
+    "compile_seconds": 0.0,
+    "solve_seconds": 2.3e-5,
+}
 
 
 @pytest.mark.parametrize(
@@ -56,6 +63,7 @@ WELL = {"solve_reached": True, "cache_is_writable": True, "compile_seconds": 0.0
             {"cache_is_writable": False},
             "not good: the cache folder cannot be used, so every process compiles anew; set IKDE_CACHE_DIR",
         ),
+        ({"compiling": "never", "solve_seconds": 0.0305}, "good, but slow: IKDE_COMPILE=never, so nothing is compiled"),
         ({"solve_reached": False, "cache_is_writable": False}, "not good: a target"),
     ],
 )
