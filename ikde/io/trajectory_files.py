@@ -79,7 +79,7 @@ def write_track(
 
 
 def format_trajectory(
-    trajectory: Trajectory, formats: Sequence[Format] = FORMATS, *, velocities: bool = False
+    trajectory: Trajectory, formats: Sequence[Format] = FORMATS, *, velocities: bool = True
 ) -> dict[str, bytes]:
     """Name -> content of a motion's files, in the order in which they get their names; as for `write_trajectory`."""
     for name in formats or ("none",):

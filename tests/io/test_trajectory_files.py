@@ -202,6 +202,8 @@ def test_a_joint_of_any_name_comes_back_by_its_name(tmp_path, name):
 
 def test_everything_is_written_and_the_page_comes_first(tmp_path):
     files = write_track(tmp_path, make_motion(), {"points": 4}, "<html>")
+    message = json.loads((tmp_path / "joint_trajectory.json").read_text())
+    assert all(len(point["velocities"]) == 2 for point in message["points"])
     assert files[0] == tmp_path / "report.html"
     assert names_in(tmp_path) == sorted([*FILES, *TABLES, "report.html", "summary.json"])
     assert json.loads((tmp_path / "summary.json").read_text()) == {"points": 4}
