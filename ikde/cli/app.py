@@ -21,7 +21,13 @@ from ikde.cli.report import report
 from ikde.cli.robots import robots
 from ikde.cli.schema import schema
 from ikde.cli.solve import solve
-from ikde.cli.startup import leave_garbage_at_exit, skip_garbage_collection, use_one_blas_thread, warn_in_one_line
+from ikde.cli.startup import (
+    leave_garbage_at_exit,
+    skip_garbage_collection,
+    use_one_blas_thread,
+    warn_in_one_line,
+    write_what_the_encoding_has,
+)
 from ikde.cli.track import track
 from ikde.cli.typed_forms import regroup
 from ikde.cli.warmup import warmup
@@ -70,6 +76,7 @@ def run_and_exit() -> NoReturn:
     skip_garbage_collection()
     use_one_blas_thread()
     warn_in_one_line()
+    write_what_the_encoding_has()
     code = run(sys.argv[1:])
     leave_garbage_at_exit()
     sys.exit(code)

@@ -4,6 +4,7 @@ import gc
 import os
 import sys
 import warnings
+from io import TextIOWrapper
 from typing import Any
 
 from ikde.cli.output import print_note
@@ -34,6 +35,12 @@ def skip_blas_probe() -> None:
     No kernel of ikde calls BLAS. Only the command line does this, in its own process; the library leaves numba alone.
     """
     sys.modules.setdefault("scipy.linalg.cython_blas", None)  # type: ignore[arg-type]
+
+
+def write_what_the_encoding_has() -> None:
+    """A stdout that is not UTF-8, as of a pipe on Windows, shows `?` for the lines of tables, rather than none."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
 
 
 def warn_in_one_line() -> None:

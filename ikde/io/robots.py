@@ -3,7 +3,7 @@
 from functools import lru_cache
 from pathlib import Path
 
-from ikde.errors import InputError, nearest
+from ikde.errors import InputError, nearest, quoted
 from ikde.io.ready_robot import read_ready
 from ikde.model.robot import Robot
 
@@ -21,6 +21,14 @@ def is_file_name(text: str) -> bool:
     return "/" in text or "\\" in text or text.lower().endswith((".yaml", ".yml", *OF_URDF))
 
 
+def is_there(path: str | Path) -> bool:
+    """Whether there is such a file or folder; False, too, for what can be no name of one."""
+    try:
+        return Path(path).exists()
+    except OSError:  # too long
+        return False
+
+
 def is_urdf(path: Path) -> bool:
     """True for the name of a URDF, or of what becomes one."""
     return path.suffix.lower() in OF_URDF
@@ -32,7 +40,7 @@ def find_urdf(file: str) -> tuple[Path, tuple[Path, ...]]:
     Raises:
         InputError: for a name that no installed URDF has, with the nearest.
     """
-    if is_file_name(file) or Path(file).exists():
+    if is_file_name(file) or is_there(file):
         return Path(file), ()
     from ikde.io.urdf_import.installed import find_installed
 
@@ -42,11 +50,13 @@ def find_urdf(file: str) -> tuple[Path, tuple[Path, ...]]:
 def robot_path(name_or_path: str | Path) -> Path:
     """The file behind a name or a path; raises `InputError` for an unknown name."""
     text = str(name_or_path)
-    if isinstance(name_or_path, Path) or is_file_name(text) or (text not in robot_names() and Path(text).is_file()):
+    if isinstance(name_or_path, Path) or is_file_name(text) or (text not in robot_names() and is_there(text)):
         return Path(name_or_path)
     if text not in robot_names():
         known = ", ".join(robot_names())
-        raise InputError(f"no robot is called {text!r}{nearest(text, robot_names())}; ikde has {known}; or name a file")
+        raise InputError(
+            f"no robot is called {quoted(text)}{nearest(text, robot_names())}; ikde has {known}; or name a file"
+        )
     return FOLDER / f"{text}.yaml"
 
 

@@ -1,6 +1,6 @@
 """Robots and targets as callers give them: a name for a robot, an array or another library's pose for a target."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
@@ -99,7 +99,7 @@ def read_targets(targets: TargetsLike, where: Where = ("targets",)) -> Targets:
     if array.shape in ((3,), (4, 4)):
         return Targets.of([read_target(array, where)])
     try:
-        if array.ndim == 2 and array.shape[1] == 3:
+        if array.ndim == 2 and array.shape[1] == 3 and _find_pose(targets) is None:
             return Targets(array)
         if array.ndim == 3 and array.shape[1:] == (4, 4):
             return Targets.from_matrix(array)
@@ -110,7 +110,7 @@ def read_targets(targets: TargetsLike, where: Where = ("targets",)) -> Targets:
 
 def _is_listed(value: object) -> bool:
     """Whether it holds targets one by one, rather than numbers in an array."""
-    is_array = isinstance(value, np.ndarray | str | bytes | Mapping) or hasattr(value, "__array__")
+    is_array = isinstance(value, np.ndarray | str | bytes | Mapping | Set) or hasattr(value, "__array__")
     return isinstance(value, Iterable) and not is_array and _find_pose(value) is None
 
 

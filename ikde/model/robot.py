@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
-from ikde.model.value import Value
+from ikde.model.value import ArrayValue, Value
 
 WORLD = "world"
 NO_DETECTOR = "none"
@@ -46,7 +46,7 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Frame(Value):
+class Frame(ArrayValue):
     """A frame of the tree: T_parent_frame(q) = [R_parent_frame, p_parent_frame] @ joint motion about `axis`."""
 
     name: str
@@ -61,7 +61,7 @@ class Frame(Value):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Inertia(Value):
+class Inertia(ArrayValue):
     """The mass that moves with a frame: kept for programs that move masses; nothing here depends on it."""
 
     mass_kg: float

@@ -1,9 +1,14 @@
 """Equality by value for frozen dataclasses that hold arrays or mappings, which Python neither compares nor hashes."""
 
 import json
+from collections.abc import Callable, Mapping
+from dataclasses import fields
 from hashlib import sha256
 from typing import Any
 
+import numpy as np
+
+from ikde.kernels.arrays import read_only
 from ikde.model.plain_data import encode
 
 
@@ -34,3 +39,23 @@ def _digest(value: Any) -> bytes:
         text = json.dumps(encode(value), default=lambda number: number.item())
         object.__setattr__(value, "_digest", sha256(text.encode()).digest())
         return value._digest
+
+
+class ArrayValue(Value):
+    """A value whose arrays are read-only copies, also after pickling or copying: what is found of it is kept."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        for field in fields(self):  # type: ignore[arg-type]
+            if isinstance(array := getattr(self, field.name), np.ndarray):
+                object.__setattr__(self, field.name, read_only(array.copy()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        known = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        return make_anew, (type(self), known)
+
+
+def make_anew(kind: Callable[..., Any], known: Mapping[str, Any]) -> Any:
+    """One of a class, by the names of its fields: how pickling comes to read-only arrays again."""
+    return kind(**known)

@@ -1,15 +1,17 @@
 """Whether a configuration is free of self-collision, and by how much, pair by pair."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Pairs
+from ikde.model.value import make_anew
 from ikde.solver.joints import JointValues, joints_outside, read_configuration, read_joints
 from ikde.solver.plain import compute_gaps
 from ikde.solver.verify import Bools, MaskedBools
@@ -43,6 +45,12 @@ class CheckResult:
     outside_limits: tuple[str, ...]
     """Joints of `q` outside their limits."""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "q", read_only(self.q.copy()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return make_anew, (CheckResult, {field.name: getattr(self, field.name) for field in fields(self)})
+
     def __repr__(self) -> str:
         if not self.pairs:
             return "<CheckResult: self-collision not checked>"
@@ -68,6 +76,16 @@ class CheckResults:
     """[K, P] clearance of every pair."""
     inside_limits: Bools
     """[K] whether every joint is inside its limits."""
+
+    def __post_init__(self) -> None:
+        """What was checked stays what it is: no column can be written to by mistake."""
+        for name in ("q", "clearance_m", "closest_pair", "gaps_m", "inside_limits"):
+            read_only(getattr(self, name))
+        read_only(self.collision.data)
+        self.collision.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return make_anew, (CheckResults, {field.name: getattr(self, field.name) for field in fields(self)})
 
     def __len__(self) -> int:
         return len(self.q)

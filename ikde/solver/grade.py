@@ -5,8 +5,9 @@ every row or a sample, and must agree to 1e-11. What each shares with the search
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ikde.errors import VerificationError
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.robot import Robot
 from ikde.model.target import Targets
+from ikde.model.value import make_anew
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.metrics import AGREEMENT, Metrics, compute_disagreement, judge_clearances, measure_scale
@@ -41,6 +43,10 @@ class Outcomes:
     """[T] accepted by every grader that graded it, and none disagrees."""
     explanations: Mapping[int, Explanation]
     """Row -> why, of rows that were explained; the others have their counts."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        known = {field.name: getattr(self, field.name) for field in fields(self)}
+        return make_anew, (Outcomes, known)  # without what was computed of them: arrays that travel arrive writable
 
     @property
     def metrics(self) -> Metrics:

@@ -11,6 +11,7 @@ from ikde.errors import InputError
 from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints, read_only
 from ikde.model.target import KINDS, Target, Targets
+from ikde.model.value import make_anew
 from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
@@ -121,6 +122,10 @@ class SolveResults:
                 if isinstance(column, np.ndarray):
                     read_only(column)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        known = {field.name: getattr(self, field.name) for field in fields(self)}
+        return make_anew, (SolveResults, known)  # arrays that travel arrive writable
+
     def __len__(self) -> int:
         return len(self.targets)
 
@@ -217,7 +222,14 @@ def read_rows(index: Any, count: int) -> Ints:
     """
     if isinstance(index, slice):
         return np.arange(count)[index]
-    chosen = np.asarray(np.ma.filled(index, False) if isinstance(index, np.ma.MaskedArray) else index)
+    if isinstance(index, np.ma.MaskedArray):
+        if index.dtype != np.bool_ and np.ma.is_masked(index):
+            raise IndexError("expected places, but some are masked")
+        index = np.ma.filled(index, False)
+    try:
+        chosen = np.asarray(index)
+    except ValueError:  # lists of several lengths
+        chosen = np.empty((0, 0))
     if chosen.dtype == np.bool_ and chosen.shape != (count,):
         raise IndexError(f"expected a mask of {count} rows, got shape {chosen.shape}")
     if chosen.ndim != 1 or (chosen.dtype.kind not in "biu" and chosen.size):

@@ -151,6 +151,14 @@ def test_what_is_wrong_with_the_cache_is_one_line(tmp_path):
     assert line.startswith(f"ikde: the cache folder {cache} is not used: {cache} can be written by others (mode 777); ")
 
 
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_a_table_is_written_in_any_encoding(encoding):
+    told = {**os.environ, "PYTHONIOENCODING": encoding}
+    done = subprocess.run([sys.executable, "-m", "ikde", "robots", "list"], check=False, env=told, capture_output=True)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"qiao2021" in done.stdout
+
+
 def test_other_warnings_stay_as_they_are(monkeypatch, capsys):
     shown = []
     monkeypatch.setattr(warnings, "showwarning", lambda message, *_: shown.append(str(message)))

@@ -84,3 +84,16 @@ def test_spheres_come_from_a_file_and_go_to_one(cli, refuse, tmp_path):
     assert "which are not checked: upper" in cli("robots", "import", path, "--spheres", curobo).out
     both = refuse("robots", "import", path, "--spheres", curobo, "--no-spheres")
     assert "expected one of --spheres and --no-spheres" in both
+
+
+def test_what_is_read_is_not_written_over(refuse, tmp_path):
+    path, srdf = write(tmp_path, ARM), write(tmp_path, '<robot name="arm"/>', "arm.srdf")
+    for out in (path, srdf, tmp_path / ".." / tmp_path.name / path.name):
+        before = out.read_bytes()
+        said = refuse("robots", "import", path, "--srdf", srdf, "-o", out)
+        assert "is what is read; expected another file to write" in said
+        assert out.read_bytes() == before
+
+
+def test_a_name_that_no_file_can_have_is_refused(refuse):
+    assert "no robot 'xxx" in refuse("robots", "import", "x" * 5000)

@@ -24,7 +24,14 @@ def test_a_robot_may_be_named_or_be_a_file():
     assert read_robot(robot_path("ur5")) == robot
 
 
-@pytest.mark.parametrize(("given", "message"), [(3, "robot: expected a Robot"), ("ur6", "robot: no robot is called")])
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (3, "robot: expected a Robot"),
+        ("ur6", "robot: no robot is called"),
+        ("x" * 5000, "robot: no robot is called 'xxx"),
+    ],
+)
 def test_what_is_no_robot_is_refused(given, message):
     with pytest.raises(InputError, match=f"^{message}"):
         read_robot(given)
@@ -122,6 +129,9 @@ def test_many_targets_may_be_arrays_or_a_list_of_all_kinds(given, expected):
         ([P, (1.0, np.inf, 2.0)], r"targets\[1\]: expected finite numbers"),
         (np.zeros((2, 4)), r"targets: .*shape \(2, 4\)"),
         ([T[:3, :3]] * 2, r"targets: .*rotations have no position"),
+        (SimpleNamespace(A=T[:3, :3]), r"targets: .*rotations have no position"),
+        ([P, np.ma.masked_array(P, mask=[0, 1, 0])], "targets: .*got "),
+        ({1.0, 2.0, 3.0}, "targets: .*got {"),
         (3, "targets: .*got 3"),
         ({"a": 1}, "targets: .*got {'a': 1}"),
         ("abc", "targets: .*got 'abc'"),

@@ -8,6 +8,13 @@ from ikde.errors import InputError
 from ikde.model.numbers import read_numbers
 
 
+class RecordsItsGradient:
+    """As a tensor of torch is."""
+
+    def __array__(self, dtype=None, copy=None):
+        raise RuntimeError("can't call numpy() on a tensor that requires grad")
+
+
 @pytest.mark.parametrize("values", [(1, 2.5), [1, 2.5], np.array([1.0, 2.5]), np.ma.masked_array([1.0, 2.5])])
 def test_numbers_are_copied(values):
     read = read_numbers(values, ("q",))
@@ -23,6 +30,11 @@ def test_numbers_are_copied(values):
         ([1j, 2.0], "expected numbers"),
         (np.array([1j, 2.0]), "got complex ones"),
         (np.ma.masked_array([1.0, 2.0], mask=[False, True]), "some are masked"),
+        ([np.ma.masked_array([1.0, 2.0], mask=[False, True]), (1.0, 2.0)], "some are masked"),
+        (np.zeros(3, "datetime64[s]"), "got dates"),
+        (np.zeros(3, "timedelta64[s]"), "got times"),
+        (np.zeros(3, [("x", float)]), "got records"),
+        (RecordsItsGradient(), "expected numbers"),
     ],
 )
 def test_what_is_no_number_is_refused(values, message):

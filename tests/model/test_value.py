@@ -9,6 +9,7 @@ import pytest
 
 from ikde.io.robots import load_robot
 from ikde.model.pack import pack_robot
+from ikde.model.robot import Frame
 from ikde.model.target import Target, Targets
 
 THROUGH = [lambda value: pickle.loads(pickle.dumps(value)), copy.copy, copy.deepcopy]
@@ -23,6 +24,21 @@ def test_a_copy_is_equal_and_finds_the_same_key(value, travel):
     assert other is not value
     assert other == value
     assert {value: "found"}[other] == "found"
+
+
+@pytest.mark.parametrize("travel", [lambda value: value, *THROUGH], ids=["same", "pickle", "copy", "deepcopy"])
+def test_nothing_writes_to_a_robot_whose_kernels_are_kept(travel):
+    frame = travel(load_robot("ur5")).frames[3]
+    for array in (frame.p_parent_frame, frame.R_parent_frame, frame.axis):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+
+
+def test_a_frame_does_not_share_the_array_it_was_made_of():
+    place = np.array([0.0, 0.0, 1.0])
+    frame = Frame(name="a", parent="world", p_parent_frame=place, R_parent_frame=np.eye(3))
+    place[2] = 5.0
+    assert frame.p_parent_frame.tolist() == [0.0, 0.0, 1.0]
 
 
 def test_an_equal_robot_shares_what_was_prepared_for_the_first():

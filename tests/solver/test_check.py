@@ -1,5 +1,7 @@
 """`check`: the clearance of every pair, worst first; collision begins at the safe distance, which belongs to it."""
 
+import pickle
+from copy import deepcopy
 from dataclasses import replace
 
 import numpy as np
@@ -135,3 +137,12 @@ def test_of_many_nothing_is_said_that_was_not_checked(qiao):
     assert len(ikde.check_many(qiao, np.empty((0, 9)))) == 0
     with pytest.raises(InputError, match=r"q: expected configurations \[K, 9\], got shape \(9,\)"):
         ikde.check_many(qiao, qiao.home)
+
+
+@pytest.mark.parametrize("travel", [lambda given: given, lambda given: pickle.loads(pickle.dumps(given)), deepcopy])
+def test_what_was_checked_stays_what_it_is(qiao, travel):
+    many, one = travel(ikde.check_many(qiao, [qiao.home] * 2)), travel(ikde.check(qiao, qiao.home))
+    columns = (many.q, many.collision, many.clearance_m, many.closest_pair, many.gaps_m, many.inside_limits, one.q)
+    for column in (*columns, many.collision.data):
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = column[1]

@@ -1,5 +1,8 @@
 """Many results as arrays: slices, masks, tables; and what a notebook shows of them."""
 
+import pickle
+from copy import copy, deepcopy
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -60,6 +63,17 @@ def test_no_column_of_what_was_graded_can_be_written_to(rows, name, chosen):
     assert getattr(some, name).tolist() == before
 
 
+@pytest.mark.parametrize("travel", [lambda rows: pickle.loads(pickle.dumps(rows)), deepcopy, copy])
+def test_rows_that_travelled_are_the_same_and_cannot_be_written_to(rows, travel):
+    there = travel(rows)
+    assert there[1].q.tobytes() == rows[1].q.tobytes()
+    assert [row.reason for row in there] == [row.reason for row in rows]
+    for name in set(COLUMNS) - MEASURED_ANEW:
+        column = getattr(there, name)
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = column[-1]
+
+
 def test_a_choice_of_a_choice(rows):
     assert [row.stream for row in rows[2:][::2][1:]] == [4, 6]
     assert rows[rows.reached][-1].stream == 6
@@ -71,6 +85,8 @@ def test_a_choice_of_a_choice(rows):
         ([True, False], "expected a mask of 8 rows"),
         ([8], "out of bounds"),
         ([[1]], "expected a place"),
+        ([[0], [1, 2]], "expected a place"),
+        (np.ma.masked_array([0, 1], mask=[False, True]), "some are masked"),
         ([0.5], "expected a place"),
         ("a", "expected a place"),
         (True, "expected a mask of 8 rows"),
