@@ -1,5 +1,6 @@
 """The `ikde` command: its subcommands, and the one place where errors become exit codes."""
 
+import errno
 import os
 import sys
 import traceback
@@ -23,10 +24,10 @@ from ikde.cli.schema import schema
 from ikde.cli.solve import solve
 from ikde.cli.startup import (
     leave_garbage_at_exit,
+    prepare_streams,
     skip_garbage_collection,
     use_one_blas_thread,
     warn_in_one_line,
-    write_what_the_encoding_has,
 )
 from ikde.cli.track import track
 from ikde.cli.typed_forms import regroup
@@ -75,8 +76,8 @@ def run_and_exit() -> NoReturn:
     """Run the command line and exit."""
     skip_garbage_collection()
     use_one_blas_thread()
+    prepare_streams()
     warn_in_one_line()
-    write_what_the_encoding_has()
     code = run(sys.argv[1:])
     leave_garbage_at_exit()
     sys.exit(code)
@@ -89,8 +90,12 @@ def run(arguments: list[str]) -> int:
         code = int(app(regroup(arguments), prog_name="ikde", standalone_mode=False) or ExitCode.OK)
     except BaseException as error:
         if _reader_has_gone(error):  # `ikde check | head` has seen enough
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _pass_over_stdout()
             return ExitCode.OK
+        if isinstance(error, OSError) and error.errno == errno.ENOSPC:  # files say their name
+            _pass_over_stdout()
+            print_note("ikde: stdout cannot be written: no space is left on the device")
+            return ExitCode.BAD_INPUT
         if isinstance(error, SystemExit):  # a shell has its answer
             return int(error.code or ExitCode.OK)
         code, line = explain_error(error)
@@ -100,6 +105,11 @@ def run(arguments: list[str]) -> int:
     if code == ExitCode.INTERRUPTED:  # typer has turned Ctrl-C into this code already
         print_note(INTERRUPTED)
     return code
+
+
+def _pass_over_stdout() -> None:
+    """What is written but not gone yet would be an error once more when Python ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _reader_has_gone(error: BaseException | None) -> bool:

@@ -5,6 +5,7 @@ import os
 import sys
 import warnings
 from io import TextIOWrapper
+from pathlib import Path
 from typing import Any
 
 from ikde.cli.output import print_note
@@ -37,8 +38,14 @@ def skip_blas_probe() -> None:
     sys.modules.setdefault("scipy.linalg.cython_blas", None)  # type: ignore[arg-type]
 
 
-def write_what_the_encoding_has() -> None:
-    """A stdout that is not UTF-8, as of a pipe on Windows, shows `?` for the lines of tables, rather than none."""
+def prepare_streams() -> None:
+    """Streams that were closed swallow what is written, before a file takes their number.
+
+    A stdout that is not UTF-8, as of a pipe on Windows, shows `?` for the lines of tables, rather than none.
+    """
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
 

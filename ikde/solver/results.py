@@ -227,7 +227,7 @@ def read_rows(index: Any, count: int) -> Ints:
             raise IndexError("expected places, but some are masked")
         index = np.ma.filled(index, False)
     try:
-        chosen = np.asarray(index)
+        chosen: Any = np.asarray(index)
     except ValueError:  # lists of several lengths
         chosen = np.empty((0, 0))
     if chosen.dtype == np.bool_ and chosen.shape != (count,):

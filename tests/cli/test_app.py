@@ -159,6 +159,15 @@ def test_a_table_is_written_in_any_encoding(encoding):
     assert b"qiao2021" in done.stdout
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")  # noqa: PTH110
+def test_a_full_disk_is_one_line_and_a_closed_stdout_is_none():
+    command = f"{sys.executable} -m ikde schema robot"
+    full = subprocess.run(f"{command} >/dev/full", shell=True, check=False, capture_output=True, text=True)
+    assert (full.returncode, full.stderr) == (2, "ikde: stdout cannot be written: no space is left on the device\n")
+    closed = subprocess.run(f"{command} >&-", shell=True, check=False, capture_output=True, text=True)
+    assert (closed.returncode, closed.stderr) == (0, "")
+
+
 def test_other_warnings_stay_as_they_are(monkeypatch, capsys):
     shown = []
     monkeypatch.setattr(warnings, "showwarning", lambda message, *_: shown.append(str(message)))
