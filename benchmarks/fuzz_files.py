@@ -60,7 +60,7 @@ def work(pipe: Any, seed: int, folder: str) -> None:
     while (number := pipe.recv()) is not None:
         kind, data = fuzzer.make(seed, number)
         started = time.perf_counter()
-        outcome = judge(lambda: fuzzer.read(kind, data, draw=number // 12 % PAGE_EVERY == 0))  # noqa: B023
+        outcome = judge(lambda: fuzzer.read(kind, data, draw=number // len(KINDS) % PAGE_EVERY == 0))  # noqa: B023
         seconds = time.perf_counter() - started
         pipe.send((kind, outcome, seconds, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - base) / 1e3))
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import yaml
 from mutations import (
     Rng,
     mutate_bytes,
@@ -26,6 +27,7 @@ import ikde
 from ikde.batch.parts import serialize
 from ikde.batch.summary import summarise
 from ikde.io.joint_text import parse_joints
+from ikde.io.scene_writers import format_curobo_scene, format_moveit_scene
 from ikde.report.batch_page.answers import gather_answers
 from ikde.report.batch_page.page import make_batch_page
 from ikde.report.html import render_html
@@ -52,6 +54,12 @@ class Fuzzer:
         self.robots = [path.read_text() for path in sorted((ROOT / "ikde" / "robots").glob("*.yaml"))]
         self.runs = [path.read_text() for path in sorted((ROOT / "configs" / "runs").glob("*.yaml"))]
         self.tracks = [path.read_text() for path in sorted((ROOT / "configs" / "tracks").glob("*.yaml"))]
+        self.worlds = [path.read_text() for path in sorted((ROOT / "configs" / "worlds").glob("*.yaml"))]
+        self.scenes = [
+            json.dumps(yaml.safe_load(text)) for text in write_scenes(ikde.load_world(yaml.safe_load(self.worlds[0])))
+        ]
+        self.ply = write_ply(p)
+        self.pcd = write_pcd(p)
         shutil.copy(ROOT / "configs" / "runs" / "from_csv.csv", folder)
         (folder / "points.csv").write_text(self.csv)
         ikde.run_batch(ikde.load_batch(_small_run(folder)), self.run, threads=1)
@@ -70,6 +78,14 @@ class Fuzzer:
             "targets, Parquet": lambda rng: mutate_parquet(rng, self.parquet, write_parquet),
             "targets, NPZ stored": lambda rng: mutate_npz(rng, self.arrays, zipfile.ZIP_STORED),
             "targets, NPZ compressed": lambda rng: mutate_npz(rng, self.arrays, zipfile.ZIP_DEFLATED),
+            "world, YAML": lambda rng: mutate_yaml(rng, pick(rng, self.worlds)),
+            "world, JSON": lambda rng: mutate_json(rng, pick(rng, self.scenes)),
+            "cloud, PLY": lambda rng: (
+                _mutate_text(rng, self.ply) if rng.random() < 0.5 else mutate_words(rng, self.ply)
+            ),
+            "cloud, PCD": lambda rng: (
+                _mutate_text(rng, self.pcd) if rng.random() < 0.5 else mutate_words(rng, self.pcd)
+            ),
             "run folder, manifest": lambda rng: mutate_json(rng, (self.kept[self.run / "manifest.json"]).decode()),
             "run folder, solutions": lambda rng: self._mutate_part(rng, "solutions"),
             "run folder, timing": lambda rng: self._mutate_part(rng, "timing"),
@@ -87,6 +103,13 @@ class Fuzzer:
         if what == "run folder":
             self._read_run(form, data, draw)
             return
+        if what == "cloud":
+            name = f"case.{form.lower()}"
+            (self.folder / name).write_bytes(data)
+            world = self.folder / "cloud.yaml"
+            world.write_text(f"obstacles: {{a: {{cloud: {{path: {name}, radius: 0.01}}}}}}")
+            ikde.load_world(world)
+            return
         endings = {"YAML": "yaml", "JSON": "json", "CSV": "csv", "Parquet": "parquet"}
         path = self.folder / f"case.{endings.get(form, 'npz')}"
         path.write_bytes(data)
@@ -94,6 +117,7 @@ class Fuzzer:
             "robot": lambda: ikde.load_robot(path),
             "run": lambda: ikde.load_batch(path),
             "track": lambda: ikde.load_track(path),
+            "world": lambda: ikde.write_world(ikde.load_world(path), self.folder / "written.yaml"),
             "q": lambda: parse_joints(self.robot, str(path), "m", "rad"),
             "targets": lambda: ikde.load_batch(_table_run(path)),
         }
@@ -122,6 +146,27 @@ class Fuzzer:
 
 def _mutate_text(rng: Rng, text: str) -> bytes:
     return mutate_bytes(rng, text.encode())
+
+
+def write_scenes(world: ikde.World) -> list[str]:
+    """A world as scenes of MoveIt and cuRobo."""
+    return [format_moveit_scene(world).text, format_curobo_scene(world).text]
+
+
+def write_ply(p: np.ndarray) -> str:
+    """Points as a PLY file of text."""
+    head = f"ply\nformat ascii 1.0\nelement vertex {len(p)}\n"
+    fields = "".join(f"property double {axis}\n" for axis in "xyz")
+    return f"{head}{fields}end_header\n" + _lines(p)
+
+
+def write_pcd(p: np.ndarray) -> str:
+    """Points as a PCD file of text."""
+    return f"FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nPOINTS {len(p)}\nDATA ascii\n" + _lines(p)
+
+
+def _lines(p: np.ndarray) -> str:
+    return "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in p.tolist())
 
 
 def _npy(array: np.ndarray) -> bytes:

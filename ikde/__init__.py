@@ -24,6 +24,8 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.urdf_import.options import ImportOptions as ImportOptions
     from ikde.io.urdf_import.read_urdf import import_urdf as import_urdf
     from ikde.io.urdf_import.read_urdf import read_urdf as read_urdf
+    from ikde.io.world_file import load_world as load_world
+    from ikde.io.world_writer import write_world as write_world
     from ikde.kernels.jit import compile_clock as compile_clock
     from ikde.model.collision_model import CollisionModel as CollisionModel
     from ikde.model.compose import compose as compose
@@ -33,6 +35,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.model.robot import Robot as Robot
     from ikde.model.target import Target as Target
     from ikde.model.target import Targets as Targets
+    from ikde.model.world import World as World
     from ikde.paper.surface import check_surface as check_surface
     from ikde.solver.check import CheckResult as CheckResult
     from ikde.solver.check import CheckResults as CheckResults
@@ -81,6 +84,9 @@ _HOME = {
     "write_trajectory": "ikde.io.trajectory_files",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
+    "load_world": "ikde.io.world_file",
+    "write_world": "ikde.io.world_writer",
+    "World": "ikde.model.world",
     "format_urdf": "ikde.io.urdf",
     "import_urdf": "ikde.io.urdf_import.read_urdf",
     "read_urdf": "ikde.io.urdf_import.read_urdf",

@@ -33,6 +33,7 @@ def find_blocks(page, language, having=""):
 TRACKS = find_blocks("track.md", "yaml")
 RUNS = find_blocks("batch.md", "yaml", having="^targets:")
 ROBOTS = find_blocks("robot_file.md", "yaml", having="^joints:")
+WORLDS = find_blocks("worlds.md", "yaml", having="^obstacles:")
 PYTHON = {page: find_blocks(page, "python") for page in sorted(PAGES)}
 
 
@@ -50,6 +51,7 @@ def test_examples_are_found():
     assert len(PYTHON["track.md"]) >= 2
     assert RUNS
     assert ROBOTS
+    assert WORLDS
     assert PYTHON["README.md"]
 
 
@@ -93,6 +95,26 @@ def test_a_robot_example_loads(text, tmp_path):
     file.write_text(text, encoding="utf-8")
     robot = ikde.load_robot(file)
     assert robot.tool in ikde.forward(robot, robot.home)
+
+
+@pytest.mark.parametrize("text", WORLDS)
+def test_a_world_example_loads(text, tmp_path):
+    file = tmp_path / "example.yaml"
+    file.write_text(text, encoding="utf-8")
+    assert ikde.load_world(file)["shelf"].frame == "world"
+
+
+def test_the_world_of_configs_has_every_kind_of_solid():
+    world = ikde.load_world(ROOT / "configs" / "worlds" / "kitchen.yaml")
+    kinds = {solid.kind for obstacle in world.obstacles for solid in obstacle.solids}
+    assert kinds == {"sphere", "box", "cylinder", "capsule", "cone", "half_space", "hull", "cloud"}
+
+
+def test_a_python_example_of_a_world_writes_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = {"ikde": ikde}
+    exec(compile(PYTHON["worlds.md"][0].values[0], "example", "exec"), names)
+    assert ikde.load_world("ball.yaml").digest == names["world"].digest
 
 
 @pytest.mark.parametrize("text", [block for blocks in PYTHON.values() for block in blocks])

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
-SEED, FILES = 2, 300
+SEED, FILES = 2, 400
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def test_a_mutated_file_is_an_answer_or_one_line(fuzzer):
     outcomes = Counter()
     for number in range(FILES):
         kind, data = files.make(SEED, number)
-        outcome = module.judge(lambda kind=kind, data=data, draw=number < 12: files.read(kind, data, draw=draw))
+        outcome = module.judge(lambda kind=kind, data=data, draw=number < 16: files.read(kind, data, draw=draw))
         assert outcome in ("answer", "one line"), f"file {number}, {kind}: {outcome}"
         outcomes[kind, outcome] += 1
     assert {kind for kind, _ in outcomes} == set(module.KINDS)
@@ -35,7 +35,7 @@ def test_the_same_number_is_the_same_file(fuzzer):
     module, files = fuzzer
     forwards = [files.make(SEED, number) for number in range(FILES)]
     assert forwards == [files.make(SEED, number) for number in reversed(range(FILES))][::-1]
-    assert [files.make(SEED, number)[0] for number in range(12)] == list(module.KINDS)
+    assert [files.make(SEED, number)[0] for number in range(16)] == list(module.KINDS)
 
 
 def test_what_is_not_mutated_is_answered(fuzzer):
@@ -47,6 +47,10 @@ def test_what_is_not_mutated_is_answered(fuzzer):
         *(("robot, YAML", text.encode()) for text in files.robots),
         *(("run, YAML", text.encode()) for text in files.runs),
         *(("track, YAML", text.encode()) for text in files.tracks),
+        *(("world, YAML", text.encode()) for text in files.worlds),
+        *(("world, JSON", text.encode()) for text in files.scenes),
+        ("cloud, PLY", files.ply.encode()),
+        ("cloud, PCD", files.pcd.encode()),
     ):
         assert module.judge(lambda kind=kind, data=data: files.read(kind, data)) == "answer"
 

@@ -32,6 +32,7 @@ from ikde.cli.startup import (
 from ikde.cli.track import track
 from ikde.cli.typed_forms import regroup
 from ikde.cli.warmup import warmup
+from ikde.cli.worlds import worlds
 from ikde.errors import InputError, printable
 
 # Click's UsageError, wherever typer keeps it: newer ones carry a copy of click of their own.
@@ -69,6 +70,7 @@ def root(
 for command in (solve, fk, check, batch, report, track, schema, warmup, doctor, completion):
     app.command(cls=Command)(command)
 app.add_typer(robots, name="robots")
+app.add_typer(worlds, name="worlds")
 app.add_typer(bench, name="bench")
 
 

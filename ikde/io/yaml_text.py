@@ -19,7 +19,8 @@ def format_flow(value: Any) -> str:
         text = repr(value + 0.0).removesuffix(".0")
         return text.replace("e", ".0e") if "e" in text and "." not in text else text  # 1e-5 is text to some readers
     if isinstance(value, str):
-        return value if _WORD.fullmatch(value) and value.lower() not in _NO_WORDS else json.dumps(value)
+        is_word = _WORD.fullmatch(value) and value.lower() not in _NO_WORDS
+        return value if is_word else json.dumps(value, ensure_ascii=not value.isprintable())  # YAML has no surrogates
     return str(value)
 
 

@@ -33,9 +33,21 @@ def test_the_schema_of_a_robot_file_is_there_too(cli):
     )
 
 
+def test_the_schema_of_a_world_file_is_there_too(cli):
+    data = cli("schema", "world").data
+    assert data["required"] == ["obstacles"]
+    obstacle = data["$defs"]["ObstacleEntry"]["properties"]
+    assert {"box", "sphere", "hull", "cloud", "parts", "margin", "ignore", "group"} <= set(obstacle)
+    assert obstacle["box"]["description"] == "Whole edges along its own x, y, z."
+    assert data["$defs"]["RoundEntry"]["required"] == ["radius", "height"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
-    [((), "of batch, track, robot, got nothing"), (("bacth",), "robot, got bacth (did you mean 'batch'?)")],
+    [
+        ((), "of batch, track, robot, world, got nothing"),
+        (("bacth",), "robot, world, got bacth (did you mean 'batch'?)"),
+    ],
 )
 def test_other_names_are_refused(refuse, arguments, words):
     assert words in refuse("schema", *arguments)

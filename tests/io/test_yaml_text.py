@@ -10,6 +10,7 @@ DATA = {
     "balls": [{"center": [0.1, 0.0, 3e-17], "radius": 0.05}],
     "empty": [],
     "word": "base_link",
+    "é 🙂": "naïve: 🙂",
 }
 
 

@@ -1,0 +1,162 @@
+"""A world of obstacles, as values: named, posed, each with a margin of its own. Worlds never become types or text."""
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikde.errors import InputError, nearest
+from ikde.kernels.arrays import Floats
+from ikde.model.names import check_printable
+from ikde.model.numbers import is_number
+from ikde.model.robot import MAX_MAGNITUDE, WORLD
+from ikde.model.solids import Solid, read_pose
+
+MAX_OBSTACLES = MAX_SOLIDS = 100_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Obstacle:
+    """Solids that stand together under one name."""
+
+    name: str
+    solids: tuple[Solid, ...]
+    T_world_obstacle: Floats
+    """[3, 4]; rotation and m, read-only. In the world, or in `frame`."""
+    frame: str = WORLD
+    """A frame of the robot that no joint moves, if it does not stand in the world's."""
+    margin_m: float = 0.0
+    """Added to the distance that is asked for from everything else."""
+    ignore: tuple[str, ...] = ()
+    """Components of the robot that may touch it."""
+    group: str | None = None
+    """What it is switched with."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class World:
+    """Obstacles by name, in their order. It stays as it is: `add`, `move`, `remove` and `switch` give another one."""
+
+    obstacles: tuple[Obstacle, ...] = ()
+    switched_off: frozenset[str] = field(default_factory=frozenset)
+    """Groups that do not count."""
+
+    @cached_property
+    def active(self) -> tuple[Obstacle, ...]:
+        """Those that count, in their order."""
+        return tuple(o for o in self.obstacles if o.group is None or o.group not in self.switched_off)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all obstacles."""
+        return tuple(obstacle.name for obstacle in self.obstacles)
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Of all obstacles, each once, in the order of their first."""
+        return tuple(dict.fromkeys(o.group for o in self.obstacles if o.group is not None))
+
+    @cached_property
+    def digest(self) -> str:
+        """Of all numbers and names that a verdict depends on."""
+        sha = hashlib.sha256()
+        for obstacle in self.active:
+            sha.update(
+                repr((obstacle.name, obstacle.frame, obstacle.margin_m, obstacle.ignore, len(obstacle.solids))).encode()
+            )
+            sha.update(obstacle.T_world_obstacle.tobytes())
+            for solid in obstacle.solids:
+                sha.update(repr((solid.kind, solid.size_m)).encode() + solid.T_obstacle_solid.tobytes())
+                sha.update(b"" if solid.points is None else solid.points.tobytes())
+        return sha.hexdigest()
+
+    def __getitem__(self, name: str) -> Obstacle:
+        return self.obstacles[self._place(name)]
+
+    def __len__(self) -> int:
+        return len(self.obstacles)
+
+    def __repr__(self) -> str:
+        off = f", off: {', '.join(sorted(self.switched_off))}" if self.switched_off else ""
+        return f"<World of {len(self)} obstacles{off}>"
+
+    def add(self, *obstacles: Obstacle) -> "World":
+        """The world with further obstacles."""
+        return make_world((*self.obstacles, *obstacles), self.switched_off)
+
+    def remove(self, *names: str) -> "World":
+        """The world without some obstacles."""
+        gone = {self._place(name) for name in names}
+        return replace(self, obstacles=tuple(o for place, o in enumerate(self.obstacles) if place not in gone))
+
+    def move(self, name: str, T_world_obstacle: ArrayLike) -> "World":
+        """The world with an obstacle at another pose [4, 4] or [3, 4], m."""
+        place, T = self._place(name), read_pose(T_world_obstacle, ("T_world_obstacle",))
+        moved = replace(self.obstacles[place], T_world_obstacle=T)
+        return replace(self, obstacles=(*self.obstacles[:place], moved, *self.obstacles[place + 1 :]))
+
+    def switch(self, /, **groups: bool) -> "World":
+        """The world with groups of obstacles on or off."""
+        known = dict.fromkeys(self.groups)
+        for group in groups:
+            if group not in known:
+                raise InputError(f"no group is called {group!r}{nearest(group, known)}", ("groups", group))
+        off = (self.switched_off - groups.keys()) | {group for group, on in groups.items() if not on}
+        return replace(self, switched_off=frozenset(off))
+
+    def _place(self, name: str) -> int:
+        if name not in self.names:
+            raise InputError(f"no obstacle is called {name!r}{nearest(str(name), self.names)}", ("obstacle",))
+        return self.names.index(name)
+
+
+def make_world(obstacles: Iterable[Obstacle], switched_off: Iterable[str] = ()) -> World:
+    """A world whose names are known to be right; raises `InputError`."""
+    found: dict[str, Obstacle] = {}
+    for obstacle in obstacles:
+        if obstacle.name in found:
+            raise InputError(f"two obstacles are called {obstacle.name!r}", ("obstacles", obstacle.name))
+        found[obstacle.name] = obstacle
+    if len(found) > MAX_OBSTACLES:
+        raise InputError(f"expected at most {MAX_OBSTACLES:,} obstacles, got {len(found):,}", ("obstacles",))
+    count = sum(len(obstacle.solids) for obstacle in found.values())
+    if count > MAX_SOLIDS:
+        raise InputError(f"expected at most {MAX_SOLIDS:,} solids in all, got {count:,}", ("obstacles",))
+    world = World(obstacles=tuple(found.values()))
+    return world.switch(**dict.fromkeys(switched_off, False))
+
+
+def make_obstacle(
+    name: str,
+    solids: Iterable[Solid],
+    T_world_obstacle: ArrayLike | None = None,
+    *,
+    frame: str = WORLD,
+    margin_m: float = 0.0,
+    ignore: Iterable[str] = (),
+    group: str | None = None,
+) -> Obstacle:
+    """An obstacle that is known to be right; raises `InputError` that names what is wrong."""
+    check_printable(name, ("name",))
+    check_printable(frame, ("frame",))
+    if group is not None:
+        check_printable(group, ("group",))
+    if isinstance(ignore, str):
+        raise InputError(f"expected a list of components, got {ignore!r}", ("ignore",))
+    ignored = tuple(ignore)
+    for place, component in enumerate(ignored):
+        check_printable(component, ("ignore", place))
+    if not (is_number(margin_m) and 0.0 <= margin_m <= MAX_MAGNITUDE):
+        raise InputError(f"expected a margin of at least 0 m, got {margin_m!r}", ("margin",))
+    parts = tuple(solids)
+    if not parts:
+        raise InputError(f"{name!r} has no solid", ("solids",))
+    T = np.eye(4)[:3] if T_world_obstacle is None else T_world_obstacle
+    known = {"frame": frame, "margin_m": float(margin_m), "ignore": ignored, "group": group}
+    return Obstacle(name=name, solids=parts, T_world_obstacle=read_pose(T, ("T_world_obstacle",)), **known)
+
+
+NOTHING = World()

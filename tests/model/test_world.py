@@ -1,0 +1,87 @@
+"""Worlds: obstacles by name, switched by group; a digest of what counts."""
+
+import numpy as np
+import pytest
+
+from ikde.errors import InputError
+from ikde.model.solids import make_solid
+from ikde.model.world import World, make_obstacle, make_world
+
+BALL = make_solid("sphere", [0.1])
+BOX = make_solid("box", [0.1, 0.2, 0.3])
+
+
+def place(x):
+    T = np.eye(4)
+    T[0, 3] = x
+    return T
+
+
+@pytest.fixture
+def world():
+    return make_world([make_obstacle("ball", [BALL], place(1)), make_obstacle("box", [BOX, BALL], group="tools")])
+
+
+def test_obstacles_by_name(world):
+    assert len(world) == 2
+    assert world.names == ("ball", "box")
+    assert world["box"].solids == (BOX, BALL)
+    with pytest.raises(InputError, match="no obstacle is called 'bal' \\(did you mean 'ball'\\?\\)"):
+        world["bal"]
+    with pytest.raises(InputError, match="two obstacles are called 'ball'"):
+        world.add(make_obstacle("ball", [BOX]))
+
+
+def test_another_world_comes_of_every_change(world):
+    assert world.add(make_obstacle("new", [BOX])).names == ("ball", "box", "new")
+    assert world.remove("ball").names == ("box",)
+    assert world.move("box", place(2))["box"].T_world_obstacle[0, 3] == 2
+    assert world.names == ("ball", "box")
+    assert not world["box"].T_world_obstacle[0, 3]
+
+
+def test_groups_are_switched(world):
+    off = world.switch(tools=False)
+    assert [o.name for o in off.active] == ["ball"]
+    assert off.switch(tools=True).active == world.active
+    assert make_world([make_obstacle("a", [BALL], group="self")], ["self"]).active == ()
+    with pytest.raises(InputError, match="no group is called 'tool'"):
+        world.switch(tool=False)
+
+
+def test_a_digest_is_of_what_counts(world):
+    again = make_world([make_obstacle("ball", [BALL], place(1)), make_obstacle("box", [BOX, BALL], group="others")])
+    assert again.digest == world.digest
+    assert world.remove("box").digest == world.switch(tools=False).digest
+    minus_zero = np.where(place(1) == 0.0, -0.0, place(1))
+    assert world.move("ball", minus_zero).digest == world.digest
+    others = [
+        world.move("ball", place(1 + 1e-15)),
+        world.remove("box"),
+        make_world([world["box"], world["ball"]]),
+        make_world([make_obstacle("ball", [BALL], place(1), margin_m=1e-3), world["box"]]),
+        make_world([make_obstacle("ball", [BALL], place(1), ignore=["arm"]), world["box"]]),
+        make_world([make_obstacle("ball", [BALL], place(1), frame="base"), world["box"]]),
+        make_world([make_obstacle("ball", [make_solid("sphere", [0.2])], place(1)), world["box"]]),
+        World(),
+    ]
+    assert len({w.digest for w in (world, *others)}) == len(others) + 1
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"name": "a\n"}, "printable"),
+        ({"solids": []}, "'a' has no solid"),
+        ({"margin_m": -0.1}, "margin: expected a margin of at least 0 m, got -0.1"),
+        ({"margin_m": np.nan}, "margin"),
+        ({"ignore": "arm"}, "ignore: expected a list of components, got 'arm'"),
+        ({"ignore": ["arm", ""]}, r"ignore\[1\]: expected a name"),
+        ({"frame": ""}, "frame: expected a name"),
+        ({"group": 3}, "group: expected a name"),
+        ({"T_world_obstacle": 2 * np.eye(4)}, "expected a rotation"),
+    ],
+)
+def test_an_obstacle_that_is_none(given, said):
+    with pytest.raises(InputError, match=said):
+        make_obstacle(**{"name": "a", "solids": [BALL]} | given)
