@@ -31,12 +31,13 @@ def compose_robot(
     Example: ikde robots compose --base platform.yaml --arm ur5 --mount "0.3 0 0.4" --tool tool.yaml -o robot.yaml
     """
     from ikde.io.robot_writer import write_robot
-    from ikde.io.robots import load_part, load_robot
+    from ikde.io.robots import check_kept, load_part, load_robot
     from ikde.model.collision_model import CollisionModel
     from ikde.model.compose import compose
     from ikde.report.numbers import Units
     from ikde.report.robot import format_robot, robot_json
 
+    check_kept(out, Path(base), Path(arm), tool)
     robot = compose(load_robot(base), load_robot(arm), _read_mount(mount), None if tool is None else load_part(tool))
     if out is not None:
         notes = [f"Composed of {base}, {arm} at {mount}{'' if tool is None else f', {tool}'}; m and rad."]

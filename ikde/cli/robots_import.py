@@ -64,7 +64,7 @@ def import_robot(
     """
     from ikde.errors import InputError
     from ikde.io.robot_writer import write_robot
-    from ikde.io.robots import find_urdf, is_there
+    from ikde.io.robots import check_kept, find_urdf
     from ikde.io.urdf_import.imported import list_notes
     from ikde.io.urdf_import.options import ImportOptions, read_holds
     from ikde.io.urdf_import.read_urdf import read_urdf
@@ -74,9 +74,7 @@ def import_robot(
     if spheres is not None and no_spheres:
         raise InputError("expected one of --spheres and --no-spheres, got both")
     path, folders = find_urdf(file)
-    for read in (path, srdf, spheres):
-        if out is not None and read is not None and is_there(out) and is_there(read) and out.samefile(read):
-            raise InputError(f"{out} is what is read; expected another file to write", ("out",))
+    check_kept(out, path, srdf, spheres)
     imported = read_urdf(
         path,
         ImportOptions(

@@ -92,6 +92,13 @@ def parse_file(path: Path) -> Robot:
     return parse_robot(read_yaml(path))
 
 
+def check_kept(out: Path | None, *read: Path | None) -> None:
+    """Raise `InputError` if what is to be written is one of the files that are read."""
+    for path in read:
+        if out is not None and path is not None and is_there(out) and is_there(path) and out.samefile(path):
+            raise InputError(f"{out} is what is read; expected another file to write", ("out",))
+
+
 def load_part(path: Path) -> Robot:
     """A robot for `compose`, from a file: unlike others it may have no joints at all, as a rigid tool."""
     if is_urdf(path):

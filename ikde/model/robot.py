@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
-from ikde.model.value import ArrayValue, Value
+from ikde.model.value import ReadOnlyValue
 
 WORLD = "world"
 NO_DETECTOR = "none"
@@ -46,7 +46,7 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Frame(ArrayValue):
+class Frame(ReadOnlyValue):
     """A frame of the tree: T_parent_frame(q) = [R_parent_frame, p_parent_frame] @ joint motion about `axis`."""
 
     name: str
@@ -61,7 +61,7 @@ class Frame(ArrayValue):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Inertia(ArrayValue):
+class Inertia(ReadOnlyValue):
     """The mass that moves with a frame: kept for programs that move masses; nothing here depends on it."""
 
     mass_kg: float
@@ -169,7 +169,7 @@ class LeftOutPair:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False, weakref_slot=True)
-class Robot(Value):
+class Robot(ReadOnlyValue):
     """A robot that has been checked: parents come before children and every name resolves (`model.validate`)."""
 
     name: str

@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from hashlib import sha256
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -41,19 +42,32 @@ def _digest(value: Any) -> bytes:
         return value._digest
 
 
-class ArrayValue(Value):
-    """A value whose arrays are read-only copies, also after pickling or copying: what is found of it is kept."""
+class ReadOnlyValue(Value):
+    """A value whose arrays and mappings are read-only copies, also after pickling or copying: what is found is kept."""
 
     __slots__ = ()
 
     def __post_init__(self) -> None:
         for field in fields(self):  # type: ignore[arg-type]
-            if isinstance(array := getattr(self, field.name), np.ndarray):
-                object.__setattr__(self, field.name, read_only(array.copy()))
+            object.__setattr__(self, field.name, _keep(getattr(self, field.name)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        known = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        known = {field.name: _pack(getattr(self, field.name)) for field in fields(self)}  # type: ignore[arg-type]
         return make_anew, (type(self), known)
+
+
+def _keep(value: Any) -> Any:
+    """A read-only copy of an array or a mapping; anything else is as it is."""
+    if isinstance(value, np.ndarray):
+        return read_only(value.copy())
+    if isinstance(value, Mapping):
+        return MappingProxyType({key: _keep(item) for key, item in value.items()})
+    return value
+
+
+def _pack(value: Any) -> Any:
+    """What `_keep` has made, as pickle takes it."""
+    return {key: _pack(item) for key, item in value.items()} if isinstance(value, MappingProxyType) else value
 
 
 def make_anew(kind: Callable[..., Any], known: Mapping[str, Any]) -> Any:

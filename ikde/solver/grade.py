@@ -20,7 +20,7 @@ from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.metrics import AGREEMENT, Metrics, compute_disagreement, judge_clearances, measure_scale
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, SolveResult, StopReason
+from ikde.solver.result import STOP_REASONS, SolveResult, StopReason, change_result
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, Grade, MaskedBools, verify_many
 
@@ -139,7 +139,7 @@ def confirm(robot: Robot, result: SolveResult) -> SolveResult:
     if not gap <= AGREEMENT or (result.reached and plain.outside_limits):
         raise _disagreement(gap, result.q)
     split = {"reached": False, "stop_reason": StopReason.BUDGET, "reason": SPLIT, "hint": None}
-    return result.with_changes(verified=True, grade=plain, **(split if result.reached and not plain.accepted else {}))
+    return change_result(result, verified=True, grade=plain, **(split if result.reached and not plain.accepted else {}))
 
 
 def _choose(bulk: BulkOptions, first_stream: int, accepted: Bools) -> Ints:

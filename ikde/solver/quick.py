@@ -15,7 +15,7 @@ from ikde.solver.choice import find_free
 from ikde.solver.engines.pool import runs_on_tables
 from ikde.solver.explain import explain_reach, explain_ruled_out
 from ikde.solver.problem import Problem, make_problem
-from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason
+from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, change_result
 from ikde.solver.settings import SolveSettings, choose_settings
 from ikde.solver.way import as_word
 
@@ -52,11 +52,11 @@ class Quick(Ask):
         maker = self._maker if engine == self.engine else ResultMaker(self._problem, engine)
         result = maker.make(row, target, seed, stream, solve_seconds)
         if excess != (0.0, 0.0):
-            return result.with_changes(**OUT_OF_REACH)
+            return change_result(result, **OUT_OF_REACH)
         if why < 0:
             return result
         explain = partial(explain_ruled_out, row=row, why=why, seed=seed, stream=stream)
-        return result.with_changes(reached=False, stop_reason=STOP_REASONS[why], _explain=explain)
+        return change_result(result, reached=False, stop_reason=STOP_REASONS[why], _explain=explain)
 
     def _solve_first(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
         """An answer while there is no machine code, or the first with it: waiting for it is not solving."""
@@ -65,7 +65,7 @@ class Quick(Ask):
         waited_s, compile_s = self.ways.take_waited_s()
         if result is None or not waited_s:
             return result
-        return result.with_changes(solve_seconds=result.solve_seconds - waited_s, compile_seconds=compile_s)
+        return change_result(result, solve_seconds=result.solve_seconds - waited_s, compile_seconds=compile_s)
 
 
 @lru_cache(maxsize=64)

@@ -43,7 +43,7 @@ Parts = tuple["ResultMaker", Floats, Target, int, int, float]
 """Maker, row of numbers (`kernels/answer.py`), target, seed, stream, seconds of the search."""
 MADE_ANEW = ("q", "near")
 """Arrays that would arrive writable elsewhere."""
-NOT_FIELDS = ("with_changes", "grade", "family")
+NOT_FIELDS = ("grade", "family")
 
 STOP_REASONS = tuple(StopReason)  # in the order of their numbers in `SolveResults.stop_reasons`
 
@@ -70,11 +70,6 @@ class SolveResult:
     def __reduce__(self) -> tuple[Any, ...]:
         known = {name: value for name, value in self.__dict__.items() if name not in MADE_ANEW}
         return _restore, (self._parts, known)
-
-    def with_changes(self, **changes: Any) -> "SolveResult":
-        """A copy of which something else is known; its grade, unless given, is made anew."""
-        known = {name: value for name, value in self.__dict__.items() if name != "grade"}
-        return _restore(self._parts, {**known, **changes})
 
     @cached_property
     def reached(self) -> bool:
@@ -272,6 +267,12 @@ class ResultMaker:
         result = _new(SolveResult)
         _set_parts(result, (self, row, target, seed, stream, solve_seconds))
         return result
+
+
+def change_result(result: SolveResult, **changes: Any) -> SolveResult:
+    """A copy of which something else is known; its grade, unless given, is made anew."""
+    known = {name: value for name, value in vars(result).items() if name != "grade"}
+    return _restore(result._parts, {**known, **changes})
 
 
 def _restore(parts: Parts, known: Mapping[str, Any]) -> SolveResult:

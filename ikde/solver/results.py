@@ -20,7 +20,15 @@ from ikde.solver.fixed import tell_fixed
 from ikde.solver.grade import Outcomes, grade
 from ikde.solver.motion import measure_motion
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, count_blocking_pairs, reached_reason
+from ikde.solver.result import (
+    STOP_REASONS,
+    ResultMaker,
+    SolveResult,
+    StopReason,
+    change_result,
+    count_blocking_pairs,
+    reached_reason,
+)
 from ikde.solver.search import search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import Bools, MaskedBools
@@ -211,7 +219,7 @@ class SolveResults:
             story = self.explanation(index)
             own |= {name: getattr(story, name) for name in ("stop_reason", "reason", "hint", "blocking_pairs")}
             own |= {"reached": False}
-        return result.with_changes(**own)
+        return change_result(result, **own)
 
 
 def read_rows(index: Any, count: int) -> Ints:

@@ -20,7 +20,7 @@ from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.quick import Quick, find_quick
-from ikde.solver.result import SolveResult
+from ikde.solver.result import SolveResult, change_result
 from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, check_stream, choose_settings
 
@@ -93,7 +93,7 @@ def solve(
             return result
     result = solve_rows(problem, [target], seed=seed, first_stream=stream, strict=True).row(0)
     waited_s = perf_counter() - started - result.compile_seconds
-    return result.with_changes(solve_seconds=max(waited_s, result.solve_seconds))
+    return change_result(result, solve_seconds=max(waited_s, result.solve_seconds))
 
 
 def solve_many(

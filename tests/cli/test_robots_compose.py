@@ -61,3 +61,11 @@ def test_a_tool_without_joints_is_checked_as_any_robot(refuse, parts):
     parts[1].write_text(TOOL.replace("parent: palm", "parent: plam"), encoding="utf-8")
     said = refuse("robots", "compose", "--base", parts[0], "--arm", "ur5", "--tool", parts[1])
     assert f"{parts[1]}:5 → frames.tool.parent: no frame is called 'plam' (did you mean 'palm'?)" in said
+
+
+def test_a_part_is_not_written_over(refuse, parts):
+    platform, tool = parts
+    before = tool.read_bytes()
+    said = refuse("robots", "compose", "--base", platform, "--arm", "ur5", "--tool", tool, "-o", tool)
+    assert f"{tool} is what is read; expected another file to write" in said
+    assert tool.read_bytes() == before

@@ -34,6 +34,18 @@ def test_nothing_writes_to_a_robot_whose_kernels_are_kept(travel):
             array[...] = 0.0
 
 
+@pytest.mark.parametrize("travel", [lambda value: value, *THROUGH], ids=["same", "pickle", "copy", "deepcopy"])
+@pytest.mark.parametrize("name", ["detectors", "pair_lists", "approximations", "conventions", "provenance"])
+def test_nothing_is_added_to_what_robots_share(travel, name):
+    robot = travel(load_robot("qiao2021"))
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        getattr(robot, name)["x"] = None
+    for inner in robot.conventions.values():
+        with pytest.raises(TypeError, match="does not support item assignment"):
+            inner["q1"] = 1.0
+    assert robot.conventions
+
+
 def test_a_frame_does_not_share_the_array_it_was_made_of():
     place = np.array([0.0, 0.0, 1.0])
     frame = Frame(name="a", parent="world", p_parent_frame=place, R_parent_frame=np.eye(3))

@@ -10,6 +10,7 @@ import pytest
 import ikde
 from ikde.report.numbers import Units, count_of
 from ikde.report.solve import BAR, Spent, format_solutions, format_solve, solutions_json, solve_json
+from ikde.solver.result import change_result
 from tests.endless_robot import ENDLESS
 from tests.flat_settings import flat_settings
 from tests.robot_files import load_text
@@ -82,7 +83,7 @@ def test_without_a_detector_the_text_says_that_nothing_was_checked(qiao):
     ],
 )
 def test_what_graded_is_said_as_it_was(qiao, result, verified, words):
-    shown = result.with_changes(verified=verified)
+    shown = change_result(result, verified=verified)
     lines = [line.split() for line in format_solve(qiao, shown, Units()).splitlines()]
     assert ["graded", *words.split()] in lines
     assert solve_json(qiao, shown)["verified"] is verified
@@ -92,7 +93,9 @@ def test_text_says_the_verdict_first(qiao, result, blocked):
     assert format_solve(qiao, result, Units()).startswith("reached by qiao2021: ")
     text = format_solve(qiao, blocked, Units())
     assert text.startswith("not reached by qiao2021: only colliding solutions")
-    helped, helpless = (format_solve(qiao, blocked.with_changes(hint=hint), Units()) for hint in ("free d_x: so", None))
+    helped, helpless = (
+        format_solve(qiao, change_result(blocked, hint=hint), Units()) for hint in ("free d_x: so", None)
+    )
     assert "what would help: free d_x: so" in helped
     assert "what would help" not in helpless
 
@@ -109,7 +112,7 @@ def test_text_shows_every_joint_in_its_unit(qiao, result):
 
 def test_a_bar_shows_where_a_joint_stands(qiao, result):
     for q, place in ((qiao.lower, 0), (qiao.upper, BAR - 1), (0.5 * (qiao.lower + qiao.upper), (BAR - 1) // 2)):
-        drawn = bars(format_solve(qiao, result.with_changes(q=q), Units()))
+        drawn = bars(format_solve(qiao, change_result(result, q=q), Units()))
         assert [bar.index("●") for bar in drawn] == [place] * 9
         assert {len(bar) for bar in drawn} == {BAR}
 
@@ -135,7 +138,7 @@ def test_text_in_another_convention_shifts_value_and_limits(qiao, result):
 def test_no_limits_are_shown_that_the_value_shown_is_not_between(qiao, result, q5):
     q = result.q.copy()
     q[7] = q5
-    text = format_solve(qiao, result.with_changes(q=q), MM_DEG, convention="classical")
+    text = format_solve(qiao, change_result(result, q=q), MM_DEG, convention="classical")
     row = next(line.split() for line in text.splitlines() if line.strip().startswith("q5"))
     limits = [float(word) for word in row[3:] if "●" not in word]
     assert limits == [] or limits[0] <= float(row[1]) <= limits[1]
@@ -151,13 +154,13 @@ def test_text_shows_the_graded_figures(qiao, result):
 
 
 def test_a_compilation_is_on_its_own_line(qiao, result):
-    assert "compiled first" not in format_solve(qiao, result.with_changes(compile_seconds=0.0), Units())
-    text = format_solve(qiao, result.with_changes(compile_seconds=12.34), Units())
+    assert "compiled first" not in format_solve(qiao, change_result(result, compile_seconds=0.0), Units())
+    text = format_solve(qiao, change_result(result, compile_seconds=12.34), Units())
     assert "12.3 s" in next(line for line in text.splitlines() if "compiled first" in line)
 
 
 def test_several_solutions_tell_once_what_they_took_together(qiao, result):
-    results, spent = [result.with_changes(compile_seconds=3.0)] * 3, Spent(solve_seconds=0.0123, compile_seconds=3.0)
+    results, spent = [change_result(result, compile_seconds=3.0)] * 3, Spent(solve_seconds=0.0123, compile_seconds=3.0)
     text = format_solutions(qiao, results, Units(), spent)
     assert [line for line in text.splitlines() if line.startswith("solution ")] == [
         f"solution {k} of 3, robot qiao2021" for k in (1, 2, 3)
@@ -175,9 +178,9 @@ def test_several_solutions_tell_once_what_they_took_together(qiao, result):
 
 def test_rejected_attempts_are_counted(qiao, result):
     assert "3 attempts, 2 rejected for collision" in format_solve(
-        qiao, result.with_changes(attempts=3, rejected=2), Units()
+        qiao, change_result(result, attempts=3, rejected=2), Units()
     )
 
 
 def test_a_reason_with_brackets_is_shown_as_it_is(qiao, result):
-    assert "see [1]" in format_solve(qiao, result.with_changes(reason="see [1] and [/]"), Units())
+    assert "see [1]" in format_solve(qiao, change_result(result, reason="see [1] and [/]"), Units())

@@ -15,6 +15,7 @@ from ikde.solver.engines.search_state import keep_pairs, make_search_state
 from ikde.solver.forward import forward
 from ikde.solver.grade import confirm, grade
 from ikde.solver.metrics import AGREEMENT, compute_metrics
+from ikde.solver.result import change_result
 from ikde.solver.search import SearchState, search
 from ikde.solver.settings import BulkOptions
 from ikde.solver.verify import verify
@@ -125,16 +126,16 @@ def test_a_result_that_plain_numpy_does_not_confirm_raises(qiao):
     assert (result.verified, confirm(qiao, result).verified) == (None, True)
     for name in ("position_error_m", "orientation_error_rad", "clearance_m"):
         with pytest.raises(VerificationError, match="disagree by"):
-            confirm(qiao, result.with_changes(**{name: getattr(result, name) + 1e-9}))
+            confirm(qiao, change_result(result, **{name: getattr(result, name) + 1e-9}))
     with pytest.raises(VerificationError, match="disagree by"):
-        confirm(qiao, result.with_changes(q=result.q + 1e-3))
+        confirm(qiao, change_result(result, q=result.q + 1e-3))
 
 
 def test_a_result_that_rounding_takes_across_the_tolerance_is_not_reached_and_no_bug(qiao):
     result = ikde.solve_many(qiao, TARGETS[:1], seed=7, bulk=BulkOptions(verify="none"))[0]
     tolerance = np.nextafter(result.grade.position_error_m, 0.0)
     strict = partial(verify, qiao, settings=replace(result.settings, position_tolerance_m=tolerance))
-    confirmed = confirm(qiao, result.with_changes(verify=strict))
+    confirmed = confirm(qiao, change_result(result, verify=strict))
     assert (confirmed.reached, confirmed.verified, confirmed.stop_reason) == (False, True, "budget")
     assert "rounding" in confirmed.reason
 
