@@ -26,6 +26,7 @@ PLY_TYPES = {
 }
 PCD_TYPES = {"F": ("4", "8"), "I": ("1", "2", "4", "8"), "U": ("1", "2", "4", "8")}
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+PCD_FORMS = {"ascii": "", "binary": "<", "binary_compressed": "<"}
 AXES = ("x", "y", "z")
 
 
@@ -41,6 +42,8 @@ class Layout:
     """`<` or `>` for packed numbers, nothing for text."""
     start: int
     """Byte where they begin."""
+    is_compressed: bool = False
+    """True for fields one after the other, compressed together by LZF behind two sizes."""
 
 
 def read_ply(path: Path) -> Floats:
@@ -100,12 +103,10 @@ def _read_pcd_header(path: Path, data: bytes) -> Layout:
             raise FileError(path, f"expected numbers, got {quoted(f'{many} {kind}{size}')} as {quoted(name)}")
         fields.append((name, f"{kind.lower()}{size}", int(many)))
     form = " ".join(known.get("DATA", []))
-    if form == "binary_compressed":
-        raise FileError(path, "compressed PCD is not read: `pcl_convert_pcd_ascii_binary IN OUT 1` unpacks it")
-    if form not in ("ascii", "binary"):
-        raise FileError(path, f"expected ascii or binary data, got {quoted(form)}")
+    if form not in PCD_FORMS:
+        raise FileError(path, f"expected data of {', '.join(PCD_FORMS)}, got {quoted(form)}")
     count = _read_count(path, " ".join(known.get("POINTS", [])))
-    return Layout(fields, count, "" if form == "ascii" else "<", start)
+    return Layout(fields, count, PCD_FORMS[form], start, is_compressed=form == "binary_compressed")
 
 
 def _cut_header(path: Path, data: bytes, last: str) -> tuple[list[str], int]:
@@ -135,6 +136,8 @@ def _read_points(path: Path, data: bytes, layout: Layout) -> Floats:
     if any(singles.count(axis) != 1 for axis in AXES) or width > MAX_FIELDS:
         names = ", ".join(quoted(name) for name, _, _ in layout.fields[:10])
         raise FileError(path, f"expected fields x, y, z, each once, got {names or 'none'}")
+    if layout.is_compressed:
+        return _unpack_fields(path, data, layout)
     if layout.order:
         return _unpack(path, data, layout)
     numbers = _read_words(path, data, layout.start, width * layout.count)
@@ -173,3 +176,51 @@ def _unpack(path: Path, data: bytes, layout: Layout) -> Floats:
         with np.errstate(invalid="ignore"):
             points[:, axis] = packed[places[name]][:, 0]
     return points
+
+
+def _unpack_fields(path: Path, data: bytes, layout: Layout) -> Floats:
+    kinds = [np.dtype((layout.order + form, (many,))) for _, form, many in layout.fields]
+    size = layout.count * sum(kind.itemsize for kind in kinds)
+    check_room(path, size)
+    body = layout.start + 8
+    sizes = np.frombuffer(data[layout.start : body], dtype="<u4")
+    if len(sizes) < 2 or sizes[1] != size or sizes[0] > len(data) - body:
+        raise FileError(path, f"cannot be read: {layout.count:,} points do not fit into the file")
+    try:
+        flat = unpack_lzf(memoryview(data)[body : body + int(sizes[0])], size)
+    except (IndexError, ValueError):
+        raise FileError(path, "cannot be read: its compressed data are damaged") from None
+    points, start = np.empty((layout.count, 3)), 0
+    for (name, _, many), kind in zip(layout.fields, kinds, strict=True):
+        if name in AXES and many == 1:
+            with np.errstate(invalid="ignore"):
+                points[:, AXES.index(name)] = np.frombuffer(flat, kind.base, layout.count, start)
+        start += layout.count * kind.itemsize
+    return points
+
+
+def unpack_lzf(packed: memoryview, size: int) -> bytearray:
+    """What LZF has made smaller; raises `ValueError` or `IndexError` if that is not exactly `size` bytes."""
+    out, place = bytearray(), 0
+    while place < len(packed) and len(out) <= size:
+        control = packed[place]
+        place += 1
+        if control < 32:  # as many bytes and one more, as they are
+            if place + control >= len(packed):
+                raise ValueError
+            out += packed[place : place + control + 1]
+            place += control + 1
+            continue
+        length = control >> 5
+        if length == 7:
+            length += packed[place]
+            place += 1
+        first = len(out) - ((control & 31) << 8) - packed[place] - 1
+        place += 1
+        if first < 0:
+            raise ValueError
+        piece = out[first : first + length + 2]  # of what is there already; it may repeat itself
+        out += (piece * ((length + 1) // len(piece) + 1))[: length + 2]
+    if len(out) != size:
+        raise ValueError
+    return out

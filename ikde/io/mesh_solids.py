@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ikde.errors import InputError
+from ikde.errors import FileError, InputError
 from ikde.formats.error_path import prefix_errors
 from ikde.io.cloud_file import find_inside
 from ikde.io.scene_values import Reading, as_list, as_numbers
@@ -25,8 +25,8 @@ def read_mesh_hulls(name: str, scale: Floats, T: Floats, reading: Reading) -> li
     """Hulls, each in a pose `T` [3, 4], of a mesh file inside the reading's folder; `scale` [3] to m.
 
     Raises:
-        InputError: for a path that leads out of the folder, and for what encloses no volume.
-        FileError: for what is no mesh, or too large.
+        InputError: for a path that leads out of the folder.
+        FileError: for what is no mesh, too large, too round, or encloses no volume.
     """
     path = find_inside(reading.folder, name)
     if path.suffix.lower() not in KINDS:
@@ -40,7 +40,10 @@ def read_mesh_hulls(name: str, scale: Floats, T: Floats, reading: Reading) -> li
     for warning in warnings:
         reading.note(warning.partition(";")[0])
     corners, faces = merge_corners(triangles)
-    return _make_hulls(corners, faces, T, path.name, reading)
+    try:
+        return _make_hulls(corners, faces, T, path.name, reading)
+    except InputError as error:
+        raise FileError(path, error.message) from None
 
 
 def make_inline_hull(vertices: Any, faces: Any, scale: Floats, reading: Reading) -> Solid:

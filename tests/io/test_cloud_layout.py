@@ -5,7 +5,7 @@ import pytest
 
 from ikde.errors import FileError
 from ikde.io import cloud_layout
-from ikde.io.cloud_layout import read_pcd, read_ply
+from ikde.io.cloud_layout import read_pcd, read_ply, unpack_lzf
 
 POINTS = np.random.default_rng(2).normal(size=(5, 3)).astype(np.float32).astype(float)
 PLY = """ply
@@ -57,6 +57,35 @@ def pcd(form, count=5, head=PCD):
     return text + pack("<", ("f4", "f4", "f8", "f4", "f4"), (0, 1, *POINTS.T))
 
 
+def lzf(data):
+    """As few tricks as the format has: bytes as they are, and zeros that repeat the one before."""
+    out, place = b"", 0
+    while place < len(data):
+        zeros = len(data[place:]) - len(data[place:].lstrip(b"\0"))
+        if place and data[place - 1] == 0 and zeros >= 3:
+            length = min(zeros, 200) - 2
+            out += bytes([length << 5, 0]) if length < 7 else bytes([7 << 5, length - 7, 0])
+            place += length + 2
+        else:
+            some = data[place : place + 5]
+            out += bytes([len(some) - 1]) + some
+            place += 5
+    return out
+
+
+def compressed(end=b""):
+    head, _, _ = pcd("binary").replace(b"DATA binary", b"DATA binary_compressed").partition(b"compressed\n")
+    fields = [
+        np.zeros((5, 2), "<f4"),
+        POINTS[:, 0].astype("<f8"),
+        POINTS[:, 1].astype("<f4"),
+        POINTS[:, 2].astype("<f4"),
+    ]
+    flat = b"".join(field.tobytes() for field in fields)
+    packed = lzf(flat) + end
+    return head + b"compressed\n" + np.array([len(packed), len(flat)], "<u4").tobytes() + packed
+
+
 @pytest.mark.parametrize("form", ["ascii", "binary_little_endian", "binary_big_endian"])
 @pytest.mark.parametrize("line_end", [b"\n", b"\r\n"])
 def test_vertices_of_a_ply(tmp_path, form, line_end):
@@ -69,6 +98,31 @@ def test_vertices_of_a_ply(tmp_path, form, line_end):
 def test_points_of_a_pcd(tmp_path, form):
     (tmp_path / "a.pcd").write_bytes(pcd(form))
     assert np.array_equal(read_pcd(tmp_path / "a.pcd"), POINTS)
+
+
+def test_points_of_a_compressed_pcd(tmp_path):
+    (tmp_path / "a.pcd").write_bytes(compressed())
+    assert np.array_equal(read_pcd(tmp_path / "a.pcd"), POINTS)
+
+
+@pytest.mark.parametrize(
+    ("packed", "data"),
+    [
+        (b"\x02abc", b"abc"),
+        (b"\x00a\x20\x00", b"aaaa"),  # what is there repeats itself
+        (b"\x02abc\x40\x02", b"abcabca"),
+        (b"\x02abc\xe0\x03\x01\x00d", b"abc" + b"bc" * 6 + b"d"),
+    ],
+)
+def test_lzf(packed, data):
+    assert unpack_lzf(memoryview(packed), len(data)) == data
+    for wrong in (len(data) - 1, len(data) + 1):
+        with pytest.raises(ValueError):  # noqa: PT011
+            unpack_lzf(memoryview(packed), wrong)
+    with pytest.raises((ValueError, IndexError)):
+        unpack_lzf(memoryview(packed[:-1]), len(data))
+    with pytest.raises(ValueError):  # noqa: PT011
+        unpack_lzf(memoryview(b"\x20\x00"), 3)
 
 
 def test_text_is_read_in_pieces(tmp_path, monkeypatch):
@@ -119,8 +173,11 @@ def test_what_is_no_ply(tmp_path, data, said, monkeypatch):
     ("data", "said"),
     [
         (pcd("binary", 6), "6 points do not fit into the file"),
-        (pcd("binary_compressed"), "pcl_convert_pcd_ascii_binary IN OUT 1"),
-        (pcd("hex"), "expected ascii or binary data, got 'hex'"),
+        (pcd("binary_compressed"), "5 points do not fit into the file"),
+        (compressed()[:-1], "do not fit into the file"),
+        (compressed().replace(b"POINTS 5", b"POINTS 6"), "6 points do not fit into the file"),
+        (compressed(end=b"\xff"), "its compressed data are damaged"),
+        (pcd("hex"), "expected data of ascii, binary, binary_compressed, got 'hex'"),
         (pcd("ascii").replace(b"SIZE 4 8", b"SIZE 8"), "of one length"),
         (pcd("ascii").replace(b"TYPE F", b"TYPE O"), "expected numbers, got '2 O4' as 'normals'"),
         (pcd("ascii").replace(b"SIZE 4", b"SIZE 2"), "expected numbers, got '2 F2' as 'normals'"),
