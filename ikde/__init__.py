@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.urdf_import.read_urdf import import_urdf as import_urdf
     from ikde.io.urdf_import.read_urdf import read_urdf as read_urdf
     from ikde.io.world_file import load_world as load_world
+    from ikde.io.world_file import read_world as read_world
     from ikde.io.world_writer import write_world as write_world
     from ikde.kernels.jit import compile_clock as compile_clock
     from ikde.model.collision_model import CollisionModel as CollisionModel
@@ -85,6 +86,7 @@ _HOME = {
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
     "load_world": "ikde.io.world_file",
+    "read_world": "ikde.io.world_file",
     "write_world": "ikde.io.world_writer",
     "World": "ikde.model.world",
     "format_urdf": "ikde.io.urdf",

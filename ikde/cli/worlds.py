@@ -96,5 +96,7 @@ def convert(
         print_result(written.text)
     else:
         print_written(*save_text(written, out))
+    for note in found.notes:
+        print_note(f"ikde: {note}")
     for lost in written.lost:
         print_note(f"ikde: not held by {to.value}: {lost}")

@@ -66,8 +66,12 @@ def _to_points(path: Path, values: np.ndarray) -> Floats:
 
 
 def _read_csv(path: Path, array: str | None) -> Floats:
-    read_bytes(path)  # what is wrong with it as a file is one line about that file
-    table = open_table(path)
+    try:
+        table = open_table(path)
+    except FileError:
+        raise
+    except InputError as error:
+        raise FileError(path, error.message.removesuffix(f": {path}")) from None
     missing = [axis for axis in AXES if axis not in table.names]
     if missing:
         raise FileError(path, f"expected columns x, y, z, got {', '.join(map(quoted, table.names[:10]))}")

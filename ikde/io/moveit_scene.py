@@ -27,7 +27,7 @@ from ikde.io.scene_values import (
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD
 from ikde.model.rotation import rotation_with_z
-from ikde.model.solids import Solid, SolidKind, make_solid
+from ikde.model.solids import IDENTITY, Solid, SolidKind, make_solid
 from ikde.model.world import MAX_OBSTACLES, Obstacle, World, make_obstacle, make_world
 
 KINDS: dict[str, tuple[SolidKind, tuple[str, ...]]] = {  # with what their dimensions are
@@ -46,7 +46,6 @@ SCENE = (
     *("link_padding", "link_scale", "object_colors", "world", "is_diff"),
 )
 XYZ, XYZW, PLANE = ("x", "y", "z"), ("x", "y", "z", "w"), ("a", "b", "c", "d")
-IDENTITY = np.eye(4)[:3]
 ADD = (0, "0", "add", "ADD", b"\0", "\0")
 
 

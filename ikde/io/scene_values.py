@@ -10,6 +10,7 @@ from ikde.errors import InputError, nearest, quoted
 from ikde.formats.error_path import prefix_errors
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import rotation_from_quat_wxyz
+from ikde.model.solids import IDENTITY
 
 UNIT_LENGTH = 1e-3
 """How far the length of a quaternion in a file may be from 1: files round their numbers."""
@@ -114,9 +115,9 @@ def rotation_from_unit_quat(quat_wxyz: Floats) -> Floats:
 
 def compose(T_a_b: Floats, T_b_c: Floats) -> Floats:
     """T_a_c [3, 4] from poses [3, 4]; the identity on either side keeps the bits of the other."""
-    if np.array_equal(T_b_c, np.eye(4)[:3]):
+    if T_b_c is IDENTITY or np.array_equal(T_b_c, IDENTITY):
         return T_a_b
-    if np.array_equal(T_a_b, np.eye(4)[:3]):
+    if T_a_b is IDENTITY or np.array_equal(T_a_b, IDENTITY):
         return T_b_c
     T = np.empty((3, 4))
     T[:, :3] = T_a_b[:, :3] @ T_b_c[:, :3]
@@ -147,7 +148,7 @@ class Frames:
                 cycle = " -> ".join([*names[names.index(frame) :], frame])
                 raise InputError(f"frames are placed in each other: {cycle}")
             above[frame] = None
-        last, T = self._resolved.get(frame, (frame, np.eye(4)[:3]))
+        last, T = self._resolved.get(frame, (frame, IDENTITY))
         for name in [*above][-2::-1]:
             T = compose(T, self._placed[name][1])
             self._resolved[name] = last, T

@@ -43,7 +43,7 @@ def load_world(source: str | PathLike[str] | Mapping[str, Any]) -> World:
 
 
 def read_world(source: str | PathLike[str] | Mapping[str, Any]) -> ReadWorld:
-    """Load a world as `load_world` does, with what was decided; arguments and errors are the same."""
+    """Load a world as `load_world` does, with what was decided; `source` and errors are the same."""
     if isinstance(source, Mapping):
         return _parse(Given(dict(source)), Path())
     if not isinstance(source, str | PathLike):

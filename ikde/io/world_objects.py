@@ -23,7 +23,7 @@ from ikde.io.mesh_solids import find_unit, read_mesh_hulls
 from ikde.io.scene_values import Frames, Reading, compose, rotation_from_unit_quat
 from ikde.kernels.arrays import Floats
 from ikde.model.rotation import check_rotation, length, measure_skew, rotation_from_rpy, rotation_with_z
-from ikde.model.solids import MAX_CLOUD_POINTS, SIZES, Solid, make_columns, make_solid
+from ikde.model.solids import IDENTITY, MAX_CLOUD_POINTS, SIZES, Solid, make_columns, make_solid
 from ikde.model.world import MAX_SOLIDS, Obstacle, World, make_obstacle, make_world
 
 ORIENTATIONS = ("rpy", "quat_wxyz", "rotation")
@@ -56,7 +56,7 @@ def _to_obstacle(name: str, entry: ObstacleEntry, units: UnitsEntry, frames: Fra
     key = only_key(entry, (*SOLIDS, "parts"))
     solids: list[Solid] = []
     if key != "parts":
-        solids = _to_solids(entry, np.eye(4)[:3], units, reading)
+        solids = _to_solids(entry, IDENTITY, units, reading)
     for place, part in enumerate(entry.parts or ()):
         with prefix_errors("parts", place):
             solids += _to_solids(part, _to_pose(part, units), units, reading)
@@ -69,7 +69,7 @@ def _to_obstacle(name: str, entry: ObstacleEntry, units: UnitsEntry, frames: Fra
 
 def _to_pose(entry: PlaceEntry, units: UnitsEntry) -> Floats:
     """[3, 4] in m."""
-    T = np.eye(4)[:3]
+    T = IDENTITY.copy()
     T[:, 3] = np.array(entry.position) * units.length_m
     given = [key for key in ORIENTATIONS if getattr(entry, key) is not None]
     if len(given) > 1:

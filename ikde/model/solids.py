@@ -29,6 +29,9 @@ SIZES: dict[SolidKind, tuple[str, ...]] = {
 MAX_HULL_POINTS, MAX_CLOUD_POINTS = 20_000, 20_000_000
 MAX_COLUMNS = 100_000  # boxes of a height field
 MIN_SIZE_M = 1e-6
+IDENTITY = np.eye(4)[:3]
+"""The pose [3, 4] of what stands where its frame does."""
+IDENTITY.setflags(write=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,7 +56,7 @@ def make_solid(
     if kind not in KINDS:
         raise InputError(f"expected one of {', '.join(KINDS)}, got {kind!r}", ("kind",))
     sizes = _check_sizes(kind, size_m)
-    T = read_pose(np.eye(4) if T_obstacle_solid is None else T_obstacle_solid, ("T_obstacle_solid",))
+    T = IDENTITY if T_obstacle_solid is None else read_pose(T_obstacle_solid, ("T_obstacle_solid",))
     own: dict[str, Any] = {"kind": kind, "size_m": sizes, "T_obstacle_solid": T}
     if kind == "hull":
         corners, triangles = make_hull(read_points(points, MAX_HULL_POINTS))
@@ -110,6 +113,8 @@ def make_columns(heights_m: ArrayLike, cell_m: float, base_m: float = 0.0) -> li
 
 def read_pose(T: ArrayLike, where: tuple[str | int, ...]) -> Floats:
     """A pose [3, 4] from [4, 4] or [3, 4], read-only; rotation and m."""
+    if T is IDENTITY:
+        return IDENTITY
     pose = read_numbers(T, where)
     if pose.shape not in ((4, 4), (3, 4)):
         raise InputError(f"expected a pose [4, 4], got shape {pose.shape}", where)

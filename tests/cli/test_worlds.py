@@ -39,6 +39,7 @@ def test_a_valid_world(cli, file):
 def test_a_world_is_converted(cli, file, tmp_path):
     outcome = cli("worlds", "convert", str(file), "--out", str(tmp_path / "b.yaml"))
     assert outcome.out == f"wrote {tmp_path / 'b_cloud_1.npy'}\nwrote {tmp_path / 'b.yaml'}\n"
+    assert outcome.err == "ikde: 1 of 1,202 points are not finite and left out\n"
     assert_same(load_world(tmp_path / "b.yaml"), load_world(file))
 
 
