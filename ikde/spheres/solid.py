@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ikde.kernels.arrays import Floats, Ints
 
 Bools = NDArray[np.bool_]
+BLOCK = 100_000  # triangles and points at a time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,11 +61,21 @@ class Triangles:
 
     def winding(self, point: Floats) -> float:
         """How often they go round a point [3]: the sum of their signed solid angles / 4 pi."""
-        a, b, c = np.moveaxis(self.corners - point, 1, 0)
+        return float(self.windings(point[None])[0])
+
+    def windings(self, points: Floats) -> Floats:
+        """[P] of each of points [P, 3], in blocks of `BLOCK` triangles and points."""
+        step = max(1, BLOCK // max(1, len(self.corners)))
+        blocks = [self._wind(points[start : start + step]) for start in range(0, len(points), step)]
+        return np.concatenate(blocks) if blocks else np.empty(0)
+
+    def _wind(self, points: Floats) -> Floats:
+        a, b, c = (self.corners[:, k] - points[:, None] for k in range(3))
         la, lb, lc = (np.sqrt(_dot(x, x)) for x in (a, b, c))
-        volume = _dot(a, np.cross(b, c))
-        flat = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
-        return float(np.arctan2(volume, flat).sum() / (2.0 * np.pi))
+        ab, bc, ca = _dot(a, b), _dot(b, c), _dot(c, a)
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ([x[..., k] for k in range(3)] for x in (a, b, c))
+        volume = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        return np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb).sum(axis=1) / (2.0 * np.pi)
 
 
 def _dot(a: Floats, b: Floats) -> Floats:

@@ -77,7 +77,7 @@ def _ask_ball(middles: Floats, radius: Floats, other: Triangles) -> tuple[Bools,
     """[P] of balls: whether none of another part's triangles comes near; and whether they lie inside it then."""
     clear = _distances(middles, other) > radius * (1.0 + 1e-9) + 1e-12
     inside = np.zeros(len(middles), dtype=np.bool_)
-    inside[clear] = [other.winding(point) > 0.5 for point in middles[clear]]
+    inside[clear] = other.windings(middles[clear]) > 0.5
     return clear, inside
 
 
