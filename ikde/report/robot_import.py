@@ -64,7 +64,7 @@ def _say_free(is_free: bool | None) -> str:
 
 def _joint_table(imported: ImportedUrdf, units: Units) -> Any:
     table = make_table(
-        "joint", "kind", ">lower", ">home", ">upper", "unit", ">speed", "", title="joints that move the tool"
+        "joint", "?kind", ">lower", ">home", ">upper", "unit", "?speed", "?", title="joints that move the tool"
     )
     for joint in imported.robot.joints:
         values = [units.format_limit(joint, value, 6) for value in (joint.lower, joint.home, joint.upper)]
@@ -75,7 +75,7 @@ def _joint_table(imported: ImportedUrdf, units: Units) -> Any:
 
 
 def _held_table(imported: ImportedUrdf, units: Units) -> Any:
-    table = make_table("joint", "kind", ">at", "why", title=f"frozen: {count_of(len(imported.held), 'joint')}")
+    table = make_table("joint", "?kind", ">at", "why", title=f"frozen: {count_of(len(imported.held), 'joint')}")
     for held in imported.held:
         table.add_row(plain(held.name), held.kind, _format_held(held, units), plain(held.reason))
     return table
@@ -90,12 +90,14 @@ def _format_held(held: HeldJoint, units: Units) -> str:
 def sphere_table(links: Sequence[CoveredLink], units: Units) -> Any:
     """A line a link: what was covered, with how many spheres, and what is proved of them."""
     total = sum(link.spheres for link in links)
-    heads = ("link", "shapes", ">spheres", ">covered", f">stand out [{units.length}]", "how")
+    is_made = any(link.covered is not None for link in links)  # all others are taken as they are
+    heads = ("link", "?shapes", ">spheres", *((">covered", f">stand out [{units.length}]") if is_made else ()), "?how")
     table = make_table(*heads, title=f"spheres: {total:,} on {count_of(len(links), 'link')}")
     for link in links:
         covered = "" if link.covered is None else f"{100.0 * link.covered:.2f} %"
         out = "" if link.protrusion_m is None else f"{link.protrusion_m / LENGTHS_M[units.length]:.3g}"
-        table.add_row(plain(link.link), link.shapes, str(link.spheres), covered, out, plain(link.how))
+        made = (covered, out) if is_made else ()
+        table.add_row(plain(link.link), link.shapes, str(link.spheres), *made, plain(link.how))
     return table
 
 
