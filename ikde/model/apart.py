@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, CollisionArrays, Floats, RobotArrays
 
-MAX_JOINTS = 4  # between two bodies; beyond it a proof is hopeless
+MAX_JOINTS = 4  # between two bodies; beyond it a proof is seldom worth its time
 Answer = Literal["apart", "touching", "both", "unknown"]
 """Of a pair in all configurations: never within the limit, always, sometimes, or not decided within the budget."""
 
@@ -44,6 +44,8 @@ class Verdict(NamedTuple):
     answer: Answer
     depth_m: float = 0.0
     """Of `touching`: how far below the limit the gap stays by proof."""
+    boxes: int = 0
+    """Tried."""
 
 
 def list_clusters(collision: CollisionArrays) -> list[Cluster]:
@@ -69,22 +71,32 @@ def decide(robot: RobotArrays, chains: Chains, limit_m: float, ranges: tuple[Flo
         chains: two clusters, as `find_chains` gives them.
         limit_m: gaps at or below it count as touching.
         ranges: lower and upper limits [N] of all joints, m or rad, finite.
-        boxes: how many are looked at before it is given up.
+        boxes: how many are tried before it is given up.
     """
     return _bound(robot, chains, limit_m, ranges, boxes, is_hit_enough=False)
 
 
 def is_apart(robot: RobotArrays, chains: Chains, limit_m: float, ranges: tuple[Floats, Floats], boxes: int) -> bool:
-    """Whether the gap is proved to stay above a limit; given up at the first contact. Arguments as of `decide`."""
-    return _bound(robot, chains, limit_m, ranges, boxes, is_hit_enough=True).answer == "apart"
+    """Whether the gap is proved to stay above a limit; arguments as of `decide`.
+
+    Given up at the first contact, and at once if more than 4 joints are in between.
+    """
+    return (
+        len(chains.joined) <= MAX_JOINTS
+        and _bound(robot, chains, limit_m, ranges, boxes, is_hit_enough=True).answer == "apart"
+    )
 
 
 def _bound(
-    robot: RobotArrays, chains: Chains, limit_m: float, ranges: tuple[Floats, Floats], boxes: int, *, is_hit_enough: bool
+    robot: RobotArrays,
+    chains: Chains,
+    limit_m: float,
+    ranges: tuple[Floats, Floats],
+    boxes: int,
+    *,
+    is_hit_enough: bool,
 ) -> Verdict:
     bodies = chains.joined
-    if len(bodies) > MAX_JOINTS:
-        return Verdict("unknown")
     joints = robot.bodies[bodies, COORDINATE].astype(int)
     lower, upper = _one_turn(robot, bodies, ranges[0][joints], ranges[1][joints])
     middles, halves = 0.5 * (lower + upper)[None], 0.5 * (upper - lower)[None]
@@ -95,15 +107,15 @@ def _bound(
         gaps = compute_gaps(robot, chains, middles) - limit_m
         is_free, is_hit = is_free or bool((gaps > 0.0).any()), is_hit or bool((gaps <= 0.0).any())
         if is_hit and (is_free or is_hit_enough):
-            return Verdict("both" if is_free else "unknown")
+            return Verdict("both" if is_free else "unknown", boxes=seen)
         if seen > boxes:
-            return Verdict("unknown")
+            return Verdict("unknown", boxes=seen)
         reach = halves @ travel
         left = np.abs(gaps) <= reach
         if is_hit and not left.all():
             depth = min(depth, float((-gaps - reach)[~left].min()))
         middles, halves = _halve(middles[left], halves[left], travel)
-    return Verdict("touching", depth) if is_hit else Verdict("apart")
+    return Verdict("touching", depth, seen) if is_hit else Verdict("apart", boxes=seen)
 
 
 def compute_gaps(robot: RobotArrays, chains: Chains, q: Floats) -> Floats:
@@ -154,26 +166,26 @@ def _place(robot: RobotArrays, bodies: tuple[int, ...], side: Cluster, q: Floats
     return p[:, None] + np.einsum("kij,nj->kni", R, side.centres)
 
 
-def _find_travel(robot: RobotArrays, chains: Chains, farthest: Floats) -> Floats:
-    """How far one unit of each joint moves the spheres that it carries at most [J]; `farthest` [J] of its values."""
+def _find_travel(robot: RobotArrays, chains: Chains, sizes: Floats) -> Floats:
+    """How far one unit of each joint moves the spheres that it carries at most [J]; `sizes` [J] of its values."""
     split = len(chains.bodies[0])
-    parts = ((chains.bodies[0], farthest[:split]), (chains.bodies[1], farthest[split:]))
-    both = [_travel(robot, own, side, far) for side, (own, far) in zip(chains.sides, parts, strict=True)]
+    parts = ((chains.bodies[0], sizes[:split]), (chains.bodies[1], sizes[split:]))
+    both = [_travel(robot, own, side, largest) for side, (own, largest) in zip(chains.sides, parts, strict=True)]
     return np.concatenate(both)
 
 
-def _travel(robot: RobotArrays, bodies: tuple[int, ...], side: Cluster, farthest: Floats) -> Floats:
-    """Of one chain: 1 for a slide, else the length that a joint carries; the last one, the distance from its axis.
+def _travel(robot: RobotArrays, bodies: tuple[int, ...], side: Cluster, sizes: Floats) -> Floats:
+    """Of one chain: 1 for a prismatic joint, else the length that it carries; for the last, the distance from its axis.
 
-    `farthest` [J]: the largest size of each joint's value; a slide lengthens the chain by as much.
+    `sizes` [J]: the largest size of each joint's value; a prismatic joint lengthens the chain by as much.
     """
     length = float(np.linalg.norm(side.centres, axis=1).max())
     about_axis = float(np.linalg.norm(side.centres[:, :2], axis=1).max())
     travel = []
-    for body, size in zip(reversed(bodies), reversed(farthest.tolist()), strict=True):
-        slides = bool(robot.bodies[body, PRISMATIC])
-        travel.append(1.0 if slides else length if travel else about_axis)
-        length += float(np.linalg.norm(robot.T_parent_body[body][:, 3])) + (size if slides else 0.0)
+    for body, size in zip(reversed(bodies), reversed(sizes.tolist()), strict=True):
+        is_prismatic = bool(robot.bodies[body, PRISMATIC])
+        travel.append(1.0 if is_prismatic else length if travel else about_axis)
+        length += float(np.linalg.norm(robot.T_parent_body[body][:, 3])) + (size if is_prismatic else 0.0)
     return np.array(travel[::-1])
 
 

@@ -57,7 +57,7 @@ def make_table(*columns: str, title: str | None = None) -> Any:
 
 
 def _narrow(table: Any, console: Any) -> None:
-    """Make a table fit: smaller gaps, then texts on several lines, then without columns to spare, the last one first."""
+    """Make a table fit: smaller gaps, then texts on several lines, then without columns to spare, the last first."""
     if _measure(table, console) <= console.width:
         return
     table.collapse_padding = True

@@ -6,14 +6,12 @@ from typing import Any
 
 from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.urdf_import.held import HeldJoint
-from ikde.io.urdf_import.imported import CoveredLink, ImportedUrdf
+from ikde.io.urdf_import.imported import OF_THE_TREE, CoveredLink, ImportedUrdf, describe_pairs
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Joint
 from ikde.report.numbers import Units, count_of
 from ikde.report.pairs import pairs_json
 from ikde.report.render import make_table, plain, render
-
-OBVIOUS = ("one body", "joined by joint")
 
 
 def import_json(imported: ImportedUrdf) -> dict[str, Any]:
@@ -31,6 +29,7 @@ def import_json(imported: ImportedUrdf) -> dict[str, Any]:
         "frozen": [asdict(held) for held in imported.held],
         "spheres": [asdict(link) for link in imported.links],
         "collision": pairs_json(CollisionModel.of(robot)),
+        "never_touching": [list(pair) for pair in imported.never_touching],
         "home": imported.home,
         "home_is_free": imported.is_home_free,
         "warnings": list(imported.warnings),
@@ -55,7 +54,7 @@ def format_import(imported: ImportedUrdf, units: Units, *, color: bool = False, 
     tables += [_pair_table(collision)] if _list_told(collision) else []
     lines = [f"home: {plain(imported.home)}{_say_free(imported.is_home_free)}"]
     lines += [f"[bold]warning:[/] {plain(warning)}" for warning in imported.warnings]
-    return render(head, "", *tables, "", _describe_pairs(collision), *lines, color=color, width=width)
+    return render(head, "", *tables, "", f"pairs: {describe_pairs(imported)}", *lines, color=color, width=width)
 
 
 def _say_free(is_free: bool | None) -> str:
@@ -103,7 +102,7 @@ def sphere_table(links: Sequence[CoveredLink], units: Units) -> Any:
 
 def _list_told(collision: CollisionModel) -> list[Any]:
     """Pairs that are left out for a reason that the tree does not show."""
-    return [pair for pair in collision.left_out_pairs if not pair.reason.startswith(OBVIOUS)]
+    return [pair for pair in collision.left_out_pairs if not pair.reason.startswith(OF_THE_TREE)]
 
 
 def _pair_table(collision: CollisionModel) -> Any:
@@ -111,11 +110,3 @@ def _pair_table(collision: CollisionModel) -> Any:
     for pair in _list_told(collision):
         table.add_row(plain(f"{pair.a} - {pair.b}"), plain(pair.reason))
     return table
-
-
-def _describe_pairs(collision: CollisionModel) -> str:
-    if not collision.pairs:
-        return "pairs: none, self-collision is not checked"
-    compared, left_out = len(collision.pairs), len(collision.left_out_pairs)
-    neighbours = left_out - len(_list_told(collision))
-    return f"pairs: {compared} compared, {left_out} left out, {neighbours} of them neighbours"

@@ -90,12 +90,12 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     try:
         robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
         robot = set_home(robot, values)
-        robot, notes = add_spheres(robot, skeleton, covered, srdf)
+        pairs = add_spheres(robot, skeleton, covered, srdf, options.compare)
     except FileError:
         raise
     except InputError as error:
         raise FileError(description.path, error.message, error.where) from None
-    robot, home, is_free = free_home(robot, states)
+    robot, home, is_free = free_home(pairs.robot, states)
     return ImportedUrdf(
         robot=robot,
         file=str(path),
@@ -106,13 +106,14 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         links=tuple(covered[link].report for link in covered),
         home=home,
         is_home_free=is_free,
+        never_touching=pairs.never,
         warnings=(
             *description.warnings,
             *skeleton.warnings,
             *_list_followers(description, held),
             *(warning for own in covered.values() for warning in own.warnings),
             *given,
-            *notes,
+            *pairs.warnings,
         ),
     )
 

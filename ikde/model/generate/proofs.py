@@ -63,5 +63,7 @@ def estimate_hits(robot: RobotArrays, tests: list[Test], lower: Floats, upper: F
 
 
 def _find_chains(robot: RobotArrays, test: Test) -> Chains:
-    sides = (Cluster(one.body, one.centres, np.full(len(one.centres), one.radius)) for one in (test.lattice, test.sphere))
+    sides = (
+        Cluster(one.body, one.centres, np.full(len(one.centres), one.radius)) for one in (test.lattice, test.sphere)
+    )
     return find_chains(robot, *sides)
