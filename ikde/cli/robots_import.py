@@ -19,6 +19,12 @@ class BaseChoice(StrEnum):
     differential = "differential"
 
 
+CompareOption = Annotated[
+    list[str] | None,
+    typer.Option(metavar="LINK:LINK", help="Compare a pair that would be left out; as often as you like."),
+]
+
+
 def import_robot(
     file: Annotated[
         str,
@@ -40,10 +46,7 @@ def import_robot(
     hold: Annotated[
         list[str] | None, typer.Option(metavar="JOINT=VALUE", help="Freeze a joint, in m or rad; as often as you like.")
     ] = None,
-    compare: Annotated[
-        list[str] | None,
-        typer.Option(metavar="LINK:LINK", help="Compare a pair that would be left out; as often as you like."),
-    ] = None,
+    compare: CompareOption = None,
     package_path: Annotated[
         list[Path] | None, typer.Option(metavar="FOLDER", help="A further folder with meshes; as often as you like.")
     ] = None,
