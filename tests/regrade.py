@@ -94,11 +94,12 @@ class Grader:
             found |= {frozenset((a, b)): f"adjacent: {reason}" for b, reason in others.items()}
         for a, b in combinations(bodies, 2):
             if bodies[a] == bodies[b]:
-                found[frozenset((a, b))] = "one body"
+                found.setdefault(frozenset((a, b)), "one body")
             for child, parent in ((bodies[a], bodies[b]), (bodies[b], bodies[a])):
                 if self._below(child) == parent:
-                    found[frozenset((a, b))] = f"joined by joint {self.frames[child]['joint']}"
-        return found
+                    found.setdefault(frozenset((a, b)), f"joined by joint {self.frames[child]['joint']}")
+        compared = {frozenset((a, b)) for a, others in self.file.get("compare", {}).items() for b in others}
+        return {pair: reason for pair, reason in found.items() if pair not in compared}
 
     def _below(self, body):
         """The body that a body's joint hangs on; None for the world, which has no joint."""

@@ -13,7 +13,17 @@ import numpy as np
 from ikde.model.robot import Robot
 
 LEAVES_ANSWERS_ALONE = (  # all pairs are in `pair_lists`
-    *("title", "provenance", "wheels", "adjacent", "neighbours", "file_ranges", "drive", "inertias"),
+    *(
+        "title",
+        "provenance",
+        "wheels",
+        "adjacent",
+        "compared",
+        "neighbours",
+        "file_ranges",
+        "drive",
+        "inertias",
+    ),
 )
 OF_TRACKS = ("max_speed", "max_acceleration", "max_effort")  # of joints: a batch solves for poses, not for motions
 

@@ -19,6 +19,12 @@ class BaseChoice(StrEnum):
     differential = "differential"
 
 
+CompareOption = Annotated[
+    list[str] | None,
+    typer.Option(metavar="LINK:LINK", help="Compare a pair that would be left out; as often as you like."),
+]
+
+
 def import_robot(
     file: Annotated[
         str,
@@ -40,6 +46,7 @@ def import_robot(
     hold: Annotated[
         list[str] | None, typer.Option(metavar="JOINT=VALUE", help="Freeze a joint, in m or rad; as often as you like.")
     ] = None,
+    compare: CompareOption = None,
     package_path: Annotated[
         list[Path] | None, typer.Option(metavar="FOLDER", help="A further folder with meshes; as often as you like.")
     ] = None,
@@ -66,7 +73,7 @@ def import_robot(
     from ikde.io.robot_writer import write_robot
     from ikde.io.robots import check_kept, find_urdf
     from ikde.io.urdf_import.imported import list_notes
-    from ikde.io.urdf_import.options import ImportOptions, read_holds
+    from ikde.io.urdf_import.options import ImportOptions, read_holds, read_pairs
     from ikde.io.urdf_import.read_urdf import read_urdf
     from ikde.report.numbers import Units
     from ikde.report.robot_import import format_import, import_json
@@ -82,6 +89,7 @@ def import_robot(
             base=base.value,
             base_reach_m=base_reach,
             hold=read_holds(hold or []),
+            compare=read_pairs(compare or []),
             srdf=srdf,
             package_paths=(*(package_path or []), *folders),
             spheres=spheres or not no_spheres,

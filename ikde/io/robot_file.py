@@ -139,6 +139,8 @@ class RobotFile(Entry):
     conventions: Annotated[dict[Name, ConventionEntry], OfLists] = {}
     spheres: Annotated[dict[Name, Annotated[list[SphereRowEntry], Field(max_length=MAX_ENTRIES)]], OfLists] = {}
     adjacent: AdjacentEntry | None = None
+    compare: dict[Name, list[Name]] = {}
+    """Pairs that `non_adjacent` has although one joint joins them: {A: [B]}."""
     pairs: Annotated[dict[Name, PairEntry], OfLists] = {}
     detectors: Annotated[dict[Name, RobotDetectorEntry], OfLists] = {}
     default_detector: Name | None = None
@@ -197,6 +199,7 @@ def _to_robot(file: RobotFile) -> Robot:
         },
         pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
         adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
+        compared=tuple((a, b) for a, others in file.compare.items() for b in others),
         detectors={name: make_detector(name, entry, file.units) for name, entry in file.detectors.items()},
         default_detector=_choose_default(file),
         convention=file.convention,

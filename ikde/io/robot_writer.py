@@ -48,7 +48,8 @@ def format_robot_file(robot: Robot, notes: Iterable[str] = ()) -> str:
         *(f"{key}: {format_flow(value)}" for key, value in head.items()),
     ]
     below = [*texts["joints"], *texts["frames"], "", f"tool: {format_flow(robot.tool)}", *_base_lines(robot, sources)]
-    below += [*texts["conventions"], *_sphere_lines(robot, sources), *_adjacent_lines(robot, sources), *texts["pairs"]]
+    below += [*texts["conventions"], *_sphere_lines(robot, sources), *_adjacent_lines(robot, sources)]
+    below += [*_compare_lines(robot), *texts["pairs"]]
     below += [*texts["detectors"], "", f"default_detector: {format_flow(robot.default_detector)}", *texts["inertias"]]
     return "\n".join([*lines, *_section("sources", sources.entries), *below]) + "\n"
 
@@ -131,6 +132,15 @@ def _adjacent_lines(robot: Robot, sources: _Sources) -> list[str]:
     source = sources.add({}, "adjacent")
     lines = ["", "adjacent:", *(f"  {key}: {format_flow(value)}" for key, value in source.items()), "  pairs:"]
     return [*lines, *(f"    {format_flow(a)}: {format_flow(others)}" for a, others in grouped.items())]
+
+
+def _compare_lines(robot: Robot) -> list[str]:
+    grouped = _group((a, b, None) for a, b in robot.compared)
+    return (
+        ["", "compare:", *(f"  {format_flow(a)}: {format_flow(others)}" for a, others in grouped.items())]
+        if grouped
+        else []
+    )
 
 
 def _base_lines(robot: Robot, sources: _Sources) -> list[str]:

@@ -56,6 +56,7 @@ def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
         ET.SubElement(joint, "parent", link=carriers[spheres[0].body])
         ET.SubElement(joint, "child", link=link.attrib["name"])
     limits = f"Efforts ({EFFORT:g} N or N m) and velocities ({VELOCITY:g} m/s or rad/s) are placeholders as well."
+    ET.SubElement(root, "ikde", tool=robot.tool)
     tool = f"The tool is the link {robot.tool!r}."
     return format_document(root, (describe_collision(model), tool, PLACEHOLDERS, limits))
 

@@ -12,11 +12,16 @@ def component_bodies(rows: tuple[Spheres, ...], tree: Tree) -> dict[str, int]:
 
 
 def find_neighbours(robot: Robot, tree: Tree, bodies: dict[str, int]) -> tuple[LeftOutPair, ...]:
-    """Every pair of components that is of one body, or joined by a joint, or declared adjacent in the robot's file."""
+    """Every pair of components that is of one body, or joined by a joint, or declared adjacent in the robot's file.
+
+    But for those that the file says are compared.
+    """
     declared = {frozenset((pair.a, pair.b)): f"adjacent: {pair.reason}" for pair in robot.adjacent}
+    compared = set(map(frozenset, robot.compared))
     reasons = {
-        (a, b): describe_link(robot, tree, bodies[a], bodies[b]) or declared.get(frozenset((a, b)))
+        (a, b): declared.get(frozenset((a, b))) or describe_link(robot, tree, bodies[a], bodies[b])
         for a, b in combinations(bodies, 2)
+        if frozenset((a, b)) not in compared
     }
     return tuple(LeftOutPair(a=a, b=b, reason=reason) for (a, b), reason in reasons.items() if reason)
 

@@ -198,6 +198,8 @@ class Robot(ReadOnlyValue):
     """By frame, of those whose mass is known."""
     neighbours: tuple[LeftOutPair, ...] = ()
     """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
+    compared: Pairs = ()
+    """Pairs that `non_adjacent` has although they are of one body, or one joint joins their bodies."""
     file_ranges: tuple[tuple[float, float], ...] = ()
     """What `drawn` was by the robot's file, m or rad, where a run has put other limits in their place; else nothing."""
 

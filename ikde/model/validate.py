@@ -235,7 +235,12 @@ def _check_pairs(robot: Robot, components: Mapping[str, int]) -> None:
     for name, pairs in robot.pair_lists.items():
         _check_list(pairs, components, ("pairs", name, "pairs"))
     _check_list(tuple((pair.a, pair.b) for pair in robot.adjacent), components, ("adjacent", "pairs"))
+    _check_list(robot.compared, components, ("compare",))
+    compared = {frozenset(pair): pair[0] for pair in robot.compared}
     for pair in robot.adjacent:
+        both = f"{pair.a!r} and {pair.b!r} are declared adjacent as well"
+        key = frozenset((pair.a, pair.b))
+        _require(key not in compared, both, "compare", compared.get(key, ""))
         has_reason = bool(pair.reason.strip()) and pair.reason.isprintable()
         _require(has_reason, "expected a reason, in one line of printable text", "adjacent", "pairs", pair.a, pair.b)
 

@@ -10,6 +10,7 @@ from ikde.model.robot import NO_DETECTOR
 from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
 from ikde.solver.check import compute_pairs
+from ikde.solver.pair_verdicts import PairVerdict, judge_pairs
 from ikde.solver.touching import CONFIGURATIONS, find_always_touching, find_standing
 
 
@@ -17,11 +18,11 @@ def pairs_json(collision: CollisionModel) -> dict[str, Any] | None:
     """What a detector compares, with the clearance at home in m, worst first, and what it leaves out; None for none."""
     if not collision.pairs:
         return None
-    touching = find_always_touching(collision)
+    touching, verdicts = find_always_touching(collision), judge_pairs(collision)
     return {
         "detector": collision.name,
         "compared": [
-            {"a": pair.a, "b": pair.b, "clearance_at_home_m": pair.clearance_m}
+            {"a": pair.a, "b": pair.b, "clearance_at_home_m": pair.clearance_m} | _touch_json(verdicts[pair.a, pair.b])
             for pair in compute_pairs(collision, collision.robot.home)
         ],
         "left_out": [asdict(pair) for pair in collision.left_out_pairs],
@@ -78,11 +79,23 @@ def _standing_lines(collision: CollisionModel, units: Units) -> list[str]:
 
 
 def _compared_table(collision: CollisionModel, units: Units) -> Any:
-    table = make_table("pair", f">clearance at home [{units.length}]", title="pairs compared")
+    heads = ("pair", f">clearance at home [{units.length}]", "contact")
+    table, verdicts = make_table(*heads, title="pairs compared"), judge_pairs(collision)
     for pair in compute_pairs(collision, collision.robot.home):
         gap = format_fixed(pair.clearance_m / LENGTHS_M[units.length], 2 if units.length == "mm" else 5)
-        table.add_row(plain(f"{pair.a} - {pair.b}"), gap)
+        table.add_row(plain(f"{pair.a} - {pair.b}"), gap, describe_touch(verdicts[pair.a, pair.b]))
     return table
+
+
+def describe_touch(verdict: PairVerdict) -> str:
+    """In a word or two: `sometimes` was seen, the others are proved, or nothing else was seen."""
+    if verdict.is_proved:
+        return verdict.touches if verdict.touches == "sometimes" else f"{verdict.touches}, proved"
+    return "always seen" if verdict.touches == "always" else "never seen"
+
+
+def _touch_json(verdict: PairVerdict) -> dict[str, Any]:
+    return {"touches": verdict.touches, "is_proved": verdict.is_proved}
 
 
 def _left_out_table(collision: CollisionModel) -> Any:

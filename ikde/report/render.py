@@ -57,18 +57,20 @@ def make_table(*columns: str, title: str | None = None) -> Any:
 
 
 def _narrow(table: Any, console: Any) -> None:
-    """Make a table fit: smaller gaps, then words on several lines, then without its columns to spare."""
+    """Make a table fit: smaller gaps, then texts on several lines, then without columns to spare, the last first."""
     if _measure(table, console) <= console.width:
         return
     table.collapse_padding = True
     if _share_room(table, console):
         return
-    table.columns = [column for column in table.columns if column.ratio is None]
-    for place, column in enumerate(table.columns):
-        column._index = place  # from which rich knows what stands at an edge
-    if not _share_room(table, console):
-        for column in table.columns:
-            column.width = max(map(_longest_word, _cells(column))) if column.justify == "right" else None
+    while spare := [column for column in table.columns if column.ratio is not None]:
+        table.columns.remove(spare[-1])
+        for place, column in enumerate(table.columns):
+            column._index = place  # from which rich knows what stands at an edge
+        if _share_room(table, console):
+            return
+    for column in table.columns:
+        column.width = max(map(_longest_word, _cells(column))) if column.justify == "right" else None
 
 
 def _share_room(table: Any, console: Any) -> bool:

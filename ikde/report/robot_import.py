@@ -6,14 +6,12 @@ from typing import Any
 
 from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.urdf_import.held import HeldJoint
-from ikde.io.urdf_import.imported import CoveredLink, ImportedUrdf
+from ikde.io.urdf_import.imported import OF_THE_TREE, CoveredLink, ImportedUrdf, describe_pairs
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Joint
 from ikde.report.numbers import Units, count_of
 from ikde.report.pairs import pairs_json
 from ikde.report.render import make_table, plain, render
-
-OBVIOUS = ("one body", "joined by joint")
 
 
 def import_json(imported: ImportedUrdf) -> dict[str, Any]:
@@ -31,6 +29,7 @@ def import_json(imported: ImportedUrdf) -> dict[str, Any]:
         "frozen": [asdict(held) for held in imported.held],
         "spheres": [asdict(link) for link in imported.links],
         "collision": pairs_json(CollisionModel.of(robot)),
+        "never_touching": [list(pair) for pair in imported.never_touching],
         "home": imported.home,
         "home_is_free": imported.is_home_free,
         "warnings": list(imported.warnings),
@@ -55,7 +54,7 @@ def format_import(imported: ImportedUrdf, units: Units, *, color: bool = False, 
     tables += [_pair_table(collision)] if _list_told(collision) else []
     lines = [f"home: {plain(imported.home)}{_say_free(imported.is_home_free)}"]
     lines += [f"[bold]warning:[/] {plain(warning)}" for warning in imported.warnings]
-    return render(head, "", *tables, "", _describe_pairs(collision), *lines, color=color, width=width)
+    return render(head, "", *tables, "", f"pairs: {describe_pairs(imported)}", *lines, color=color, width=width)
 
 
 def _say_free(is_free: bool | None) -> str:
@@ -64,7 +63,7 @@ def _say_free(is_free: bool | None) -> str:
 
 def _joint_table(imported: ImportedUrdf, units: Units) -> Any:
     table = make_table(
-        "joint", "kind", ">lower", ">home", ">upper", "unit", ">speed", "", title="joints that move the tool"
+        "joint", "?kind", ">lower", ">home", ">upper", "unit", "?speed", "?", title="joints that move the tool"
     )
     for joint in imported.robot.joints:
         values = [units.format_limit(joint, value, 6) for value in (joint.lower, joint.home, joint.upper)]
@@ -75,7 +74,7 @@ def _joint_table(imported: ImportedUrdf, units: Units) -> Any:
 
 
 def _held_table(imported: ImportedUrdf, units: Units) -> Any:
-    table = make_table("joint", "kind", ">at", "why", title=f"frozen: {count_of(len(imported.held), 'joint')}")
+    table = make_table("joint", "?kind", ">at", "why", title=f"frozen: {count_of(len(imported.held), 'joint')}")
     for held in imported.held:
         table.add_row(plain(held.name), held.kind, _format_held(held, units), plain(held.reason))
     return table
@@ -90,18 +89,20 @@ def _format_held(held: HeldJoint, units: Units) -> str:
 def sphere_table(links: Sequence[CoveredLink], units: Units) -> Any:
     """A line a link: what was covered, with how many spheres, and what is proved of them."""
     total = sum(link.spheres for link in links)
-    heads = ("link", "shapes", ">spheres", ">covered", f">stand out [{units.length}]", "how")
+    is_made = any(link.covered is not None for link in links)  # all others are taken as they are
+    heads = ("link", "?shapes", ">spheres", *((">covered", f">stand out [{units.length}]") if is_made else ()), "?how")
     table = make_table(*heads, title=f"spheres: {total:,} on {count_of(len(links), 'link')}")
     for link in links:
         covered = "" if link.covered is None else f"{100.0 * link.covered:.2f} %"
         out = "" if link.protrusion_m is None else f"{link.protrusion_m / LENGTHS_M[units.length]:.3g}"
-        table.add_row(plain(link.link), link.shapes, str(link.spheres), covered, out, plain(link.how))
+        made = (covered, out) if is_made else ()
+        table.add_row(plain(link.link), link.shapes, str(link.spheres), *made, plain(link.how))
     return table
 
 
 def _list_told(collision: CollisionModel) -> list[Any]:
     """Pairs that are left out for a reason that the tree does not show."""
-    return [pair for pair in collision.left_out_pairs if not pair.reason.startswith(OBVIOUS)]
+    return [pair for pair in collision.left_out_pairs if not pair.reason.startswith(OF_THE_TREE)]
 
 
 def _pair_table(collision: CollisionModel) -> Any:
@@ -109,11 +110,3 @@ def _pair_table(collision: CollisionModel) -> Any:
     for pair in _list_told(collision):
         table.add_row(plain(f"{pair.a} - {pair.b}"), plain(pair.reason))
     return table
-
-
-def _describe_pairs(collision: CollisionModel) -> str:
-    if not collision.pairs:
-        return "pairs: none, self-collision is not checked"
-    compared, left_out = len(collision.pairs), len(collision.left_out_pairs)
-    neighbours = left_out - len(_list_told(collision))
-    return f"pairs: {compared} compared, {left_out} left out, {neighbours} of them neighbours"

@@ -47,7 +47,7 @@ def find_always_touching(collision: CollisionModel) -> AlwaysTouching | None:
     drawn = draw_configurations(robot)
     pairs, done = collision.pairs, 0
     while pairs and done < CONFIGURATIONS:
-        piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
+        piece = drawn[done : done + min(count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
         largest = compute_gaps(collision, piece, pairs).max(axis=0)
         pairs = tuple(pair for pair, gap in zip(pairs, largest, strict=True) if gap <= collision.limit_m)
         done += len(piece)
@@ -74,7 +74,7 @@ def find_standing(collision: CollisionModel) -> tuple[StandingPair, ...]:
     drawn = draw_configurations(collision.robot)
     pairs, done, least, most = collision.pairs, 0, np.array(np.inf), np.array(-np.inf)
     while pairs and done < CONFIGURATIONS:
-        piece = drawn[done : done + min(_count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
+        piece = drawn[done : done + min(count_at_once(collision, pairs), FIRST if done == 0 else CONFIGURATIONS)]
         gaps = compute_gaps(collision, piece, pairs)
         least, most = np.minimum(least, gaps.min(axis=0)), np.maximum(most, gaps.max(axis=0))
         stands = (most - least <= STILL_M) & (least > collision.limit_m) & (most <= CLOSE_M)
@@ -90,7 +90,7 @@ def draw_configurations(robot: Robot) -> Floats:
     return np.random.default_rng(0).uniform(*robot.drawn, (CONFIGURATIONS, len(robot.joints)))
 
 
-def _count_at_once(collision: CollisionModel, pairs: Pairs) -> int:
+def count_at_once(collision: CollisionModel, pairs: Pairs) -> int:
     """Configurations for whose gaps there is room."""
     spheres: Counter[str] = Counter()
     for row in collision.rows:

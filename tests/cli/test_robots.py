@@ -94,7 +94,9 @@ def test_a_good_file_is_valid(cli, tmp_path):
         "joints": 2,
         "frames": 3,
     }
-    assert data["collision"]["compared"] == [{"a": "box", "b": "bar", "clearance_at_home_m": pytest.approx(0.28)}]
+    (pair,) = data["collision"]["compared"]
+    assert pair.pop("clearance_at_home_m") == pytest.approx(0.28)
+    assert pair == {"a": "box", "b": "bar", "touches": "never", "is_proved": True}
 
 
 def test_a_robot_is_shown_with_the_number_of_its_pairs_and_how_to_see_them(cli):

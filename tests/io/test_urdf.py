@@ -9,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ikde
+from ikde.io.robots import load_robot
 from ikde.io.urdf import format_urdf, rpy_from_rotation
+from ikde.io.urdf_import.read_urdf import import_urdf
 from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_components
@@ -134,3 +136,9 @@ def test_a_joint_without_limits_is_continuous(rng):
     pin.framesForwardKinematics(model, data, values)
     seen = data.oMf[model.getFrameId("tip", pin.FrameType.BODY)].homogeneous
     np.testing.assert_allclose(seen, ikde.forward(robot, q)["tip"], **EXACT)
+
+
+def test_an_import_of_what_is_exported_knows_the_tool(tmp_path):
+    path = tmp_path / "ur5.urdf"
+    path.write_text(format_urdf("ur5"), encoding="utf-8")
+    assert import_urdf(path).tool == load_robot("ur5").tool

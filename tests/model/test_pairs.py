@@ -6,6 +6,7 @@ from itertools import combinations
 import pytest
 
 import ikde
+from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import component_bodies, describe_link, explain_no_detector
 from ikde.model.robot import AdjacentPair, Detector, LeftOutPair, SphereRow
@@ -73,17 +74,30 @@ def test_declared_pairs_are_left_out_in_either_order_with_their_reason():
     assert reasons(robot)["BD"] == "adjacent: a hose"
 
 
-def test_what_the_tree_shows_comes_before_what_is_declared_and_that_before_lists():
+def test_what_is_declared_comes_before_what_the_tree_shows_and_that_before_lists():
     declared = (AdjacentPair(a="A", b="B", reason="welded"), AdjacentPair(a="A", b="C", reason="welded"))
     robot = make_chain(adjacent=declared, pair_lists={"some": (("D", "B"),)})
     found = reasons(robot, replace(EVERY, pairs="some"))
     assert found == {
-        "AB": "joined by joint jb",
+        "AB": "adjacent: welded",
         "AC": "adjacent: welded",
         "AD": "not in the pair list some",
         "BC": "joined by joint jc",
         "CD": "joined by joint jd",
     }
+
+
+def test_what_the_file_says_is_compared_is_compared_although_a_joint_joins_it():
+    robot = make_chain("abc", compared=(("B", "A"),))
+    assert robot.pair_lists[NON_ADJACENT] == (("A", "B"), ("A", "C"))
+    assert reasons(robot) == {"BC": "joined by joint jc"}
+
+
+def test_a_pair_is_not_both_compared_and_adjacent():
+    with pytest.raises(InputError, match=r"compare\.B: 'A' and 'B' are declared adjacent as well"):
+        make_chain(compared=(("B", "A"),), adjacent=(AdjacentPair(a="A", b="B", reason="glued"),))
+    with pytest.raises(InputError, match=r"compare\.A: no component is called 'Z'"):
+        make_chain(compared=(("A", "Z"),))
 
 
 def test_a_list_may_compare_what_is_linked():

@@ -38,12 +38,24 @@ def test_every_decision_is_listed(imported):
     assert " ".join(listed[3][7:]) == "no limits in the file: continuous"
     assert listed[4] == ["slide", "prismatic", "100", "250", "400", "mm"]
     assert rows(text, "frozen: 2 joints")[1][:4] == ["grip_mimic", "prismatic", "-17", "mm"]
-    assert rows(text, "spheres: 4 on 4 links")[0] == ["base_link", "1", "sphere", "1", "0", "as", "they", "are"]
+    assert rows(text, "spheres: 4 on 4 links")[0] == ["base_link", "1", "sphere", "1", "as", "they", "are"]
     assert rows(text, "pairs left out, but for neighbours") == [
         ["base_link", "-", "fore", "adjacent:", "SRDF:", "Never"]
     ]
-    assert "pairs: 1 compared, 5 left out, 4 of them neighbours" in text
+    assert "pairs: 2 compared (2 proved never to touch), 4 left out, 3 of them neighbours" in text
     assert "home: 0, or mid-range; free" in text
+
+
+def test_names_are_whole_in_a_narrow_terminal(tmp_path):
+    long = ARM.replace("shoulder", "the_joint_of_the_left_arm")
+    text = format_import(read_urdf(write(tmp_path, long)), Units("mm", "deg"), width=60)
+    assert rows(text, "joints that move the tool")[0] == [
+        "the_joint_of_the_left_arm",
+        "-85.9437",
+        "0",
+        "114.592",
+        "deg",
+    ]
 
 
 def test_json_holds_the_same_in_metres_and_radians(imported):
@@ -63,7 +75,8 @@ def test_json_holds_the_same_in_metres_and_radians(imported):
         "reason": "off the chain to the tool, mimics grip",
     }
     assert len(data["spheres"]) == 4
-    assert len(data["collision"]["compared"]) == 1
+    assert [pair["touches"] for pair in data["collision"]["compared"]] == ["never", "never"]
+    assert sorted(data["never_touching"]) == [["fore", "far"], ["upper", "far"]]
     assert data["home_is_free"] is True
 
 

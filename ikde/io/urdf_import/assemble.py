@@ -8,19 +8,17 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.io.robot_file import MAX_ENTRIES, MAX_JOINTS
 from ikde.io.srdf import Srdf
+from ikde.io.urdf_import.choose_pairs import SPHERES, ChosenPairs, choose_pairs
 from ikde.io.urdf_import.cover_links import LinkSpheres
 from ikde.io.urdf_import.description import Description
 from ikde.io.urdf_import.frames import Skeleton
 from ikde.io.urdf_import.free_home import find_free_home
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import NO_DETECTOR, WORLD, AdjacentPair, Detector, Drive, FreeSpheres, Joint, Robot
-from ikde.model.validate import NON_ADJACENT, check_robot
-from ikde.solver.touching import CONFIGURATIONS, find_always_touching
+from ikde.model.robot import NO_DETECTOR, WORLD, Drive, FreeSpheres, Joint, Pairs, Robot
+from ikde.model.validate import check_robot
 
-SPHERES = "spheres"
 DRIVES: dict[str, Drive] = {"omni": "omnidirectional", "differential": "differential"}
-ALWAYS = f"always touching: in each of {CONFIGURATIONS:,} random configurations"
 
 
 def assemble(description: Description, skeleton: Skeleton, tool: str, options: ImportOptions) -> Robot:
@@ -55,13 +53,9 @@ def set_home(draft: Robot, values: Mapping[str, float]) -> Robot:
 
 
 def add_spheres(
-    draft: Robot, skeleton: Skeleton, covered: Mapping[str, LinkSpheres], srdf: Srdf
-) -> tuple[Robot, list[str]]:
-    """The robot with spheres and a detector of all pairs but neighbours, the SRDF's and those that always touch.
-
-    Returns:
-        The robot, checked, and what is worth a warning.
-    """
+    draft: Robot, skeleton: Skeleton, covered: Mapping[str, LinkSpheres], srdf: Srdf, asked: Pairs = ()
+) -> ChosenPairs:
+    """The robot with spheres and a detector of the pairs that are chosen, checked; `asked` are pairs of links."""
     free = _place_spheres(skeleton, covered)
     for what, number, most in (
         ("joints", len(draft.joints), MAX_JOINTS),
@@ -71,11 +65,8 @@ def add_spheres(
         if number > most:
             raise InputError(f"a robot has at most {most:,} {what}, and this one {number:,}", (what,))
     if not free:
-        return check_robot(draft), ["no link has spheres: self-collision is not checked"]
-    adjacent, notes = _read_disabled(skeleton, {own.component for own in free}, srdf)
-    draft = replace(draft, approximations={SPHERES: free}, adjacent=adjacent)
-    robot, more = leave_out_touching(draft, Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT))
-    return robot, notes + more
+        return ChosenPairs(robot=check_robot(draft), warnings=("no link has spheres: self-collision is not checked",))
+    return choose_pairs(replace(draft, approximations={SPHERES: free}), skeleton.frame_of, srdf, asked)
 
 
 def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tuple[FreeSpheres, ...]:
@@ -89,41 +80,6 @@ def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tu
         for link, own in covered.items()
         if len(own.radii)
     )
-
-
-def leave_out_touching(draft: Robot, detector: Detector) -> tuple[Robot, list[str]]:
-    """The robot, checked, with a detector of all pairs that do not always touch; and what is worth a warning.
-
-    Args:
-        draft: a robot without that detector, whose pairs that touch are not among its adjacent ones yet.
-        detector: of all pairs that are not adjacent; it becomes the default.
-    """
-    notes: list[str] = []
-    while pairs := check_robot(draft).pair_lists[NON_ADJACENT]:
-        detectors = {**draft.detectors, detector.name: detector}
-        robot = check_robot(replace(draft, detectors=detectors, default_detector=detector.name))
-        touching = find_always_touching(CollisionModel.of(robot))
-        if touching is None:
-            return robot, notes
-        notes.append(f"{len(touching.pairs)} of {len(pairs)} pairs always touch and are left out")
-        found = tuple(AdjacentPair(a=a, b=b, reason=ALWAYS) for a, b in touching.pairs)
-        draft = replace(draft, adjacent=draft.adjacent + found)
-    return check_robot(draft), [*notes, "no two links are left that could collide: self-collision is not checked"]
-
-
-def _read_disabled(skeleton: Skeleton, components: set[str], srdf: Srdf) -> tuple[tuple[AdjacentPair, ...], list[str]]:
-    """Pairs of components that the SRDF leaves out, each once, and which of its links are unknown."""
-    found: dict[frozenset[str], AdjacentPair] = {}
-    unknown: dict[str, None] = {}
-    for pair in srdf.disabled:
-        for link in (pair.a, pair.b):
-            if link not in skeleton.frame_of:
-                unknown[link] = None
-        a, b = (skeleton.frame_of.get(link, "") for link in (pair.a, pair.b))
-        if a != b and {a, b} <= components:
-            found.setdefault(frozenset((a, b)), AdjacentPair(a=a, b=b, reason=f"SRDF: {pair.reason or 'disabled'}"))
-    notes = [f"the SRDF names links that there are not: {', '.join(list(unknown)[:8])}"] if unknown else []
-    return tuple(found.values()), notes
 
 
 def free_home(robot: Robot, states: tuple[str, ...]) -> tuple[Robot, str, bool | None]:

@@ -83,6 +83,8 @@ class Description:
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
     warnings: tuple[str, ...]
+    tool: str | None = None
+    """What `<ikde tool="LINK"/>` names, as in files that ikde has written."""
 
     def error(self, message: str, part: UrdfLink | UrdfJoint) -> FileError:
         """An error about a link or joint."""
@@ -109,7 +111,14 @@ def read_description(path: Path) -> Description:
     joints = _named(file, "joint", [_read_joint(file, element, links) for element in root.find_all("joint")])
     name = root.attributes.get("name") or path.stem
     check_name(file, name, root, "robot")
-    return Description(path=path, name=name, links=links, joints=joints, warnings=tuple(warnings))
+    own = root.find("ikde")
+    tool = _read_tool(own.attributes.get("tool"), links) if own else None
+    return Description(path=path, name=name, links=links, joints=joints, warnings=tuple(warnings), tool=tool)
+
+
+def _read_tool(tool: str | None, links: dict[str, UrdfLink]) -> str | None:
+    """The tool if there is such a link."""
+    return tool if tool in links else None
 
 
 def _named(file: XmlFile, tag: str, parts: list[Part]) -> dict[str, Part]:

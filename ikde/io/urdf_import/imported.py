@@ -3,7 +3,11 @@
 from dataclasses import dataclass
 
 from ikde.io.urdf_import.held import HeldJoint
-from ikde.model.robot import Robot
+from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Pairs, Robot
+
+OF_THE_TREE = ("one body", "joined by joint")
+"""Reasons that the tree of joints shows."""
 
 AS_THEY_ARE = "as they are"
 """How spheres are made of collision elements that are spheres."""
@@ -43,6 +47,8 @@ class ImportedUrdf:
     """Where the home configuration comes from."""
     is_home_free: bool | None
     """None: not checked."""
+    never_touching: Pairs = ()
+    """Compared pairs of components that are proved never to touch within the joints' limits."""
     warnings: tuple[str, ...]
 
 
@@ -51,7 +57,8 @@ def list_notes(imported: ImportedUrdf) -> list[str]:
     held = [f"frozen: {joint.name} ({joint.kind}) at {joint.value:.9g}: {joint.reason}" for joint in imported.held]
     warnings = [f"warning: {warning}" for warning in imported.warnings]
     made = [f"spheres of {describe_cover(link)}" for link in imported.links if link.how != AS_THEY_ARE]
-    return [f"Imported from {imported.file}; m and rad.", *held, f"home: {imported.home}", *made, *warnings]
+    decided = [f"home: {imported.home}", f"pairs: {describe_pairs(imported)}"]
+    return [f"Imported from {imported.file}; m and rad.", *held, *decided, *made, *warnings]
 
 
 def describe_cover(link: CoveredLink) -> str:
@@ -62,3 +69,14 @@ def describe_cover(link: CoveredLink) -> str:
     if link.protrusion_m:
         parts.append(f"at most {link.protrusion_m * 1e3:.3g} mm out")
     return "; ".join(parts)
+
+
+def describe_pairs(imported: ImportedUrdf) -> str:
+    """How many pairs are compared, how many of them are proved never to touch, and how many are left out."""
+    collision = CollisionModel.of(imported.robot)
+    if not collision.pairs:
+        return "none, self-collision is not checked"
+    never, left_out = len(imported.never_touching), collision.left_out_pairs
+    proved = f" ({never} proved never to touch)" if never else ""
+    neighbours = sum(pair.reason.startswith(OF_THE_TREE) for pair in left_out)
+    return f"{len(collision.pairs)} compared{proved}, {len(left_out)} left out, {neighbours} of them neighbours"

@@ -28,6 +28,8 @@ class ImportOptions:
     srdf: Path | None = None
     package_paths: tuple[Path, ...] = ()
     """Folders that meshes may lie in, beside the file's own."""
+    compare: tuple[tuple[str, str], ...] = ()
+    """Pairs of links that are compared although they are adjacent, always touch, or the SRDF leaves them out."""
     mesh_scale: float = 1.0
     """What all meshes are scaled by beside what the file says: 0.001 for meshes in mm."""
     spheres: bool | Path = True
@@ -60,3 +62,14 @@ def read_holds(words: Iterable[str]) -> dict[str, float]:
         if not name:
             raise InputError(f"expected JOINT=VALUE, in m or rad, got {quoted(word)}", ("hold",))
     return held
+
+
+def read_pairs(words: Iterable[str]) -> tuple[tuple[str, str], ...]:
+    """Pairs of links out of `A:B`; raises `InputError` for anything else."""
+    pairs = []
+    for word in words:
+        a, colon, b = word.partition(":")
+        if not (a and colon and b):
+            raise InputError(f"expected LINK:LINK, got {quoted(word)}", ("compare",))
+        pairs.append((a, b))
+    return tuple(pairs)

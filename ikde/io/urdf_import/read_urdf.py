@@ -79,7 +79,7 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     options = options or ImportOptions()
     description = read_description(Path(path))
     tree = find_tree(description)
-    tool = choose_tool(description, tree, options.tool, options.drives)
+    tool = choose_tool(description, tree, options.tool or description.tool, options.drives)
     srdf = read_srdf(options.srdf) if options.srdf else Srdf()
     states, values = srdf.choose_states()
     held = find_held(description, tree, tool, options, values)
@@ -90,29 +90,30 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     try:
         robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
         robot = set_home(robot, values)
-        robot, notes = add_spheres(robot, skeleton, covered, srdf)
+        pairs = add_spheres(robot, skeleton, covered, srdf, options.compare)
     except FileError:
         raise
     except InputError as error:
         raise FileError(description.path, error.message, error.where) from None
-    robot, home, is_free = free_home(robot, states)
+    robot, home, is_free = free_home(pairs.robot, states)
     return ImportedUrdf(
         robot=robot,
         file=str(path),
         root=tree.root,
-        tool_was_chosen=options.tool is None,
+        tool_was_chosen=options.tool is None and description.tool is None,
         joint_notes=skeleton.notes,
         held=tuple(held.values()),
         links=tuple(covered[link].report for link in covered),
         home=home,
         is_home_free=is_free,
+        never_touching=pairs.never,
         warnings=(
             *description.warnings,
             *skeleton.warnings,
             *_list_followers(description, held),
             *(warning for own in covered.values() for warning in own.warnings),
             *given,
-            *notes,
+            *pairs.warnings,
         ),
     )
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from ikde.errors import FileError, InputError, nearest, quoted
 from ikde.formats.reading import read_text
-from ikde.io.urdf_import.assemble import ALWAYS, SPHERES, leave_out_touching
 from ikde.io.urdf_import.chain import find_tree
+from ikde.io.urdf_import.choose_pairs import SPHERES, leave_out_touching
 from ikde.io.urdf_import.cover_links import LinkSpheres, cover_link, describe_shapes, find_shapes
 from ikde.io.urdf_import.description import Description, read_description
 from ikde.io.urdf_import.imported import CoveredLink
@@ -23,6 +23,8 @@ from ikde.solver.plain import compute_gaps
 from ikde.spheres.measure import measure_spheres
 from ikde.spheres.shapes import Shape
 from ikde.spheres.triangles import shape_triangles
+
+ALWAYS = "always touching: "  # how reasons begin that are found anew
 
 
 def list_link_spheres(robot: Robot) -> dict[str, Floats]:
@@ -57,18 +59,21 @@ def exchange_spheres(robot: Robot, own: Mapping[str, LinkSpheres]) -> tuple[Robo
             raise InputError(f"no frame of the robot is called {quoted(link)}{nearest(link, frames)}", ("link",))
     name = _choose_approximation(robot)
     rows = _exchange_rows(robot.approximations.get(name, ()), own)
-    adjacent = tuple(p for p in robot.adjacent if p.reason != ALWAYS or not {p.a, p.b} & set(own))
+    again = [p for p in robot.adjacent if p.reason.startswith(ALWAYS) and {p.a, p.b} & set(own)]
+    adjacent = tuple(p for p in robot.adjacent if p not in again)
     lists = {key: pairs for key, pairs in robot.pair_lists.items() if key != NON_ADJACENT}
     approximations = {**robot.approximations, name: rows}
     draft = replace(robot, approximations=approximations, adjacent=adjacent, pair_lists=lists)
     detector = robot.detectors.get(robot.default_detector) or Detector(name=name, spheres=name, pairs=NON_ADJACENT)
     if detector.pairs == NON_ADJACENT:
         others = {key: other for key, other in robot.detectors.items() if key != detector.name}
-        changed, notes = leave_out_touching(
-            replace(draft, detectors=others, default_detector=next(iter(others), NO_DETECTOR)), detector
-        )
+        base = replace(draft, detectors=others, default_detector=next(iter(others), NO_DETECTOR))
+        known = set(map(frozenset, check_robot(base).pair_lists[NON_ADJACENT]))
+        joined = tuple((p.a, p.b) for p in again if frozenset((p.a, p.b)) not in known)
+        chosen = leave_out_touching(replace(base, compared=base.compared + joined), detector)
+        changed, notes = chosen.robot, chosen.warnings
     else:
-        changed, notes = check_robot(draft), []
+        changed, notes = check_robot(draft), ()
     return changed, [*notes, *_check_home(changed)]
 
 

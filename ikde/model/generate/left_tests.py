@@ -19,7 +19,7 @@ from ikde.model.generate.proofs import drop_implied, drop_proved, proof_margin
 
 WRITTEN = Path(__file__).with_name("left_tests.json")
 DIGITS = 12  # decimals of numbers that a digest depends on: the last ones differ from machine to machine
-PROVING = ("collision.py", "lattice.py", "proofs.py")
+PROVING = ("../apart.py", "collision.py", "lattice.py", "proofs.py")
 
 
 class Left(NamedTuple):
@@ -70,4 +70,4 @@ def digest_proofs(robot: RobotArrays, collision: CollisionModel) -> str:
 
 @lru_cache(maxsize=1)
 def _own_source() -> bytes:
-    return b"".join(Path(__file__).with_name(name).read_bytes() for name in PROVING)
+    return b"".join((Path(__file__).parent / name).read_bytes() for name in PROVING)

@@ -11,8 +11,8 @@ def test_the_notes_hold_what_the_file_cannot_show(tmp_path):
     notes = list_notes(read_urdf(write(tmp_path, text), ImportOptions(tool="tip")))
     assert notes[0] == f"Imported from {tmp_path / 'arm.urdf'}; m and rad."
     assert notes[1] == "frozen: grip (prismatic) at 0.01: off the chain to the tool, the limit next to 0"
-    assert notes[3] == "home: 0, or mid-range"
-    assert notes[4].startswith("warning: line 3: a collision element of base_link is left out")
+    assert notes[3:5] == ["home: 0, or mid-range", "pairs: none, self-collision is not checked"]
+    assert notes[5].startswith("warning: line 3: a collision element of base_link is left out")
 
 
 def test_how_a_link_is_covered_is_said():

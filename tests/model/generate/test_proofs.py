@@ -238,16 +238,16 @@ def test_what_does_not_move_is_decided_at_once():
     assert [test.pair for test in proved] == [0]
 
 
-def test_bodies_of_two_branches_are_left_alone():
-    points = {"a": ("f0", (0.1, 0, 5.0))}
+@pytest.mark.parametrize(("height", "proved"), [(5.0, 1), (-0.2, 0)])
+def test_bodies_of_two_branches_are_proved_as_well(height, proved):
+    points = {"a": ("f0", (0.6, 0, height))}
     robot = two_arms([make_row("x", "a", "a", 0.1), make_row("y", "tool", "tool", 0.1)], [("x", "y")], points)
-    kept, proved = split(robot, CollisionModel.of(robot).detector)
-    assert (len(kept), len(proved)) == (1, 0)
+    assert len(split(robot, CollisionModel.of(robot).detector)[1]) == proved
 
 
 @pytest.mark.parametrize("case", SHIPPED, ids=name_case)
 def test_estimated_hits_are_hits(case, rng):
-    """On the configurations that the estimate draws; tests between branches are not looked at."""
+    """On the configurations that the estimate draws."""
     robot, detector = case
     tests = list_tests(CollisionModel(robot=robot, detector=detector).arrays)
     hits = estimate_hits(pack_robot(robot), tests, robot.lower, robot.upper)
