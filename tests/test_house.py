@@ -10,7 +10,7 @@ SOURCES = sorted(PACKAGE.rglob("*.py"))
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 FORBIDDEN_NAMES = {"utils", "util", "types", "core", "base", "helpers", "common", "misc"}
 MAX_FILE_LENGTH, MAX_LENGTH, MAX_ARGUMENTS, MOST_HAVE = 350, 80, 10, 4
-KERNEL_DECORATORS = {"kernel", "leaf_kernel", "inline_kernel", "inline_view_kernel"}
+KERNEL_DECORATORS = {"kernel", "counting_kernel", "leaf_kernel", "inline_kernel", "inline_view_kernel"}
 PROVENANCE = {"published", "derived", "calibrated"}
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{4})\b")
 NO_TEST_OF_ITS_OWN = {

@@ -1,4 +1,4 @@
-"""`ikde check`: whether a configuration is free of self-collision."""
+"""`ikde check`: whether a configuration is free of itself and of a world."""
 
 import typer
 
@@ -6,6 +6,7 @@ from ikde.cli import options
 from ikde.cli.candidates import DEFAULT_ROBOT
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.output import layout, print_json, print_result
+from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 
 
 def check(
@@ -14,15 +15,17 @@ def check(
     detector: options.DetectorOption = None,
     pairs: options.PairsOption = None,
     safe_distance: options.SafeDistanceOption = None,
+    world: WorldOption = None,
+    margin: MarginOption = None,
     unit: options.UnitOption = options.LengthUnit.m,
     angles: options.AnglesOption = options.AngleUnit.rad,
     convention: options.ConventionOption = None,
     plot: options.PlotOption = None,
     as_json: options.JsonOption = False,
 ) -> None:
-    """Print the clearance of every pair of components, worst first.
+    """Print the clearance of every pair of components, and of obstacles, worst first.
 
-    Exits with 1 on self-collision, and with 0 where there is none or, as the output says, it was not checked.
+    Exits with 1 on collision, and with 0 where there is none or, as the output says, it was not checked.
 
     Example: ikde check --q 'q1=90 q2=80' --angles deg --unit mm --detector typical
     """
@@ -33,6 +36,7 @@ def check(
     model = options.read_robot(robot)
     values = options.read_q(model, q, unit, angles, convention)
     collision = options.read_collision(model, detector, pairs, safe_distance, unit)
+    collision = place_in_world(collision, world, margin, unit)
     result = check_configuration(model, values, collision)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)

@@ -11,6 +11,7 @@ from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import layout, print_json, print_note, print_result, working
 from ikde.cli.startup import skip_blas_probe
+from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
 if TYPE_CHECKING:
@@ -105,6 +106,8 @@ def solve(
     detector: options.DetectorOption = None,
     pairs: options.PairsOption = None,
     safe_distance: options.SafeDistanceOption = None,
+    world: WorldOption = None,
+    margin: MarginOption = None,
     seed: SeedOption = 0,
     count: CountOption = 1,
     rank: RankOption = "motion",
@@ -118,7 +121,7 @@ def solve(
     plot: options.PlotOption = None,
     as_json: options.JsonOption = False,
 ) -> None:
-    """Find joint values that bring the tool to a target, inside the limits and free of self-collision.
+    """Find joint values that bring the tool to a target, inside the limits and free of itself and of a world.
 
     Example: ikde solve --position 800 500 1000 --unit mm --plot pose.png
     """
@@ -137,6 +140,7 @@ def solve(
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
     checked = options.read_collision(model, detector, pairs, safe_distance, unit)
+    checked = place_in_world(checked, world, margin, unit)
     start = None if near is None else options.read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = options.read_freeze(model, freeze, unit, angles, convention)

@@ -18,6 +18,7 @@ from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.seeds import draw_seed
 from ikde.kernels.tables import find_collision, make_buffers, unpack_used
 from ikde.kernels.turns import unwind
+from ikde.kernels.world import find_obstacle_at, find_obstacle_of, stands_in_world
 
 
 @inline_kernel
@@ -49,8 +50,11 @@ def place_arm(arm, branch, solutions, out_q):
 
 
 @inline_kernel
-def choose_branch(robot, collision, arm, ranges, nearest, first, count, solutions, q, buffers, out_counts, out_pairs):
-    """A branch that is free of collision, the next from `first` on or the nearest to ranges[2]; -1 if all collide."""
+def choose_branch(models, arm, ranges, nearest, first, count, solutions, q, buffers, out_counts, out_pairs):
+    """A branch that is free of collision, the next from `first` on or the nearest to ranges[2]; -1 if all collide.
+
+    `models`: what `find_collision` takes, then the tables of both, for a world.
+    """
     chosen, smallest = -1, np.inf
     for turn in range(count):
         branch = (first + turn) % count
@@ -58,7 +62,9 @@ def choose_branch(robot, collision, arm, ranges, nearest, first, count, solution
         distance = find_distance(ranges, q) if nearest else 0.0
         if distance >= smallest:
             continue
-        pair = find_collision(robot, collision, q, buffers)
+        pair = find_collision(models[0], models[1], q, buffers)
+        if pair < 0 and models[3].world.size > 0:
+            pair = find_obstacle_of(models[2], models[3], q)
         if pair < 0:
             chosen, smallest = branch, distance
             if not nearest:
@@ -73,6 +79,7 @@ def choose_branch(robot, collision, arm, ranges, nearest, first, count, solution
 def solve_branches(
     robot,
     collision,
+    tables,
     arm,
     carrier,
     target,
@@ -89,8 +96,8 @@ def solve_branches(
 ):
     """All branches of the arm from base after base, for rows[0] .. rows[1] - 1; outputs as `lm.solve_targets`.
 
-    `carrier` is the body that carries the arm. An attempt is one place of the base, an evaluation one branch that
-    exists. An unreached target keeps its last colliding branch.
+    `tables` are the whole collision model, `carrier` is the body that carries the arm. An attempt is one place of the
+    base, an evaluation one branch that exists. An unreached target keeps its last colliding branch.
     """
     joints = out_q.shape[1]
     q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
@@ -109,8 +116,9 @@ def solve_branches(
                 continue
             nearest, tallies = seeds.first_box < 1.0, (out_counts[row], out_pairs[row])
             first = next_index(state, count)  # so that another stream shows another branch
+            models = robot, collision, robot, tables
             chosen = choose_branch(
-                robot, collision, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
+                models, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
             )
             place_arm(arm, max(chosen, 0), solutions, q)
             out_score[row, 0], out_score[row, 1] = 0.0, 0.0 if chosen >= 0 else UNKNOWN_DEPTH
@@ -173,7 +181,7 @@ def rank_branches(arm, ranges, seed, stream, attempt, count, solutions, state, o
 
 
 @inline_kernel
-def try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs):
+def try_branches(block, models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs):
     """One attempt on one target [3, 4]: branch after branch, until one is free of collision.
 
     The outputs are those of `lm.solve_target`; an evaluation is one branch that exists inside the ranges. If all
@@ -191,6 +199,8 @@ def try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room,
     for _ in range(count):
         place_arm(arm, chosen, room.solutions, q)
         pair = find_collision(models[0], models[1], q, buffers)
+        if pair < 0 and stands_in_world(block[1]):
+            pair = find_obstacle_at(block[0], block[1], q)
         if pair < 0:
             out_counts[REACHED] = 1
             break
@@ -226,7 +236,8 @@ def find_branch(numbers, whole, T_world_tool, seed, stream, attempt, out):
     models, (ranges, arm, carrier) = unpack_used(numbers, whole), unpack_closed_form(numbers, whole)
     room, state = make_room(numbers, whole, ranges, carrier), np.empty(1, dtype=np.uint64)
     buffers, outputs = make_buffers(models[0], models[1], whole[0]), open_row(whole[0], attempt, out)
-    try_branches(models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs)
+    block = numbers, whole
+    try_branches(block, models, arm, ranges, T_world_tool, seed, stream, attempt, room, state, buffers, outputs)
     return outputs[0], outputs[1][0] == 0.0
 
 
@@ -244,4 +255,4 @@ def solve_poses(numbers, whole, T_world_tool, rows, seed, streams, attempts, out
         if first < last:
             outputs = (out_q[row], out_score[row], out_counts[row], out_pairs[row])
             question = (T_world_tool[row], seed, streams[row], first)
-            try_branches(models, arm, ranges, *question, room, state, buffers, outputs)
+            try_branches((numbers, whole), models, arm, ranges, *question, room, state, buffers, outputs)

@@ -55,9 +55,33 @@ class CollisionArrays(NamedTuple):
     pairs: Indices  # [P, 2] two components, the one with more spheres first
     rows: Indices  # [W, 4] frame of the first key point, of the second, first sphere, sphere after the last
     offset: Floats  # [S] m along the row's line, from its middle
+    world: Floats  # what stands around, as `kernels/world_grid.py` cuts it; empty: nothing does
 
 
 BODY, FIRST, LAST = range(3)  # columns of `CollisionArrays.components`
+
+
+class WorldArrays(NamedTuple):
+    """S solids of O obstacles beside a robot of C components; all in the world frame, m; whole numbers are floats, too.
+
+    They lie one after the other in one array: `kernels/world_grid.py` cuts it, `model/pack_world.py` makes it.
+    """
+
+    solids: Floats  # [S, SOLID_COLUMNS] as `kernels/obstacles.py` names them
+    spheres: (
+        Floats  # [4, S] middle and radius, with what is asked for, of a sphere that holds the solid; -inf: half-spaces
+    )
+    asked: Floats  # [C, O] distance that a component keeps from an obstacle; -inf: they are not compared
+    faces: Floats  # [F, 12] of hulls: three corners and the outward normal, in the solid's frame
+    points: Floats  # [3, K] of clouds, in the solid's frame, sorted by cell
+    clouds: Floats  # [clouds, GRID_COLUMNS] the cells of each
+    cloud_starts: Floats  # [cells + 1 a cloud] first point of each cell
+    cloud_far: Floats  # [cells + 1 a cloud] how far the nearest occupied cell is, box to box
+    grid: Floats  # [GRID_COLUMNS] the cells over all solids but half-spaces; no cells: every solid is asked
+    grid_starts: Floats  # [cells + 1] first entry of each cell in `grid_solids`
+    grid_solids: Floats  # [E] solids by cell
+    grid_near: Floats  # [cells] distance of the middle of the cell from the nearest solid, less what it asks for
+    unbounded: Floats  # [H] solids that no cell holds
 
 
 class TargetArrays(NamedTuple):

@@ -55,7 +55,7 @@ def finish_attempt(collision, search, q, cost, meets, work, out_q, out_score, ou
         out_counts[OUTSIDE] += 1
     elif meets and depth > 0.0:
         out_counts[COLLIDING] += 1
-        count_colliding_pairs(collision, work.centres, out_pairs)
+        count_colliding_pairs(collision, work.bounds, work.centres, out_pairs)
     elif meets:
         out_counts[REACHED] = 1
         return True

@@ -12,6 +12,8 @@ from ikde.kernels.arrays import FIRST, LAST
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
+from ikde.kernels.world_grades import compute_world_clearance
+from ikde.kernels.world_grid import count_obstacles, find_obstacle
 
 DEPTH_STEP = 1e-9  # m: depths are whole steps, at least one, so that rounding noise cannot decide between equals
 
@@ -50,10 +52,21 @@ def pair_collides(collision, centres, a, b):
 
 @inline_kernel
 def find_colliding_pair(collision, bounds, centres):
+    """Index of the first pair of components within the safe distance, pairs + obstacle if a world is in the way, or -1.
+
+    The search asks this and `compute_clearance` grades: of the robot's own pairs they share no code.
+    """
+    pair = find_own_pair(collision, bounds, centres)
+    if pair < 0 and collision.world.size > 0:
+        return find_obstacle(collision, bounds, centres)
+    return pair
+
+
+@inline_kernel
+def find_own_pair(collision, bounds, centres):
     """Index of the first pair of components within the safe distance, or -1.
 
-    From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all. The
-    search asks this and `compute_clearance` grades: they share no code.
+    From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all.
     """
     for pair in range(collision.pairs.shape[0]):
         a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
@@ -93,6 +106,7 @@ def find_closest_spheres(collision, centres, a, b):
 def compute_clearance(collision, bounds, centres):
     """Smallest clearance over all pairs in m, and the index of its pair (inf and -1 if there are no pairs).
 
+    Of a world it is that of `compute_world_clearance`, where that is smaller.
     A pair whose bounding spheres are already farther apart than the smallest clearance so far is skipped.
     """
     smallest, closest = math.inf, -1
@@ -103,6 +117,10 @@ def compute_clearance(collision, bounds, centres):
         gap, _, _ = find_closest_spheres(collision, centres, a, b)
         if gap < smallest:
             smallest, closest = gap, pair
+    if collision.world.size > 0:
+        gap, place = compute_world_clearance(collision, centres, smallest)
+        if gap < smallest:
+            smallest, closest = gap, place
     return smallest, closest
 
 
@@ -118,11 +136,13 @@ def compute_depth(collision, T_world_body, bounds, centres):
 
 
 @kernel
-def count_colliding_pairs(collision, centres, out_counts):
-    """Add 1 to `out_counts` [P] for each pair within the safe distance."""
+def count_colliding_pairs(collision, bounds, centres, out_counts):
+    """Add 1 to `out_counts` [P + O] for each pair within the safe distance, and each obstacle that is too near."""
     for pair in range(collision.pairs.shape[0]):
         if pair_collides(collision, centres, collision.pairs[pair, 0], collision.pairs[pair, 1]):
             out_counts[pair] += 1
+    if collision.world.size > 0:
+        count_obstacles(collision, bounds, centres, out_counts)
 
 
 @kernel

@@ -20,12 +20,18 @@ from ikde.kernels.arrays import (
     Ints,
     RobotArrays,
     SeedArrays,
+    WorldArrays,
 )
 from ikde.kernels.jit import inline_kernel, inline_view_kernel, kernel
 
 Value = Floats | Ints | Indices | float
 Turns = tuple[Floats, Floats, Any, Floats]
 """Lower, upper, is_revolute and centre, each [N], as `kernels.turns.unwind` takes them."""
+
+
+SOLID_COLUMNS, GRID_COLUMNS = 21, 7  # of a world
+HEADER = 10
+"""Sizes: solids, components, obstacles, faces, points, clouds, cells of clouds, cells, entries, unbounded solids."""
 
 
 class Terms(NamedTuple):
@@ -89,8 +95,9 @@ def _append_models(numbers: Floats, whole: Ints, robot: RobotArrays, collision: 
 
 
 def _list_models(robot: RobotArrays, collision: CollisionArrays) -> Iterator[Value]:
-    """What `unpack_models` takes: six sizes, then all values."""
+    """What `unpack_models` takes: seven sizes, then all values."""
     tables = (robot.bodies, robot.frame_body, collision.components, collision.pairs, collision.rows, collision.radius)
+    tables = (*tables, collision.world)
     return chain([np.array([len(table) for table in tables])], robot, collision)
 
 
@@ -110,7 +117,7 @@ def unpack_models(numbers, whole):
     Views that are handed on are counted: numba would free what an `inline_kernel` never took.
     """
     bodies, frames, components, pairs, rows, spheres = whole[0], whole[1], whole[2], whole[3], whole[4], whole[5]
-    w, u = whole[6:], whole[6 + 4 * bodies :].view(np.uint64)
+    w, u, world = whole[7:], whole[7 + 4 * bodies :].view(np.uint64), whole[6]
     T_body_frame = 12 * bodies
     safe_distance = T_body_frame + 12 * frames
     radius = safe_distance + 1 + 3 * spheres
@@ -134,6 +141,7 @@ def unpack_models(numbers, whole):
         u[first_pair:first_row].reshape((pairs, 2)),
         u[first_row:end].reshape((rows, 4)),
         numbers[offset : offset + spheres],
+        numbers[offset + spheres : offset + spheres + world],
     )
     return robot, collision
 
@@ -192,3 +200,38 @@ def unpack_answer(numbers, whole):
 def grades(whole):
     """Whether a search of one target grades what it finds."""
     return whole[whole.size - 4] == 1
+
+
+@inline_view_kernel
+def unpack_world(world):
+    """`WorldArrays` as views of one array, which begins with their sizes."""
+    solids, components, obstacles, faces = int(world[0]), int(world[1]), int(world[2]), int(world[3])
+    points, clouds, cloud_cells, cells = int(world[4]), int(world[5]), int(world[6]), int(world[7])
+    entries, unbounded = int(world[8]), int(world[9])
+    r = HEADER + SOLID_COLUMNS * solids
+    a = r + 4 * solids
+    b = a + components * obstacles
+    c = b + 12 * faces
+    d = c + 3 * points
+    e = d + GRID_COLUMNS * clouds
+    f = e + cloud_cells
+    g = f + cloud_cells
+    h = g + GRID_COLUMNS
+    i = h + cells + 1
+    j = i + entries
+    k = j + cells
+    return WorldArrays(
+        world[HEADER:r].reshape((solids, SOLID_COLUMNS)),
+        world[r:a].reshape((4, solids)),
+        world[a:b].reshape((components, obstacles)),
+        world[b:c].reshape((faces, 12)),
+        world[c:d].reshape((3, points)),
+        world[d:e].reshape((clouds, GRID_COLUMNS)),
+        world[e:f],
+        world[f:g],
+        world[g:h],
+        world[h:i],
+        world[i:j],
+        world[j:k],
+        world[k : k + unbounded],
+    )

@@ -15,6 +15,7 @@ from ikde.kernels.arrays import AXIS, BODY, COORDINATE, FIRST, LAST, PARENT, POS
 from ikde.kernels.flat_arguments import unpack_grader
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.trig import angle_from_sides, sin_cos
+from ikde.kernels.world_grades import compute_world_clearance
 
 POSITION_ERROR, ORIENTATION_ERROR, CLEARANCE = range(3)
 SLACK = 1e-9  # m: more than rounding could hide
@@ -178,6 +179,18 @@ def measure_pairs(collision, count, lanes):
 
 
 @inline_kernel
+def measure_obstacles(collision, count, lanes, centres):
+    """The distances from a world, lane by lane, where they are smaller than those of the pairs."""
+    for lane in range(count):
+        for i in range(collision.radius.size):
+            for axis in range(3):
+                centres[axis, i] = lanes.centres[3 * i + axis, lane]
+        gap, place = compute_world_clearance(collision, centres, lanes.clearance[lane])
+        if gap < lanes.clearance[lane]:
+            lanes.clearance[lane], lanes.closest[lane] = gap, place
+
+
+@inline_kernel
 def measure_position(asked, tool, lane):
     """Distance in m between the tool of one lane and what is asked [3, 4]."""
     dx, dy, dz = tool[3, lane] - asked[0, 3], tool[7, lane] - asked[1, 3], tool[11, lane] - asked[2, 3]
@@ -236,6 +249,7 @@ def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, o
         np.empty(LANES),
         np.empty(LANES, dtype=np.int64),
     )
+    centres = np.empty((3, collision.radius.size))
     for entry in range(12):
         lanes.bodies[entry] = 1.0 if entry % 5 == 0 else 0.0
     for first in range(0, q.shape[0], LANES):
@@ -246,6 +260,8 @@ def grade_many(numbers, whole, kinds, T_world_tool, q, out_metrics, out_pairs, o
         place_tool(robot, count, lanes)
         place_spheres(collision, count, lanes)
         measure_pairs(collision, count, lanes)
+        if collision.world.size > 0:
+            measure_obstacles(collision, min(LANES, q.shape[0] - first), lanes, centres)
         for lane in range(min(LANES, q.shape[0] - first)):
             index = first + lane
             asked = T_world_tool[index]

@@ -105,6 +105,14 @@ def kernel(function: Callable[..., Any]) -> Kernel:
     return _make(function, nogil=True)
 
 
+def counting_kernel(function: Callable[..., Any]) -> Kernel:
+    """Like `kernel`, for what allocates or cuts views and is called by kernels that count no references.
+
+    numba hands that down to callees: views would be counted by one side only.
+    """
+    return _make(function, nogil=True, _nrt=True)
+
+
 def leaf_kernel(function: Callable[..., Any]) -> Kernel:
     """Like `kernel`, for what allocates nothing: numba then counts no references to the arrays that it is given.
 

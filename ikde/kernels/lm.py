@@ -15,6 +15,7 @@ from ikde.kernels.rng import seed_stream
 from ikde.kernels.seeds import draw_seed
 from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used
 from ikde.kernels.turns import unwind
+from ikde.kernels.world import find_obstacle_at, stands_in_world
 
 GO_ON, MET, GIVE_UP = range(3)
 
@@ -88,6 +89,8 @@ def solve_target(
             verdict = judge_step(descent, steps, position, orientation)
         out_counts[EVALUATIONS] += steps
         pair = find_collision(robot, collision, q, buffers) if verdict == MET else -1
+        if verdict == MET and pair < 0 and stands_in_world(whole):
+            pair = find_obstacle_at(numbers, whole, q)
         if record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
             return
 
@@ -177,6 +180,8 @@ def solve_targets(
                     trial[k] = q[lane + k * LANES]
                 out_counts[index, EVALUATIONS] += steps[lane]
                 pair = find_collision(robot, collision, trial, buffers) if verdict == MET else -1
+                if verdict == MET and pair < 0 and stands_in_world(whole):
+                    pair = find_obstacle_at(numbers, whole, trial)
                 outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
                 done = record(descent, verdict, pair, position, orientation, trial, *outputs)
                 attempt[lane] += 1

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import BODY, COORDINATE, FIRST, LAST, PARENT, PRISMATIC, Floats
-from ikde.kernels.clearance import find_colliding_pair
+from ikde.kernels.clearance import find_own_pair
 from ikde.kernels.damped import DescentWorkspace, make_descent_workspace
 from ikde.kernels.damped import take_step as take_damped_step
 from ikde.kernels.flat_arguments import unpack_models
@@ -66,14 +66,14 @@ def take_steps(robot, target, row, ranges, descent, q, T, errors, trial, buffers
 
 @kernel
 def find_collision(robot, collision, q, buffers):
-    """Index of the first pair within the safe distance at `q` [N], or -1.
+    """Index of the first of the robot's own pairs within the safe distance at `q` [N], or -1.
 
     What is written for a robot of many spheres searches by it, so it shares nothing with `grade_one` but sines.
     """
     T_world_body = buffers.step.T_world_body
     place_bodies(robot, q, T_world_body)
     place_spheres(collision, T_world_body, buffers.bounds, buffers.centres)
-    return find_colliding_pair(collision, buffers.bounds, buffers.centres)
+    return find_own_pair(collision, buffers.bounds, buffers.centres)
 
 
 @inline_kernel

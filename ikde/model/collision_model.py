@@ -1,34 +1,52 @@
 """What may collide with what: the pairs of components that are compared, and the distance that is still safe."""
 
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
-from typing import Union
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.kernels.arrays import CollisionArrays
+from ikde.kernels.arrays import CollisionArrays, Floats, Ints
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
+from ikde.model.pack_world import find_fixed_frames, pack_world
 from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, Spheres
 from ikde.model.spheres import Sphere, expand_rows
 from ikde.model.tree import build_tree
+from ikde.model.world import NOTHING, Obstacle, World
 
 NAMED = 3  # pairs in a message that is about many
 MAX_PAIRS, MAX_SPHERE_PAIRS = 50_000, 2_000_000  # of components in a list, and of spheres that a detector compares
 
-CollisionChoice = Union[str, Detector, "CollisionModel", None]
-"""How a caller names a collision model: a detector's name, `"none"`, a `Detector`, a model, or None for the default."""
+FIELDS = ("robot", "detector", "world", "margin_m", "margins_m")
+CollisionChoice = Union[str, Detector, World, "CollisionModel", None]
+"""How a caller names a collision model: a detector's name, `"none"`, a `Detector`, a `World` (beside the default
+detector), a model, or None for the default."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class CollisionModel:
-    """A robot and what is compared on it. Without a detector no pair is: nothing is checked, nothing is called free."""
+    """A robot and what is compared: on it, and with a world.
+
+    Without a detector no pair is: nothing is checked, nothing is called free.
+    """
 
     robot: Robot
     detector: Detector | None
+    world: World = NOTHING
+    """What stands around."""
+    margin_m: float = 0.0
+    """The distance that is kept from all of it, beside each obstacle's own margin; the safe distance is for the robot's
+    own pairs."""
+    margins_m: tuple[tuple[str, float], ...] = ()
+    """Components that keep another distance in its place."""
 
     def __repr__(self) -> str:
         """In a line, whatever the robot."""
@@ -44,12 +62,16 @@ class CollisionModel:
                 raise InputError(other, ("collision",))
             _ = choice.is_checked
             return choice
+        if isinstance(choice, World):
+            return cls.of(robot).in_world(choice)
         if isinstance(choice, Detector):
             check_detector(robot, choice, ("detector",))
             return cls(robot=robot, detector=choice)
         name = robot.default_detector if choice is None else choice
         if not isinstance(name, str):
-            raise InputError(f"expected a name, a Detector or a CollisionModel, got {quoted(name)}", ("collision",))
+            raise InputError(
+                f"expected a name, a Detector, a World or a CollisionModel, got {quoted(name)}", ("collision",)
+            )
         if name == NO_DETECTOR:
             return cls(robot=robot, detector=None)
         if name not in robot.detectors:
@@ -66,7 +88,46 @@ class CollisionModel:
 
     def __getstate__(self) -> dict[str, object]:
         """Without the packed arrays: pickled ones come back writable, which numba takes for another type."""
-        return {"robot": self.robot, "detector": self.detector}
+        known = ("robot", "detector") if self.world is NOTHING else FIELDS
+        return {name: getattr(self, name) for name in known}
+
+    @cached_property
+    def own(self) -> "CollisionModel":
+        """The same without a world: what is prepared for a robot depends on no world."""
+        return self if self.world is NOTHING else CollisionModel(robot=self.robot, detector=self.detector)
+
+    def in_world(
+        self, world: World, margin_m: float = 0.0, margins_m: Mapping[str, float] | None = None
+    ) -> "CollisionModel":
+        """The same robot among obstacles.
+
+        Args:
+            world: what stands around.
+            margin_m: the distance that is kept from all of it, beside each obstacle's own margin, m.
+            margins_m: components that keep another distance in its place, by name, m.
+
+        Raises:
+            InputError: for what does not fit the robot, and for what touches it in every configuration.
+        """
+        if not isinstance(world, World):
+            raise InputError(f"expected a World, got {quoted(world)}", ("world",))
+        if not self.pairs:
+            raise InputError("a world needs a detector: without spheres nothing can be compared with it", ("world",))
+        given = {} if margins_m is None else dict(margins_m)
+        for name, value in (("", margin_m), *given.items()):
+            if name and name not in self.components:
+                raise InputError(f"no component is called {name!r}{nearest(name, self.components)}", ("margin", name))
+            if not (is_number(value) and 0.0 <= value <= MAX_MAGNITUDE):
+                where = ("margin", name) if name else ("margin",)
+                raise InputError(f"expected a distance of at least 0 m, got {quoted(value)}", where)
+        own = tuple((name, float(value)) for name, value in given.items())
+        model = replace(self.own, world=world, margin_m=float(margin_m), margins_m=own)
+        _ = model.arrays
+        return model
+
+    def kept_m(self, component: str) -> float:
+        """The distance that a component keeps from an obstacle, beside the obstacle's own margin, m."""
+        return dict(self.margins_m).get(component, self.margin_m)
 
     @property
     def name(self) -> str:
@@ -110,9 +171,68 @@ class CollisionModel:
         return tuple(expand_rows(self.robot, build_tree(self.robot), self.detector.spheres))
 
     @cached_property
+    def components(self) -> tuple[str, ...]:
+        """Of the spheres, in their order; with a world they are all packed, else those that have a pair."""
+        return tuple(dict.fromkeys(sphere.component for sphere in self.spheres))
+
+    @cached_property
+    def fixed_components(self) -> tuple[str, ...]:
+        """Those that no joint moves: they are not compared with a world, which does not move either."""
+        bodies = {sphere.component: sphere.body for sphere in self.spheres}
+        return tuple(name for name, body in bodies.items() if body == 0)
+
+    @cached_property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """What counts of the world."""
+        return self.world.active
+
+    @cached_property
+    def counted(self) -> Pairs:
+        """What may be to blame for a collision: the pairs, then the robot and each obstacle."""
+        return (*self.pairs, *((self.robot.name, obstacle.name) for obstacle in self.obstacles))
+
+    @cached_property
+    def all_pairs(self) -> Pairs:
+        """Of the table of clearances: the pairs of components, then each component and obstacle."""
+        return (*self.pairs, *((name, obstacle.name) for name in self.components for obstacle in self.obstacles))
+
+    def name_pair(self, place: int) -> tuple[str, str]:
+        """The pair of a place in the table of clearances."""
+        if place < len(self.pairs):
+            return self.pairs[place]
+        component, obstacle = divmod(place - len(self.pairs), len(self.obstacles))
+        return self.components[component], self.obstacles[obstacle].name
+
+    def fold(self, table: NDArray[Any]) -> NDArray[Any]:
+        """Flags of pairs, and of components and obstacles [..., P + C O], as those of `counted` [..., P + O]."""
+        pairs, obstacles = len(self.pairs), len(self.obstacles)
+        if not obstacles:
+            return table
+        blocks = table[..., pairs:].reshape(*table.shape[:-1], len(self.components), obstacles)
+        return np.concatenate([table[..., :pairs], blocks.any(axis=-2)], axis=-1)
+
+    def clearances_m(self, least: Floats, places: Ints) -> Floats:
+        """Distances [T] of graders, which are less what is asked for beyond the safe distance, as what they are, m."""
+        if not self.obstacles:
+            return least
+        return least + np.array([self.extra_m(place) for place in places.tolist()])
+
+    def extra_m(self, place: int) -> float:
+        """What a pair is asked for beyond the safe distance, m; the distances of graders are less by this."""
+        if place < len(self.pairs):
+            return 0.0
+        component, obstacle = divmod(place - len(self.pairs), len(self.obstacles))
+        return self.kept_m(self.components[component]) + self.obstacles[obstacle].margin_m - self.limit_m
+
+    @cached_property
     def arrays(self) -> CollisionArrays:
         """Packed for the kernels."""
-        return pack_collision(self.robot, self.detector)
+        if not self.obstacles:
+            return pack_collision(self.robot, self.detector)
+        arrays = pack_collision(self.robot, self.detector, every=True)
+        kept = [-np.inf if name in self.fixed_components else self.kept_m(name) for name in self.components]
+        frames, reach_m = find_fixed_frames(self.robot), float(arrays.bounds[:, 3].max())
+        return arrays._replace(world=pack_world(self.world, self.components, frames, reach_m, np.array(kept)))
 
 
 def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:

@@ -36,13 +36,13 @@ def pack_robot(robot: Robot) -> RobotArrays:
 
 
 @lru_cache(maxsize=64)
-def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
-    """Pack a detector's spheres and pairs; None packs no pairs at all."""
+def pack_collision(robot: Robot, detector: Detector | None, *, every: bool = False) -> CollisionArrays:
+    """Pack a detector's spheres and pairs; None packs no pairs at all. `every`: components without a pair, too."""
     tree = build_tree(robot)
     pairs = robot.pair_lists[detector.pairs] if detector else ()
     compared = {component for pair in pairs for component in pair}
-    every = expand_rows(robot, tree, detector.spheres) if detector else ()
-    spheres = [sphere for sphere in every if sphere.component in compared]
+    known = expand_rows(robot, tree, detector.spheres) if detector else ()
+    spheres = [sphere for sphere in known if every or sphere.component in compared]
     components = list(dict.fromkeys(sphere.component for sphere in spheres))
     groups = [[s for s in spheres if s.component == c] for c in components]
     ends = np.cumsum([0, *map(len, groups)])
@@ -59,6 +59,7 @@ def pack_collision(robot: Robot, detector: Detector | None) -> CollisionArrays:
         pairs=_table(indices, 2),
         rows=_table(_list_rows(robot, detector.spheres, spheres) if detector else (), 4),
         offset=pack_floats([s.offset_m for s in spheres]),
+        world=pack_floats([]),
     )
 
 

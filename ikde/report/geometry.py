@@ -12,6 +12,8 @@ from ikde.report.numbers import Units, format_fixed
 from ikde.report.render import make_table, plain, render
 from ikde.solver.check import CheckResult
 
+SHOWN = 30  # obstacles in a table for the terminal
+COLLIDES = "[red]collides[/]"
 BESIDE = 95  # columns in which a frame's axes stand beside its origin
 
 
@@ -76,7 +78,9 @@ def check_json(robot: Robot, result: CheckResult, convention: str | None = None)
         "safe_distance_m": result.safe_distance_m,
         "collision": result.collision,
         "clearance_m": result.clearance_m,
+        "closest_pair": list(result.closest_pair) if result.closest_pair else None,
         "pairs": [asdict(pair) for pair in result.pairs],
+        "obstacles": [asdict(pair) for pair in result.obstacles],
         **joints_json(robot, result.q, convention),
         "outside_limits": list(result.outside_limits),
     }
@@ -89,13 +93,35 @@ def format_check(robot: Robot, result: CheckResult, units: Units, *, color: bool
             f"[bold yellow]self-collision not checked[/]: robot {plain(robot.name)}, detector {plain(result.detector)}"
         )
         return render(verdict, *_outside_line(result.outside_limits), color=color, width=width)
-    verdict = "[bold red]self-collision[/]" if result.collision else "[bold green]free of self-collision[/]"
-    head = f"{verdict}: robot {plain(robot.name)}, clearance {units.format_length(result.clearance_m)}"
+    head = f"{_tell_verdict(result)}: robot {plain(robot.name)}, clearance {units.format_length(result.clearance_m)}"
+    head += f" between {plain(' and '.join(result.closest_pair))}" if result.obstacles and result.closest_pair else ""
     head += f", detector {plain(result.detector)}"
     if result.safe_distance_m:
         head += f", safe distance {units.format_length(result.safe_distance_m)}"
-    table = make_table("pair", f">clearance [{units.length}]", "")
+    tables = [make_table("pair", f">clearance [{units.length}]", "")]
     for pair in result.pairs:
-        gap = f"{pair.clearance_m / LENGTHS_M[units.length]:.{2 if units.length == 'mm' else 5}f}"
-        table.add_row(plain(f"{pair.a} - {pair.b}"), gap, "[red]collides[/]" if pair.collides else "")
-    return render(head, *_outside_line(result.outside_limits), table, color=color, width=width)
+        gap = _format_gap(pair.clearance_m, units)
+        tables[0].add_row(plain(f"{pair.a} - {pair.b}"), gap, COLLIDES if pair.collides else "")
+    if result.obstacles:
+        tables.append(make_table("component - obstacle", f">clearance [{units.length}]", ">margin", ""))
+    for other in result.obstacles[:SHOWN]:
+        gaps = [_format_gap(gap, units) for gap in (other.clearance_m, other.margin_m)]
+        name = f"{other.component} - {other.obstacle}"
+        tables[1].add_row(plain(name), *gaps, COLLIDES if other.collides else "")
+    more = len(result.obstacles) - SHOWN
+    rest = [f"and {more:,} more obstacles with more room; --json lists them all"] if more > 0 else []
+    return render(head, *_outside_line(result.outside_limits), *tables, *rest, color=color, width=width)
+
+
+def _tell_verdict(result: CheckResult) -> str:
+    """What collides with what, or that nothing does."""
+    own, others = any(pair.collides for pair in result.pairs), any(pair.collides for pair in result.obstacles)
+    if own or others:
+        words = [*(["self-collision"] if own else []), *(["collision with the world"] if others else [])]
+        return f"[bold red]{' and '.join(words)}[/]"
+    world = " and of the world" if result.obstacles else ""
+    return f"[bold green]free of self-collision{world}[/]"
+
+
+def _format_gap(gap_m: float, units: Units) -> str:
+    return f"{gap_m / LENGTHS_M[units.length]:.{2 if units.length == 'mm' else 5}f}"

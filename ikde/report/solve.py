@@ -133,6 +133,20 @@ def _bar(value: float, lower: float, upper: float) -> str:
     return "─" * at + "●" + "─" * (BAR - 1 - at)
 
 
+def _tell_self(result: SolveResult) -> str:
+    obstacles = set(result.obstacles)
+    return COLLISIONS[any(pair[1] not in obstacles for pair in result.grade.colliding_pairs)]
+
+
+def _tell_world(result: SolveResult) -> str:
+    """What touches, or that nothing does."""
+    obstacles = set(result.obstacles)
+    touching = [f"{a} - {b}" for a, b in result.grade.colliding_pairs if b in obstacles]
+    if touching:
+        return f"in collision: {', '.join(touching[:3])}{f' and {len(touching) - 3} more' * (len(touching) > 3)}"
+    return f"free of {count_of(len(obstacles), 'obstacle')}"
+
+
 GRADERS = {
     True: "by kernels, confirmed by plain numpy",
     False: "by kernels; plain numpy disagrees",
@@ -152,7 +166,11 @@ def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
         table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
     table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, weighted")
-    table.add_row("self-collision", COLLISIONS[result.collision])
+    if result.obstacles:
+        table.add_row("self-collision", _tell_self(result))
+        table.add_row("world", plain(_tell_world(result)))
+    else:
+        table.add_row("self-collision", COLLISIONS[result.collision])
     table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))
     rejected = f", {result.rejected} rejected for collision" if result.rejected else ""
     attempts = f"{count_of(result.attempts, 'attempt')}{rejected}"

@@ -103,12 +103,12 @@ class DrawnPose:
 
 def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = None) -> DrawnPose:
     """The robot at `q` [N] with the spheres that are compared, the closest pair, its tool's axes, and the target."""
-    robot, gaps_m = collision.robot, compute_gaps(collision, q)
+    robot, gaps_m, pairs = collision.robot, compute_gaps(collision, q), len(collision.pairs)
     Ts_world = compute_frames(robot, q)
     drawn = draw_robot(collision, q, gaps_m)
     marks = []
     if collision.pairs:
-        closest = int(np.argmin(gaps_m))
+        closest = int(np.argmin(gaps_m[:pairs]))
         marks.append(_mark_closest(drawn, *collision.pairs[closest], float(gaps_m[closest])))
     if target is not None:
         marks.append(Mark(points_m=target.p_world_tool[None, :], role=Role.TARGET, text="target"))
@@ -140,7 +140,7 @@ def draw_frames(robot: Robot, q: Floats, names: Sequence[str], *, title: str) ->
 
 
 def draw_robot(collision: CollisionModel, q: Floats, gaps_m: Floats, links: Sequence[str] = ()) -> DrawnRobot:
-    """The robot at `q` [..., N], whose pairs of components are `gaps_m` [..., P] apart, with links through frames."""
+    """The robot at `q` [..., N], whose pairs are `gaps_m` [..., P] apart (`compute_gaps`), links through frames."""
     Ts_world = compute_frames(collision.robot, q)
     spheres = compute_components(collision, q)
     components = tuple(spheres)
@@ -158,7 +158,7 @@ def draw_robot(collision: CollisionModel, q: Floats, gaps_m: Floats, links: Sequ
 
 def _choose_roles(collision: CollisionModel, components: Sequence[str], gaps_m: Floats) -> NDArray[np.str_]:
     """The role of each component [..., C]."""
-    base, pairs = base_components(collision), collision.pairs
+    base, pairs = base_components(collision), collision.all_pairs
     involved = np.array([[name in pair for name in components] for pair in pairs], bool)
     touching = (gaps_m <= collision.limit_m)[..., None] & involved.reshape(len(pairs), len(components))
     own = np.where([name in base for name in components], Role.BASE, Role.ARM)

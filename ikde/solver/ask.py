@@ -37,8 +37,8 @@ class Ways:
         for engine, name in ((LM, "answer_target"), (CLOSED, "answer_pose")):
             if hasattr(kernels, name):
                 call = getattr(kernels, name)
-                self._ways[engine, False] = Way(call, Question(collision, kind, ONE, engine))
-                self._ways[engine, True] = Way(WithDescent(call), Question(collision, kind, NEAR, engine))
+                self._ways[engine, False] = Way(call, Question(collision.own, kind, ONE, engine))
+                self._ways[engine, True] = Way(WithDescent(call), Question(collision.own, kind, NEAR, engine))
 
     def find(self, engine: str, is_near: bool) -> Way:
         """The way of an engine."""
@@ -90,7 +90,7 @@ def make_plan(collision: CollisionModel, settings: SolveSettings, kind: str, fre
     few = min(row.attempts_before_proof, budget)
     all_of_it = budget if engines[-1] == LM or row.attempts_before_next is None else row.attempts_before_next
     return Plan(
-        size=size_of(joints, len(collision.pairs)),
+        size=size_of(joints, len(collision.counted)),
         counts=joints + METRICS,
         is_closed=engines[0] == CLOSED,
         has_lm=LM in engines,

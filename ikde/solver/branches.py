@@ -25,8 +25,8 @@ ROUNDING = 1e-8  # m and rad: what the arm's own model may be off by, and what s
 TURN = 2.0 * np.pi
 CHUNK = 1024  # poses that are judged at once
 
-_OUT_OF_REACH, _COLLISION, _LIMITS = map(
-    STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.LIMITS)
+_OUT_OF_REACH, _COLLISION, _LIMITS, _WORLD = map(
+    STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.LIMITS, StopReason.WORLD)
 )
 
 
@@ -41,7 +41,9 @@ class Judged:
     outside: Bools
     """[T, 8] outside the ranges, for sure."""
     colliding: Bools
-    """[T, 8, P] pairs that collide there for sure; only of what is not outside."""
+    """[T, 8, P + C O] pairs that collide there for sure, then components and obstacles; only of what is not outside."""
+    own: int
+    """P, pairs of components."""
 
     @property
     def ruled_out(self) -> Ints:
@@ -49,6 +51,7 @@ class Judged:
         collides = self.colliding.any(axis=-1)
         why = np.where(self.outside.any(axis=-1), _LIMITS, _OUT_OF_REACH)
         why = np.where(collides.any(axis=-1), _COLLISION, why)
+        why = np.where(self.colliding[..., self.own :].any(axis=(-2, -1)), _WORLD, why)
         return np.where((self.missing | self.outside | collides).all(axis=-1), why, -1)
 
 
@@ -76,13 +79,17 @@ def judge_branches(problem: Problem, targets: Targets) -> Judged:
     q[..., joints] = angles - TURN * np.rint((angles - middle) / TURN)
     slack[..., joints] = found.slack
     outside = (_measure_excess(problem, q) > slack).any(axis=-1) & ~found.missing
-    colliding = np.zeros((*outside.shape, len(problem.collision.pairs)), dtype=bool)
+    pairs, every = len(problem.collision.pairs), len(problem.collision.all_pairs)
+    colliding = np.zeros((*outside.shape, every), dtype=bool)
     tested = np.isfinite(slack).all(axis=-1) & ~outside & ~found.missing
     if not problem.collision.pairs:
-        return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding)
-    room = find_motions(problem.collision).bound_m(slack[tested][:, joints], *tolerances)
+        return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
+    motions, moved = find_motions(problem.collision.own), (slack[tested][:, joints], *tolerances)
+    room = motions.bound_m(*moved)
+    if problem.collision.obstacles:
+        room = np.concatenate([room, motions.bound_in_world_m(*moved, problem.collision)], axis=-1)
     colliding[tested] = compute_gaps(problem.collision, q[tested]) + room <= problem.collision.limit_m
-    return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding)
+    return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
 
 
 def _measure_excess(problem: Problem, q: Floats) -> Floats:
@@ -116,9 +123,22 @@ class Motions:
                 tool = max(old_tool, _join(ways[robot.tool], ways[point]) + beyond)
                 moved = [axis in ways[point] for axis in axes]
                 parts[row.component] = moved, np.maximum(old, levers + beyond), tool
+        self._parts = parts
         self._moved, self._levers, self._tool = (
             [np.array([parts[pair[side]][k] for pair in pairs]) for side in (0, 1)] for k in range(3)
         )
+
+    def bound_in_world_m(
+        self, slack: Floats, position_m: float, orientation_rad: float, collision: CollisionModel
+    ) -> Floats:
+        """By how much each component can move in the world, at most, [K, C O] in m for slacks [K, 6]."""
+        columns = []
+        for name in collision.components:
+            moved, levers, tool = self._parts.get(name, ([False] * 6, np.zeros(6), np.inf))
+            by_joints = slack @ (np.array(moved) * levers)
+            by_tool = slack @ (~np.array(moved) * levers) + position_m + orientation_rad * tool
+            columns.append(np.minimum(by_joints, by_tool))
+        return np.repeat(np.stack(columns, axis=-1), len(collision.obstacles), axis=-1)
 
     def bound_m(self, slack: Floats, position_m: float, orientation_rad: float) -> Floats:
         """By how much, at most, [K, P] in m for slacks [K, 6]: seen from either component, and from base and tool."""
@@ -159,21 +179,35 @@ def _join(one: dict[str, float], other: dict[str, float]) -> float:
 
 def tell_branches(problem: Problem, target: Target) -> tuple[str, dict[tuple[str, str], int]]:
     """One line why a pose that is ruled out has no solution; and in how many branches each pair collides."""
-    judged = judge_branches(problem, Targets.of([target]))
+    judged, collision = judge_branches(problem, Targets.of([target])), problem.collision
     outside, hits = judged.outside[0], judged.colliding[0][~judged.outside[0]]
-    blocking = count_blocking_pairs(problem.collision.pairs, hits.sum(axis=0))
+    blocking = count_blocking_pairs(collision.counted, collision.fold(hits).sum(axis=0))
     colliding, count = int(hits.any(axis=-1).sum()), int((~judged.missing[0]).sum())
     words = []
     if outside.any():
         beyond = _measure_excess(problem, judged.q[0][outside]) > 0.0
         names = [problem.robot.joint_names[k] for k in np.flatnonzero(beyond.any(axis=0)).tolist()]
         words.append(f"{outside.sum()} outside the limits of {', '.join(names)}")
-    if colliding:
+    if colliding and collision.obstacles:
+        words.append(f"{colliding} in collision: {'; '.join(_name_blockers(collision, judged))}")
+    elif colliding:
         worst = ", ".join(f"{a}-{b} in {n}" for (a, b), n in list(blocking.items())[:3])
         words.append(f"{colliding} in collision ({worst})")
     if not count:
         return "no solution, proved: no configuration of the arm, whatever its limits, has this pose", {}
     return f"no solution, proved: of {count} configurations with this pose {' and '.join(words)}", blocking
+
+
+def _name_blockers(collision: CollisionModel, judged: Judged) -> list[str]:
+    """The pair that is deepest in each branch that collides, and by how much it is too near, in mm."""
+    found = []
+    for q, hits in zip(judged.q[0], judged.colliding[0], strict=True):
+        if hits.any():
+            gaps_m = np.where(hits, compute_gaps(collision, q), np.inf)
+            worst = int(gaps_m.argmin())
+            a, b = collision.name_pair(worst)
+            found.append(f"{a} - {b} {1e3 * (gaps_m[worst] + collision.extra_m(worst)):.1f} mm")
+    return found
 
 
 def find_beyond(problem: Problem, target: Target) -> Floats | None:

@@ -1,4 +1,4 @@
-"""Whether a configuration is free of self-collision, and by how much, pair by pair."""
+"""Whether a configuration is free of itself and of a world, and by how much, pair by pair."""
 
 from dataclasses import dataclass, fields
 from typing import Any
@@ -14,6 +14,7 @@ from ikde.model.robot import Pairs
 from ikde.model.value import make_anew
 from ikde.solver.joints import JointValues, joints_outside, read_configuration, read_joints
 from ikde.solver.plain import compute_gaps
+from ikde.solver.standing import find_model
 from ikde.solver.verify import Bools, MaskedBools
 
 AT_ONCE = 256  # configurations: more do not fit into the cache
@@ -29,6 +30,18 @@ class PairClearance:
     collides: bool
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ObstacleClearance:
+    """Clearance between a component and an obstacle: min over its spheres of distance - R; negative is penetration."""
+
+    component: str
+    obstacle: str
+    clearance_m: float
+    margin_m: float
+    """The distance that is asked for."""
+    collides: bool
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class CheckResult:
     """What a detector sees. Without a detector there are no pairs; collision and clearance are None."""
@@ -40,6 +53,10 @@ class CheckResult:
     clearance_m: float | None
     pairs: tuple[PairClearance, ...]
     """Every pair of the detector, worst first."""
+    obstacles: tuple[ObstacleClearance, ...]
+    """Of every obstacle the component that has the least room, worst first; nothing without a world."""
+    closest_pair: tuple[str, str] | None
+    """What the clearance lies between: of all pairs, and components and obstacles, those that have the least room."""
     detector: str
     safe_distance_m: float
     outside_limits: tuple[str, ...]
@@ -52,10 +69,11 @@ class CheckResult:
         return make_anew, (CheckResult, {field.name: getattr(self, field.name) for field in fields(self)})
 
     def __repr__(self) -> str:
-        if not self.pairs:
+        if self.clearance_m is None or self.closest_pair is None:
             return "<CheckResult: self-collision not checked>"
-        verdict, closest = "in collision" if self.collision else "free of self-collision", self.pairs[0]
-        return f"<CheckResult: {verdict}, {closest.a} - {closest.b} {1e3 * closest.clearance_m:.6g} mm>"
+        free = "free of self-collision and of the world" if self.obstacles else "free of self-collision"
+        verdict, (a, b) = "in collision" if self.collision else free, self.closest_pair
+        return f"<CheckResult: {verdict}, {a} - {b} {1e3 * self.clearance_m:.6g} mm>"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -71,9 +89,9 @@ class CheckResults:
     closest_pair: Ints
     """[K] index into `pairs`; -1 where no pair was compared."""
     pairs: Pairs
-    """P pairs of components, in the detector's order."""
+    """P pairs of components, in the detector's order; in a world each component and obstacle follow."""
     gaps_m: Floats
-    """[K, P] clearance of every pair."""
+    """[K, P] clearance of every pair; inf where a component is not compared with an obstacle."""
     inside_limits: Bools
     """[K] whether every joint is inside its limits."""
 
@@ -99,10 +117,13 @@ def check(
 ) -> CheckResult:
     """Clearance of every pair of components; collision means clearance <= safe distance [Qiao2021, eq. 21].
 
+    In a world also that of every obstacle; collision then means as well that a margin is not kept.
+
     Args:
         robot: the robot, its name or the path of its file.
         q: joint values [N] or a mapping by joint name; m and rad. Values outside the limits are accepted and named.
-        collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
+        collision: a detector's name, a `Detector`, a `World`, a `CollisionModel`, `"none"`, or None for the robot's
+            default.
         convention: how `q` is counted; None for the robot's own.
 
     Raises:
@@ -110,13 +131,16 @@ def check(
     """
     robot = read_robot(robot)
     values = read_configuration(robot, q, convention)
-    model = CollisionModel.of(robot, collision)
-    pairs = compute_pairs(model, values)
+    model = find_model(robot, collision)
+    gaps_m = compute_gaps(model, values)
+    closest = int(gaps_m.argmin()) if model.pairs else None
     return CheckResult(
         q=values,
-        collision=any(pair.collides for pair in pairs) if pairs else None,
-        clearance_m=pairs[0].clearance_m if pairs else None,
-        pairs=pairs,
+        collision=None if closest is None else bool(gaps_m[closest] <= model.limit_m),
+        clearance_m=None if closest is None else float(gaps_m[closest]) + model.extra_m(closest),
+        pairs=_list_pairs(model, gaps_m),
+        obstacles=_list_obstacles(model, gaps_m),
+        closest_pair=None if closest is None else model.name_pair(closest),
         detector=model.name,
         safe_distance_m=model.limit_m,
         outside_limits=joints_outside(robot, values),
@@ -141,26 +165,49 @@ def check_many(
     values = read_joints(robot, q, convention)
     if values.ndim != 2:
         raise InputError(f"expected configurations [K, {len(robot.joints)}], got shape {values.shape}", ("q",))
-    model = CollisionModel.of(robot, collision)
+    model = find_model(robot, collision)
     gaps_m = np.concatenate([compute_gaps(model, values[k : k + AT_ONCE]) for k in range(0, len(values) or 1, AT_ONCE)])
-    clearance_m = gaps_m.min(axis=1, initial=np.inf)
+    least = gaps_m.min(axis=1, initial=np.inf)
     unchecked = np.full(len(values), not model.pairs)
+    closest = gaps_m.argmin(axis=1) if model.pairs else np.full(len(values), -1)
+    if model.obstacles:
+        gaps_m = gaps_m + np.array([model.extra_m(place) for place in range(gaps_m.shape[1])])
     return CheckResults(
         q=values,
-        collision=np.ma.masked_array(clearance_m <= model.limit_m, mask=unchecked),
-        clearance_m=clearance_m,
-        closest_pair=gaps_m.argmin(axis=1) if model.pairs else np.full(len(values), -1),
-        pairs=model.pairs,
+        collision=np.ma.masked_array(least <= model.limit_m, mask=unchecked),
+        clearance_m=model.clearances_m(least, closest),
+        closest_pair=closest,
+        pairs=model.all_pairs,
         gaps_m=gaps_m,
         inside_limits=np.all((robot.lower <= values) & (values <= robot.upper), axis=1),
     )
 
 
 def compute_pairs(collision: CollisionModel, q: Floats) -> tuple[PairClearance, ...]:
-    """Every pair that is compared, for one `q` [N], worst first, by plain numpy."""
-    gaps = compute_gaps(collision, q).tolist()
+    """Every pair of components that is compared, for one `q` [N], worst first, by plain numpy."""
+    return _list_pairs(collision, compute_gaps(collision, q, collision.pairs))
+
+
+def _list_pairs(collision: CollisionModel, gaps_m: Floats) -> tuple[PairClearance, ...]:
+    """Every pair of components, worst first."""
     found = [
         PairClearance(a=a, b=b, clearance_m=gap, collides=gap <= collision.limit_m)
-        for (a, b), gap in zip(collision.pairs, gaps, strict=True)
+        for (a, b), gap in zip(collision.pairs, gaps_m.tolist(), strict=False)
     ]
     return tuple(sorted(found, key=lambda pair: pair.clearance_m))
+
+
+def _list_obstacles(collision: CollisionModel, gaps_m: Floats) -> tuple[ObstacleClearance, ...]:
+    """Of every obstacle the component with the least room, worst first; not those that nothing is compared with."""
+    pairs, count, found = len(collision.pairs), len(collision.obstacles), []
+    if not count:
+        return ()
+    least = gaps_m[pairs:].reshape(-1, count)
+    for obstacle, component in enumerate(least.argmin(axis=0).tolist()):
+        place, gap = pairs + component * count + obstacle, float(least[component, obstacle])
+        if gap < np.inf:
+            name, other = collision.name_pair(place)
+            extra_m, collides = collision.extra_m(place), gap <= collision.limit_m
+            known = {"clearance_m": gap + extra_m, "margin_m": collision.limit_m + extra_m, "collides": collides}
+            found.append((gap, ObstacleClearance(component=name, obstacle=other, **known)))
+    return tuple(entry for _, entry in sorted(found, key=lambda pair: pair[0]))

@@ -163,12 +163,14 @@ def _target(rows: Rows) -> Columns:
 
 def make_closest(seen: Metrics | Clearances, collision: CollisionModel) -> Columns:
     """Clearance and the pair it is between, null where there is no pair."""
-    names = list(dict.fromkeys(name for pair in collision.pairs for name in pair))
-    sides = np.array([*([names.index(a), names.index(b)] for a, b in collision.pairs), [-1, -1]])  # -1: no pair
+    pairs = collision.all_pairs
+    names = {name: place for place, name in enumerate(dict.fromkeys(name for pair in pairs for name in pair))}
+    sides = np.array([*([names[a], names[b]] for a, b in pairs), [-1, -1]])  # -1: no pair
+    clearance_m = collision.clearances_m(seen.clearance_m, seen.closest_pair)
     return {
-        "clearance_m": pa.array(seen.clearance_m, mask=seen.closest_pair < 0),
-        "pair_a": make_coded(sides[seen.closest_pair, 0], names),
-        "pair_b": make_coded(sides[seen.closest_pair, 1], names),
+        "clearance_m": pa.array(clearance_m, mask=seen.closest_pair < 0),
+        "pair_a": make_coded(sides[seen.closest_pair, 0], list(names)),
+        "pair_b": make_coded(sides[seen.closest_pair, 1], list(names)),
     }
 
 

@@ -21,6 +21,7 @@ from ikde.solver.hints import (
     hint_at_tolerance,
     try_freeing,
     try_longer,
+    try_removing,
     try_widening,
 )
 from ikde.solver.plain import compute_gaps
@@ -37,12 +38,14 @@ PROVED = {
     StopReason.OUT_OF_REACH: "no configuration of the arm, whatever its limits, has this pose",
     StopReason.LIMITS: "every configuration with this pose is outside the limits",
     StopReason.COLLISION: "every configuration with this pose collides or is outside the limits",
+    StopReason.WORLD: "every configuration with this pose collides or is outside the limits",
 }
 
+COLLIDES = StopReason.COLLISION, StopReason.WORLD
 MORE_TIME = "a longer timeout, or none: then the search ends with its attempts and diagnoses what is in the way"
 
-_OUT_OF_REACH, _COLLISION, _BUDGET, _TIMED_OUT = map(
-    STOP_REASONS.index, (StopReason.OUT_OF_REACH, StopReason.COLLISION, StopReason.BUDGET, StopReason.TIMED_OUT)
+_OUT_OF_REACH, _COLLISION, _BUDGET, _TIMED_OUT, _WORLD = (
+    STOP_REASONS.index(StopReason(word)) for word in ("out_of_reach", "collision", "budget", "timed_out", "world")
 )
 
 
@@ -68,6 +71,8 @@ def stop_from_counts(problem: Problem, found: SearchState) -> Ints:
     """What the counts of the search alone tell, at no cost: index [T] into `STOP_REASONS` of rows not reached."""
     timeout_s = None if problem.is_fixed else problem.settings.timeout_s
     stops = np.where(found.counts[:, COLLIDING] > 0, _COLLISION, _BUDGET)
+    if problem.collision.obstacles:
+        stops[found.pair_counts.blocked_beyond(len(problem.collision.pairs))] = _WORLD
     if timeout_s is not None:
         stops[found.seconds >= timeout_s] = _TIMED_OUT
     stops = np.where(found.is_excluded(), _OUT_OF_REACH, stops)
@@ -76,7 +81,7 @@ def stop_from_counts(problem: Problem, found: SearchState) -> Ints:
 
 def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_s: float | None) -> str:
     """One line that says it, of what is not proved to be out of reach."""
-    if stop is StopReason.COLLISION:
+    if stop in COLLIDES:
         return f"only colliding solutions found, {colliding} of them"
     if stop is StopReason.TIMED_OUT:
         met = f", {colliding} of them in collision at the target" if colliding else ""
@@ -160,9 +165,10 @@ def tell_out_of_reach(far_m: float, off_rad: float) -> str:
 def _explain_by_remedies(
     problem: Problem, target: Target, probe: Probe, met: _Met, found: SearchState, graded: Grade
 ) -> Explanation:
-    remedy = try_freeing(problem, probe) or try_widening(problem, probe)
+    remedy = try_removing(problem, probe, met.blocking)
+    remedy = remedy or try_freeing(problem, probe) or try_widening(problem, probe)
     if met.colliding > 0:
-        return _colliding(met, remedy)
+        return _colliding(problem, met, remedy)
     if remedy:
         reason = f"no solution inside the joint ranges found in {_count(found.counts[0, ATTEMPTS])}; {_best(graded)}"
         return Explanation(stop_reason=StopReason.LIMITS, reason=reason, hint=remedy, blocking_pairs={})
@@ -171,7 +177,7 @@ def _explain_by_remedies(
 
 def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | None:
     """That some pairs touch in every configuration, if they do."""
-    touching = find_always_touching(problem.collision)
+    touching = find_always_touching(problem.collision.own)
     if touching is None:
         return None
     lines = f": {' and '.join(touching.lines)}" if touching.lines else ""
@@ -191,17 +197,21 @@ def _ruled_out(
 ) -> Explanation:
     """What the closed form proves; what would help without a search, but for what is frozen."""
     reason, blocking = tell_branches(problem, target)
-    hint = try_freeing(problem, Probe(target, seed, stream, float(found.seconds[0])))
+    probe = Probe(target, seed, stream, float(found.seconds[0]))
+    hint = try_removing(problem, probe, blocking) or try_freeing(problem, probe)
     hint = hint or hint_at_branches(problem, target) or hint_at_tolerance(problem, target, found.q[0], graded)
     stop = STOP_REASONS[found.ruled_out[0]]
     return Explanation(stop_reason=stop, reason=reason, hint=hint, blocking_pairs=blocking)
 
 
-def _colliding(met: _Met, remedy: str | None) -> Explanation:
+def _colliding(problem: Problem, met: _Met, remedy: str | None) -> Explanation:
+    own, stop = set(problem.collision.pairs), StopReason.COLLISION
+    if not met.blocking.keys() <= own:
+        stop = StopReason.WORLD
     worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
     collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
     return Explanation(
-        stop_reason=StopReason.COLLISION,
+        stop_reason=stop,
         reason=f"only colliding solutions found: {collisions}",
         hint=remedy,
         blocking_pairs=met.blocking,
@@ -232,7 +242,7 @@ def _best(graded: Grade) -> str:
 
 
 def _read_counts(problem: Problem, found: SearchState) -> _Met:
-    pairs = problem.collision.pairs
+    pairs = problem.collision.counted
     return _Met(int(found.counts[0, COLLIDING]), count_blocking_pairs(pairs, found.pair_counts.row(0)))
 
 
@@ -264,5 +274,5 @@ def _count_pairs(problem: Problem, found: SearchState) -> _Met:
     collision = problem.collision
     if not collision.pairs or not len(met):
         return _Met(0, {})
-    hits = (compute_gaps(collision, met) <= collision.limit_m).sum(axis=0)
-    return _Met(len(met), count_blocking_pairs(collision.pairs, hits))
+    hits = collision.fold(compute_gaps(collision, met) <= collision.limit_m).sum(axis=0)
+    return _Met(len(met), count_blocking_pairs(collision.counted, hits))

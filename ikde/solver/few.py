@@ -76,7 +76,7 @@ def _has_lanes(problem: Problem, asked: dict[int, Ask]) -> bool:
         if ask.plan.is_closed:
             continue
         kernels, _, ready = prepare(problem, KINDS[kind])
-        question = Question(problem.collision, KINDS[kind], MANY)
+        question = Question(problem.collision.own, KINDS[kind], MANY)
         if False not in ready and answers_plainly(kernels.solve_targets.bind(), question):
             return False
     return True
@@ -88,7 +88,7 @@ class _Rows:
     def __init__(self, problem: Problem, targets: Targets, asked: dict[int, Ask]) -> None:
         self._targets, self._asked, count, joints = targets, asked, len(targets), len(problem.lower)
         self._joints, self._counts = joints, joints + METRICS
-        self._rows = np.empty((count, size_of(joints, len(problem.collision.pairs))))
+        self._rows = np.empty((count, size_of(joints, len(problem.collision.counted))))
         self._accepted, self._excess = np.empty(count, dtype=np.bool_), np.zeros((2, count))
         engines = [NAMES.index(asked[kind].engine) if kind in asked else 0 for kind in range(len(KINDS))]
         self._engine, self._why = np.array(engines)[targets.kind], np.full(count, -1)

@@ -34,7 +34,7 @@ def grade_fixed(problem: Problem, targets: Targets, found: SearchState) -> None:
     found.counts[:, [ATTEMPTS, EVALUATIONS]] = 1
     found.counts[:, REACHED] = metrics.accepted
     found.counts[:, COLLIDING] = is_met & hits.any()
-    found.pair_counts.filled[:] = is_met[:, None] & hits
+    found.pair_counts.filled[:] = is_met[:, None] & collision.fold(hits)
     found.pair_counts.keep(0, np.flatnonzero(is_met))
     found.pair_counts.drop_filled()
     found.engine[:] = NAMES.index(NO_ENGINE)

@@ -5,7 +5,7 @@ It answers `forward` and `check`, and it is what `verify` grades with. It is wri
 configurations: one, or as many as there are.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, FreeSpheres, Pairs, Robot, SphereRow
+from ikde.solver.plain_world import measure_obstacle
 
 
 def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
@@ -91,9 +92,15 @@ def compute_gaps(
 ) -> Floats:
     """Smallest distance - R_i - R_j [..., P] in m of every pair of components, or of some, for `q` [..., N].
 
-    `Ts_world`: the frames at `q`, if they are known.
+    Without `pairs` those of components and obstacles follow (`compute_world_gaps`). `Ts_world`: the frames at `q`, if
+    they are known.
     """
-    pairs = collision.pairs if pairs is None else pairs
+    if pairs is None:
+        Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
+        own = compute_gaps(collision, q, collision.pairs, Ts_world)
+        if not collision.obstacles:
+            return own
+        return np.concatenate([own, compute_world_gaps(collision, q, Ts_world)], axis=-1)
     if not pairs:
         return np.empty((*q.shape[:-1], 0))
     components = compute_components(collision, q, Ts_world)
@@ -109,6 +116,32 @@ def compute_gaps(
         distance = np.sqrt(dx * dx + dy * dy + dz * dz)
         gaps[some] = np.minimum.reduceat(distance - radii[i] - radii[j], starts, axis=0)
     return np.ascontiguousarray(gaps.T).reshape(*q.shape[:-1], len(pairs))
+
+
+def compute_world_gaps(
+    collision: CollisionModel,
+    q: Floats,
+    Ts_world: Mapping[str, Floats] | None = None,
+    *,
+    some: Sequence[str] | None = None,
+) -> Floats:
+    """Smallest distance - R of every component and obstacle [..., C O] in m, less what is asked for beyond the safe
+    distance: so all are compared with that. inf where they are not compared. `some`: of these components only, also
+    of those that no joint moves.
+    """
+    Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
+    placed, obstacles, still = compute_components(collision, q, Ts_world), collision.obstacles, WORLD
+    components = {name: placed[name] for name in (placed if some is None else some)}
+    gaps = np.full((*q.shape[:-1], len(components), len(obstacles)), np.inf)
+    for place, (name, (centres, radii)) in enumerate(components.items()):
+        for other, obstacle in enumerate(obstacles):
+            if name in obstacle.ignore or (some is None and name in collision.fixed_components):
+                continue
+            extra_m = collision.kept_m(name) + obstacle.margin_m - collision.limit_m
+            T = Ts_world[obstacle.frame].reshape(-1, 4, 4)[0] if obstacle.frame != still else np.eye(4)
+            own = (centres - T[:3, 3]) @ T[:3, :3]
+            gaps[..., place, other] = (measure_obstacle(obstacle, own) - radii).min(axis=-1) - extra_m
+    return gaps.reshape(*q.shape[:-1], len(components) * len(obstacles))
 
 
 AT_ONCE = 5_000  # distances: from 128 kB on what is freed goes back to the system, and comes again page by page

@@ -16,6 +16,7 @@ from ikde.model.robot import MAX_MAGNITUDE, Robot
 from ikde.solver.joints import JointValues, read_joints
 from ikde.solver.motion import Weights, read_weights
 from ikde.solver.settings import SolveSettings
+from ikde.solver.standing import find_model
 
 Freeze = Mapping[str, float | None] | Iterable[str]
 
@@ -89,6 +90,11 @@ class Problem:
         """The same question with other joint ranges and nothing frozen."""
         return replace(self, lower=lower, upper=upper, frozen=())
 
+    def without_obstacle(self, name: str) -> "Problem":
+        """The same question in a world without one obstacle."""
+        model = self.collision
+        return replace(self, collision=model.own.in_world(model.world.remove(name), model.margin_m))
+
     def with_settings(self, **changes: object) -> "Problem":
         """The same question with some settings changed."""
         return replace(self, settings=self.settings.with_changes(**changes))
@@ -117,8 +123,9 @@ def make_problem(
             limits = f"[{joint.lower:g}, {joint.upper:g}]"
             raise InputError(f"{value:g} is outside the limits {limits}", ("freeze", name))
         lower[index] = upper[index] = value
+    model = find_model(robot, collision)
     return Problem(
-        collision=CollisionModel.of(robot, collision),
+        collision=model,
         settings=settings,
         lower=lower,
         upper=upper,

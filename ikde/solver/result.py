@@ -37,6 +37,8 @@ class StopReason(StrEnum):
     """The time was up (`SolveSettings.timeout_s`) and the target not reached."""
     UNVERIFIED = "unverified"
     """Kernels and `verify` disagree: a bug in ikde, recorded in bulk so that the run goes on."""
+    WORLD = "world"
+    """As `collision`, and some of these configurations collide with obstacles."""
 
 
 Parts = tuple["ResultMaker", Floats, Target, int, int, float]
@@ -135,18 +137,23 @@ class SolveResult:
     @cached_property
     def clearance_m(self) -> float | None:
         """Smallest distance - R_i - R_j over the detector's pairs, m; None without a detector."""
-        return self._row.item(self._maker.joints + 2) if self._counted[PAIR] >= 0 else None
+        pair = self._counted[PAIR]
+        return (
+            self._row.item(self._maker.joints + 2) + self._maker.problem.collision.extra_m(pair) if pair >= 0 else None
+        )
 
     @cached_property
     def closest_pair(self) -> tuple[str, str] | None:
         """The two components that the clearance lies between."""
         pair = self._counted[PAIR]
-        return self._maker.problem.collision.pairs[pair] if pair >= 0 else None
+        return self._maker.problem.collision.name_pair(pair) if pair >= 0 else None
 
     @cached_property
     def collision(self) -> bool | None:
         """True if the clearance is not above the safe distance; None: not checked, there is no detector."""
-        return None if self.clearance_m is None else not self.clearance_m > self._maker.problem.collision.limit_m
+        if self._counted[PAIR] < 0:
+            return None
+        return not self._row.item(self._maker.joints + 2) > self._maker.problem.collision.limit_m
 
     @cached_property
     def verified(self) -> bool | None:
@@ -169,6 +176,11 @@ class SolveResult:
     def detector(self) -> str:
         """Its name, or `"none"`."""
         return self._maker.problem.collision.name
+
+    @cached_property
+    def obstacles(self) -> tuple[str, ...]:
+        """Names of what stands around, of what is switched on; none without a world."""
+        return tuple(obstacle.name for obstacle in self._maker.problem.collision.obstacles)
 
     @cached_property
     def seed(self) -> int:
@@ -200,7 +212,7 @@ class SolveResult:
         """How often each pair blocked a pose that was met, most often first."""
         if "_explain" in self.__dict__:
             return self._explanation.blocking_pairs
-        return count_blocking_pairs(self._maker.problem.collision.pairs, self._counted[BLOCKED:])
+        return count_blocking_pairs(self._maker.problem.collision.counted, self._counted[BLOCKED:])
 
     @cached_property
     def solve_seconds(self) -> float:
@@ -297,4 +309,6 @@ def count_blocking_pairs(pairs: Pairs, counts: Sequence[int] | NDArray[np.int64]
 def reached_reason(collision: CollisionModel) -> str:
     """One line for a target that was reached."""
     free = "free of self-collision" if collision.pairs else "self-collision not checked"
+    if collision.obstacles:
+        free += " and of the world"
     return f"within tolerance, inside the limits, {free}"

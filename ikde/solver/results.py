@@ -95,12 +95,13 @@ class SolveResults:
 
     @property
     def clearance_m(self) -> Floats:
-        """Smallest distance - R_i - R_j over the detector's pairs [T], m; inf without a pair."""
-        return self.outcomes.metrics.clearance_m
+        """Distance - R_i - R_j of the closest pair [T], m; inf without a pair."""
+        metrics = self.outcomes.metrics
+        return self.problem.collision.clearances_m(metrics.clearance_m, metrics.closest_pair)
 
     @property
     def closest_pair(self) -> Ints:
-        """Index of the pair that the clearance lies between [T], into `problem.collision.pairs`; -1 without a pair."""
+        """Index of the pair that the clearance lies between [T], into `problem.collision.all_pairs`; -1 without one."""
         return self.outcomes.metrics.closest_pair
 
     @property
@@ -184,7 +185,7 @@ class SolveResults:
             return reached_reason(self.problem.collision)
         excess = float(self.found.excess_m[index]), float(self.found.excess_rad[index])
         if self.problem.is_fixed and stop is not StopReason.BUDGET:
-            closest = self.problem.collision.pairs[self.closest_pair[index]] if self.collision[index] else None
+            closest = self.problem.collision.name_pair(self.closest_pair[index]) if self.collision[index] else None
             return tell_fixed(*excess, closest)
         if self.found.ruled_out[index] >= 0:
             return reason_from_proof(stop)
@@ -201,7 +202,7 @@ class SolveResults:
             stop_reason=STOP_REASONS[self.stop_reasons[index]],
             reason=self.reason(index),
             hint=None,
-            blocking_pairs=count_blocking_pairs(self.problem.collision.pairs, self.found.pair_counts.row(index)),
+            blocking_pairs=count_blocking_pairs(self.problem.collision.counted, self.found.pair_counts.row(index)),
         )
 
     def row(self, index: int) -> SolveResult:

@@ -18,6 +18,7 @@ from ikde.solver.families import label_family
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.settings import SolveSettings, choose_settings
+from ikde.solver.standing import find_model
 
 Bools = NDArray[np.bool_]
 if TYPE_CHECKING:
@@ -69,16 +70,15 @@ class Grades:
 
     def row(self, index: int) -> Grade:
         """One configuration's."""
-        robot, pairs = self.collision.robot, self.collision.pairs
-        gaps = self.gaps_m[index]
-        worst_first = np.argsort(gaps, kind="stable") if pairs else []
-        colliding = tuple(pairs[k] for k in worst_first if gaps[k] <= self.collision.limit_m)
+        robot, collision, gaps = self.collision.robot, self.collision, self.gaps_m[index]
+        pairs, worst_first = collision.pairs, np.argsort(gaps, kind="stable").tolist()
+        colliding = tuple(collision.name_pair(k) for k in worst_first if gaps[k] <= collision.limit_m)
         outside = zip(robot.joints, self.outside[index], strict=True)
         return Grade(
             position_error_m=float(self.position_error_m[index]),
             orientation_error_rad=float(self.orientation_error_rad[index]),
-            clearance_m=float(gaps[worst_first[0]]) if pairs else None,
-            closest_pair=pairs[worst_first[0]] if pairs else None,
+            clearance_m=float(gaps[worst_first[0]]) + collision.extra_m(worst_first[0]) if pairs else None,
+            closest_pair=collision.name_pair(worst_first[0]) if pairs else None,
             collision=bool(colliding) if pairs else None,
             colliding_pairs=colliding,
             outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
@@ -112,7 +112,7 @@ def verify(
     """
     robot, chosen = read_robot(robot), choose_settings(settings, "auto")
     Q = read_configuration(robot, q, convention)[None]
-    return verify_many(CollisionModel.of(robot, collision), [read_target(target)], Q, chosen).row(0)
+    return verify_many(find_model(robot, collision), [read_target(target)], Q, chosen).row(0)
 
 
 def verify_many(

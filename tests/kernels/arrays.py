@@ -58,5 +58,6 @@ def two_spheres(distance, radii, safe_distance=0.0):
         pairs=freeze([(0, 1)], np.int64),
         rows=freeze(np.zeros((0, 4)), np.int64),
         offset=freeze([0.0, 0.0]),
+        world=freeze([]),
     )
     return detector, centres, np.ascontiguousarray(centres.T)

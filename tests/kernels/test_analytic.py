@@ -63,7 +63,7 @@ def run(robot, targets, seeds, *, budget=20, near=None, module=PLAIN, rows=None,
     streams = np.arange(count) if streams is None else streams
     with quietly():
         module.solve_branches(
-            *(*models, pack_ur_arm(arm), arm.carrier, pack_targets(targets), np.array(rows), ranges, seeds),
+            *(*models, models[1], pack_ur_arm(arm), arm.carrier, pack_targets(targets), np.array(rows), ranges, seeds),
             *(np.uint64(4), streams, attempts, *vars(outputs).values()),
         )
     return outputs

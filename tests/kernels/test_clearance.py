@@ -87,9 +87,9 @@ def test_random_robots_show_both_collisions_and_freedom(rng):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_counted_pairs_are_those_within_the_safe_distance(seed, rng):
-    for robot, detector, q, packed, centres, _ in sample(seed, rng, 2):
+    for robot, detector, q, packed, centres, bounds in sample(seed, rng, 2):
         out_counts = np.zeros(len(packed.pairs), dtype=np.int64)
-        count_colliding_pairs(packed, centres, out_counts)
+        count_colliding_pairs(packed, bounds, centres, out_counts)
         spheres = reference.list_spheres(robot, detector, q)
         clearances = reference.compute_pair_clearances(spheres, robot.pair_lists[detector.pairs])
         np.testing.assert_array_equal(out_counts, clearances <= detector.safe_distance_m)

@@ -96,7 +96,7 @@ def test_at_the_safe_distance_or_the_tolerance_itself_counts(qiao):
 def test_it_shares_no_code_with_the_search():
     names = {getattr(value, "__module__", "") for value in vars(module).values()}
     assert {name for name in names if name.startswith("ikde.")} <= {
-        *(f"ikde.kernels.{own}" for own in ("grade_many", "jit", "trig", "arrays", "flat_arguments")),
+        *(f"ikde.kernels.{own}" for own in ("grade_many", "jit", "trig", "arrays", "flat_arguments", "world_grades")),
     }
 
 

@@ -57,7 +57,7 @@ def test_a_model_made_by_hand_is_checked_when_it_is_used(qiao):
 
 def test_what_is_no_choice_is_refused_in_a_line(qiao):
     with pytest.raises(
-        InputError, match=r"^collision: expected a name, a Detector or a CollisionModel, got <Robot qiao"
+        InputError, match=r"^collision: expected a name, a Detector, a World or a CollisionModel, got <Robot qiao"
     ):
         ikde.check(qiao, qiao.home, qiao)
 

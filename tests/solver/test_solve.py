@@ -223,7 +223,7 @@ def test_unreached_targets_are_told_from_bound_and_counts_alone(qiao):
         ({"settings": {"restart": 3}}, r"^settings: no setting is called 'restart' \(did you mean 'restarts'\?\)$"),
         (
             {"collision": ["improved"]},
-            r"^collision: expected a name, a Detector or a CollisionModel, got \['improved'\]$",
+            r"^collision: expected a name, a Detector, a World or a CollisionModel, got \['improved'\]$",
         ),
         ({"collision": "improv"}, "no detector 'improv'"),
         ({"near": [1, 2]}, "expected 9 joint values"),

@@ -57,7 +57,7 @@ def digest_inputs(collision: CollisionModel, kind: str) -> str:
     closed = kind == "pose" and find_ur_arm(robot) is not None
     words = (kind, closed, proof_margin(collision), cache_folder.CACHE_FOLDER.name, _own_digest())
     digest = hashlib.sha256(repr(words).encode())
-    for array in (*pack_robot(robot), *collision.arrays[1:], *robot.written_ranges):
+    for array in (*pack_robot(robot), *collision.arrays[1:-1], *robot.written_ranges):
         digest.update(repr(np.shape(array)).encode() + np.asarray(array).tobytes())
     return digest.hexdigest()
 

@@ -68,7 +68,7 @@ class Analytic:
         asked, problem = self._inputs, self._inputs.problem
         kernels, (robot, collision) = load_kernels(problem.collision, "pose"), pack_searched(problem.collision)
         models = robot, kernels.use_models(robot, collision)[1]
-        solve = partial(kernels.solve_branches, *models, pack_ur_arm(arm), arm.carrier, asked.targets)
+        solve = partial(kernels.solve_branches, *models, collision, pack_ur_arm(arm), arm.carrier, asked.targets)
         own = make_ranges(problem), make_seeds(problem, "pose"), asked.seed, asked.streams
         return lambda rows, attempts: solve(rows, *own, attempts, *asked.outputs)
 

@@ -54,7 +54,7 @@ def load_kernels(collision: CollisionModel, kind: str, *, inside: bool = True) -
 
     Beyond them, or with `$IKDE_KERNELS` set to `tables`, the data-driven ones.
     """
-    return load_module(collision, kind) if inside and not runs_on_tables() else _load_tables()
+    return load_module(collision.own, kind) if inside and not runs_on_tables() else _load_tables()
 
 
 def runs_on_tables() -> bool:
@@ -74,7 +74,7 @@ def make_seeds(problem: Problem, kind: str) -> SeedArrays:
     """Where attempts start: about `near` if there is one, else from the pool of the problem's ranges."""
     if problem.near is not None:
         return no_pool(problem.robot, NEAR_FIRST_BOX)
-    return find_seeds(problem.collision, kind, *problem.drawn)
+    return find_seeds(problem.collision.own, kind, *problem.drawn)
 
 
 def find_seeds(collision: CollisionModel, kind: str, lower: Floats, upper: Floats) -> SeedArrays:
@@ -159,7 +159,7 @@ def digest_pool(pool: Pool, collision: CollisionModel) -> str:
     ranges = [bound.tolist() for bound in pool.drawn]
     words = (pool.wanted, DRAWS, PER_CELL, COMPARED, pool.grid.tolist(), ranges)
     digest = hashlib.sha256(repr(words).encode() + _own_source())
-    for array in (*robot, *searched):
+    for array in (*robot, *searched[:-1]):
         digest.update(repr(np.shape(array)).encode() + (np.round(array, DIGITS) + 0.0).tobytes())
     return digest.hexdigest()
 

@@ -44,6 +44,10 @@ class PairCounts:
         taken._entries = np.concatenate(parts)
         return taken
 
+    def blocked_beyond(self, pair: int) -> Ints:
+        """Rows that were blocked by pairs from this one on."""
+        return np.unique(self._entries[self._entries[:, 1] >= pair, 0])
+
     def row(self, index: int) -> Ints:
         """Counts [P] of one row, of those that were kept."""
         counts = np.zeros(self.filled.shape[1], dtype=np.int64)
@@ -115,7 +119,7 @@ def keep_pairs(counts: Ints) -> PairCounts:
 
 def make_search_state(problem: Problem, count: int, piece: int | None = None) -> SearchState:
     """Buffers for so many targets, of which nothing is found yet; pairs are counted for `piece` of them at a time."""
-    pairs, filled = len(problem.collision.pairs), count if piece is None else min(piece, count)
+    pairs, filled = len(problem.collision.counted), count if piece is None else min(piece, count)
     return SearchState(
         q=np.zeros((count, len(problem.robot.joints))),
         score=np.full((count, 2), np.inf),

@@ -1,0 +1,66 @@
+"""Options of commands that mind a world, and how they become a collision model."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from ikde.cli.options import LengthUnit, of_collision
+from ikde.cli.output import print_note
+
+if TYPE_CHECKING:
+    from ikde.model.collision_model import CollisionModel
+
+WorldOption = Annotated[
+    Path | None,
+    of_collision(metavar="FILE", help="Obstacles: a world file, a cuRobo scene or a MoveIt planning scene."),
+]
+MarginOption = Annotated[
+    str | None,
+    of_collision(
+        metavar="D,C=D,..",
+        help="Distance to keep from the world, in --unit; C=D is that of a component in its place, as in 10,gripper=0.",
+    ),
+]
+NAMED = 3  # pairs in a note
+NEAR_M = 0.02  # a gap that could be asked for as a margin
+
+
+def place_in_world(
+    collision: "CollisionModel", world: Path | None, margin: str | None, unit: LengthUnit
+) -> "CollisionModel":
+    """The robot in the world of a file; says on stderr what stands near an obstacle whatever the joints do."""
+    from ikde.errors import InputError
+
+    if world is None:
+        if margin is not None:
+            raise InputError("a margin needs a --world to be kept from", ("margin",))
+        return collision
+    from ikde.io.world_file import load_world
+    from ikde.solver.standing import find_standing_obstacles, refuse_touching
+
+    margin_m, margins_m = read_margins(margin, unit)
+    model = collision.in_world(load_world(world), margin_m, margins_m)
+    refuse_touching(model)
+    near = [pair for pair in find_standing_obstacles(model) if pair.clearance_m <= NEAR_M]
+    if near:
+        near.sort(key=lambda pair: pair.clearance_m)
+        named = ", ".join(f"{p.component} - {p.obstacle} {1e3 * p.clearance_m:.4g} mm" for p in near[:NAMED])
+        more = f" and {len(near) - NAMED} more" if len(near) > NAMED else ""
+        print_note(f"ikde: as near in every configuration: {named}{more}")
+    return model
+
+
+def read_margins(text: str | None, unit: LengthUnit) -> tuple[float, dict[str, float]]:
+    """The distance for all, m, and those of components by name, from `10,gripper=0`."""
+    from ikde.errors import InputError, quoted
+    from ikde.formats.units import LENGTHS_M
+
+    margins: dict[str, float] = {}
+    for word in filter(None, (text or "").split(",")):
+        name, _, value = word.rpartition("=")
+        if name in margins:
+            raise InputError("this margin is given twice", ("margin", *([name] if name else [])))
+        try:
+            margins[name] = float(value) * LENGTHS_M[unit]
+        except ValueError:
+            raise InputError(f"expected a distance or component=distance, got {quoted(word)}", ("margin",)) from None
+    return margins.pop("", 0.0), margins

@@ -1,0 +1,57 @@
+"""A world becomes one array; what it names must be there."""
+
+import numpy as np
+import pytest
+
+from ikde.errors import InputError
+from ikde.kernels.flat_arguments import unpack_world
+from ikde.model.collision_model import CollisionModel
+from ikde.model.pack_world import pack_world, sort_cloud
+from ikde.model.robot import WORLD
+from ikde.model.solids import make_solid
+from ikde.model.world import make_obstacle, make_world
+from tests.three_joints import ROBOT
+
+OWN, FRAMES = CollisionModel.of(ROBOT), {WORLD: np.eye(4)}
+BALL = make_solid("sphere", (0.1,))
+
+
+def test_what_is_asked_for_is_the_sum_of_margins_and_nothing_where_it_is_ignored():
+    obstacles = [make_obstacle("a", [BALL], margin_m=0.02), make_obstacle("b", [BALL, BALL], ignore=("hand",))]
+    packed = unpack_world.plain(pack_world(make_world(obstacles), ["arm", "hand"], FRAMES, 0.5, np.array([0.0, 0.01])))
+    assert packed.asked.tolist() == [[0.02, 0.0], [0.03, -np.inf]]
+    assert packed.solids.shape[0] == 3
+
+
+def test_groups_that_are_off_are_left_out():
+    world = make_world([make_obstacle("a", [BALL], group="cups"), make_obstacle("b", [BALL])]).switch(cups=False)
+    assert unpack_world.plain(pack_world(world, ["arm"], FRAMES, 0.5, np.zeros(1))).asked.shape == (1, 1)
+
+
+def test_a_frame_that_moves_and_a_component_that_is_not_there_are_refused():
+    with pytest.raises(InputError, match=r"^obstacles\.a\.frame: no frame that stays in its place is called 'tool'"):
+        OWN.in_world(make_world([make_obstacle("a", [BALL], frame="tool")]))
+    with pytest.raises(InputError, match=r"^obstacles\.a\.ignore\[0\]: no component is called 'hnad'"):
+        OWN.in_world(make_world([make_obstacle("a", [BALL], ignore=("hnad",))]))
+
+
+def test_margins_that_do_not_fit_are_refused():
+    world = make_world([make_obstacle("a", [BALL])])
+    for margin_m, margins_m, message in (
+        (-0.1, None, r"^margin: expected a distance of at least 0 m, got -0.1"),
+        (float("nan"), None, r"^margin: expected a distance of at least 0 m, got nan"),
+        (0.0, {"hnad": 0.0}, r"^margin\.hnad: no component is called 'hnad'"),
+        (0.0, {"post": "x"}, r"^margin\.post: expected a distance of at least 0 m, got 'x'"),
+    ):
+        with pytest.raises(InputError, match=message):
+            OWN.in_world(world, margin_m, margins_m)
+    with pytest.raises(InputError, match=r"^world: expected a World, got 3"):
+        OWN.in_world(3)
+
+
+def test_points_are_sorted_by_cell(rng):
+    points = rng.uniform(-1.0, 1.0, (500, 3))
+    cells, sorted_points = sort_cloud(points, 0.3)
+    assert sorted(map(tuple, points.tolist())) == sorted(map(tuple, sorted_points.tolist()))
+    assert cells.starts[-1] == 500
+    assert (cells.far[np.diff(cells.starts) > 0] == 0.0).all()
