@@ -19,7 +19,9 @@ def test_json_has_the_promised_keys_and_pairs_worst_first(cli, qiao):
         "safe_distance_m",
         "collision",
         "clearance_m",
+        "closest_pair",
         "pairs",
+        "obstacles",
         "q",
         "outside_limits",
     }
