@@ -132,15 +132,20 @@ def compute_world_gaps(
     Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
     placed, obstacles, still = compute_components(collision, q, Ts_world), collision.obstacles, WORLD
     components = {name: placed[name] for name in (placed if some is None else some)}
-    gaps = np.full((*q.shape[:-1], len(components), len(obstacles)), np.inf)
-    for place, (name, (centres, radii)) in enumerate(components.items()):
-        for other, obstacle in enumerate(obstacles):
-            if name in obstacle.ignore or (some is None and name in collision.fixed_components):
-                continue
-            extra_m = collision.kept_m(name) + obstacle.margin_m - collision.limit_m
-            T = Ts_world[obstacle.frame].reshape(-1, 4, 4)[0] if obstacle.frame != still else np.eye(4)
-            own = (centres - T[:3, 3]) @ T[:3, :3]
-            gaps[..., place, other] = (measure_obstacle(obstacle, own) - radii).min(axis=-1) - extra_m
+    if not components:
+        return np.empty((*q.shape[:-1], 0))
+    centres = np.concatenate([own for own, _ in components.values()], axis=-2)
+    radii = np.concatenate([own for _, own in components.values()])
+    firsts = np.cumsum([0, *(len(own) for _, own in components.values())])[:-1]
+    kept_m = np.array([collision.kept_m(name) for name in components]) - collision.limit_m
+    is_fixed = np.array([some is None and name in collision.fixed_components for name in components])
+    gaps = np.empty((*q.shape[:-1], len(components), len(obstacles)))
+    for other, obstacle in enumerate(obstacles):
+        T = Ts_world[obstacle.frame].reshape(-1, 4, 4)[0] if obstacle.frame != still else np.eye(4)
+        distance = measure_obstacle(obstacle, (centres - T[:3, 3]) @ T[:3, :3]) - radii
+        is_left_out = is_fixed | np.array([name in obstacle.ignore for name in components])
+        nearest = np.minimum.reduceat(distance, firsts, axis=-1) - (kept_m + obstacle.margin_m)
+        gaps[..., other] = np.where(is_left_out, np.inf, nearest)
     return gaps.reshape(*q.shape[:-1], len(components) * len(obstacles))
 
 

@@ -6,14 +6,16 @@ of theirs, so inside two that overlap the depth is that of one of them.
 """
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats
+from ikde.model.hull import measure_normals
 from ikde.model.solids import Solid, SolidKind
 from ikde.model.world import Obstacle
 
-CHUNK = 4096  # points of a cloud, or triangles of a hull, at a time
+CHUNK = 4096  # points of a cloud, or points times triangles of a hull, at a time
 
 
 def measure_obstacle(obstacle: Obstacle, P: Floats) -> Floats:
@@ -68,11 +70,12 @@ def _half_space(solid: Solid, P: Floats) -> Floats:
 
 
 def _hull(solid: Solid, P: Floats) -> Floats:
-    assert solid.points is not None
-    assert solid.triangles is not None
+    """By its planes inside, by its triangles outside."""
+    faces, normals = _list_faces(solid)
     flat, found = P.reshape(-1, 3), np.empty(P.shape[:-1]).ravel()
-    for row, point in enumerate(flat):
-        found[row] = _point_to_hull(point, solid.points, solid.triangles)
+    several = max(1, CHUNK // len(normals))
+    for first in range(0, len(flat), several):
+        found[first : first + several] = _points_to_hull(flat[first : first + several, None], faces, normals)
     return found.reshape(P.shape[:-1])
 
 
@@ -103,23 +106,28 @@ def _to_segment(point: Floats, a: Floats, b: Floats) -> Floats:
     return np.linalg.norm(point - a - share[..., None] * (b - a), axis=-1)
 
 
-def _point_to_hull(point: Floats, corners: Floats, triangles: Ints) -> float:
-    """Signed distance of a point [3] from a convex hull: by its planes inside, by its triangles outside."""
-    a, b, c = (corners[triangles[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    heights = np.einsum("fi,fi->f", normals, point - a)
-    if heights.max() <= 0.0:
-        return float(heights.max())
-    foot = point - heights[:, None] * normals
-    insides = [np.einsum("fi,fi->f", np.cross(q - p, foot - p), normals) >= 0.0 for p, q in ((a, b), (b, c), (c, a))]
-    on_face = np.where(np.logical_and.reduce(insides), np.abs(heights), np.inf)
-    edges = [np.linalg.norm(_edge_foot(point, p, q), axis=1) for p, q in ((a, b), (b, c), (c, a))]
-    return float(min(on_face.min(), *(edge.min() for edge in edges)))
+@lru_cache(maxsize=1024)
+def _list_faces(solid: Solid) -> tuple[Floats, Floats]:
+    """Corners [3, F, 3] of a hull's triangles, and their outward normals [F, 3], right for the thinnest triangle."""
+    assert solid.points is not None
+    assert solid.triangles is not None
+    return solid.points[solid.triangles.T], measure_normals(solid.points, solid.triangles)
 
 
-def _edge_foot(point: Floats, a: Floats, b: Floats) -> Floats:
-    """From the nearest points of edges [F, 3] to [F, 3] to a point [3]."""
+def _points_to_hull(points: Floats, faces: Floats, normals: Floats) -> Floats:
+    """Signed distances [K] of points [K, 1, 3] from a convex hull."""
+    sides = list(zip(faces, np.roll(faces, -1, axis=0), strict=True))
+    heights = np.einsum("fi,kfi->kf", normals, points - faces[0])
+    foot = points - heights[..., None] * normals
+    inside = [np.einsum("kfi,fi->kf", foot - a, np.cross(normals, b - a)) >= 0.0 for a, b in sides]
+    on_face = np.where(np.logical_and.reduce(inside), np.abs(heights), np.inf)
+    edges = [_to_edges(points, a, b) for a, b in sides]
+    deepest = heights.max(axis=1)
+    return np.where(deepest <= 0.0, deepest, np.min([on_face, *edges], axis=(0, 2)))
+
+
+def _to_edges(points: Floats, a: Floats, b: Floats) -> Floats:
+    """Distances [K, F] of points [K, 1, 3] from edges [F, 3] to [F, 3]."""
     line = b - a
-    share = np.clip(np.einsum("fi,fi->f", point - a, line) / np.einsum("fi,fi->f", line, line), 0.0, 1.0)
-    return point - a - share[:, None] * line
+    share = np.clip(np.einsum("kfi,fi->kf", points - a, line) / np.einsum("fi,fi->f", line, line), 0.0, 1.0)
+    return np.linalg.norm(points - a - share[..., None] * line, axis=-1)
