@@ -8,6 +8,7 @@ from urllib.parse import unquote
 from ikde.errors import FileError, quoted, shorten
 
 PACKAGE = ("package://", "model://")
+LOCAL = "file://"
 MAX_SHOWN = 50  # characters of a mesh's name, the last ones
 
 
@@ -33,8 +34,10 @@ def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | 
     except (OSError, ValueError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or "no path"
         raise FileError(urdf, f"the mesh {quoted(name)} cannot be looked for: {reason}", (), line) from None
-    found = "lies outside this folder" if outside and not name.startswith(PACKAGE) else "is not in this folder"
     shown = quoted(shorten(name, MAX_SHOWN, keep_end=True))
+    if "://" in name and not name.startswith((*PACKAGE, LOCAL)):
+        raise FileError(urdf, f"the mesh {shown} is no file on this machine, and none is fetched", (), line)
+    found = "lies outside this folder" if outside and not name.startswith(PACKAGE) else "is not in this folder"
     message = f"the mesh {shown} {found}; try --package-path {_suggest_folder(urdf, name)}, or --no-spheres"
     raise FileError(urdf, message, (), line)
 
@@ -45,8 +48,8 @@ def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
             package, _, rest = unquote(name.removeprefix(scheme)).partition("/")
             own = [folder / rest for folder in folders if folder.resolve().name == package]
             return [*(folder / package / rest for folder in folders), *own]
-    if name.startswith("file://"):
-        return [Path(unquote(name.removeprefix("file://")))]
+    if name.startswith(LOCAL):
+        return [Path(unquote(name.removeprefix(LOCAL)))]
     if "://" in name:
         return []
     return [folder / name for folder in folders]

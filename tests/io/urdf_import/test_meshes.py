@@ -77,7 +77,7 @@ def test_a_link_in_a_circle_and_a_name_that_is_no_path_are_one_line(robot):
 
 
 def test_no_mesh_comes_from_the_network(robot):
-    reject(robot, "http://example.com/a.stl", "is not in this folder")
+    reject(robot, "http://example.com/a.stl", "is no file on this machine, and none is fetched")
 
 
 def test_a_package_path_that_is_not_there_is_one_line(robot):
