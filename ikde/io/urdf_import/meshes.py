@@ -15,8 +15,8 @@ MAX_SHOWN = 50  # characters of a mesh's name, the last ones
 def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | None = None) -> Path:
     """The file that a mesh's name stands for.
 
-    `package://NAME/rest` is `NAME/rest` in one of the folders, or what follows NAME, or a folder in rest, in a folder that
-    is itself called so; anything else is a path beside the file.
+    `package://NAME/rest` is `NAME/rest` in one of the folders, or in a folder that is itself called NAME, or like one
+    in rest, what follows that; anything else is a path beside the file.
 
     Raises:
         FileError: for a mesh that is missing, no regular file, or outside all folders.
