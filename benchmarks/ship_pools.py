@@ -1,4 +1,4 @@
-"""Write the pools of seeds that come with ikde, of its own robots with their default detectors: nine files, 50 kB.
+"""Write the pools of seeds that come with ikde, of its own robots with their default detectors: the draws kept.
 
     python -m benchmarks.ship_pools
 

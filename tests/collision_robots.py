@@ -9,6 +9,7 @@ import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector, SphereRow
 from ikde.solver.plain import compute_gaps
+from tests.conftest import ROBOTS
 from tests.random_robots import make_frame, make_robot, random_robot
 
 MIN_FREE = 0.3  # of the configurations of a random robot
@@ -28,9 +29,7 @@ def loosen(robot):
     return replace(robot, pair_lists={"some": tuple(every[k] for k in sorted(kept))})
 
 
-SHIPPED = [
-    (robot, detector) for robot in map(ikde.load_robot, ikde.robot_names()) for detector in robot.detectors.values()
-]
+SHIPPED = [(robot, detector) for robot in map(ikde.load_robot, ROBOTS) for detector in robot.detectors.values()]
 RANDOM = [(robot, CollisionModel.of(robot).detector) for robot in map(loosen, map(random_robot, range(20)))]
 CASES = [*SHIPPED, *RANDOM]
 CONTACT = 1e-9  # m: what is nearer to contact than this is left out

@@ -14,12 +14,12 @@ from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_gaps
 from tests import regrade, robot_texts
 from tests.asking import account_for_pairs, ask, ask_and_regrade, draw_question, grade_answers
-from tests.conftest import random_q
+from tests.conftest import ROBOTS, random_q
 from tests.regrade import Grader, find_faults
 from tests.robot_files import load_text
 from tests.robot_texts import random_robot_text
 
-SHIPPED = [Path(ikde.__file__).parent / "robots" / f"{name}.yaml" for name in ikde.robot_names()]
+SHIPPED = [Path(ikde.__file__).parent / "robots" / f"{name}.yaml" for name in ROBOTS]
 RANDOM = range(12)
 ROUNDING = 1e-12  # m
 HAND_MADE = """

@@ -12,22 +12,40 @@ from ikde.report.numbers import Units
 from ikde.report.pairs import describe_pairs, pairs_json
 from ikde.report.render import make_table, plain, render
 
+WIDE = 80  # columns
+
 
 def robots_json(robots: Iterable[Robot]) -> list[dict[str, Any]]:
     """A line a robot, as plain data."""
     return [
-        {"name": robot.name, "title": robot.title, "joints": len(robot.joints), "detectors": list(robot.detectors)}
+        {
+            "name": robot.name,
+            "title": robot.title,
+            "joints": len(robot.joints),
+            "detectors": list(robot.detectors),
+            "source": _name_source(robot),
+        }
         for robot in robots
     ]
 
 
 def format_robots(robots: Iterable[Robot], *, color: bool = False, width: int = 100) -> str:
-    """A line a robot."""
-    table = make_table("robot", ">joints", "detectors", "title")
+    """A line a robot; where there is little room, without its detectors."""
+    wide = ["detectors"] if width >= WIDE else []
+    table = make_table("robot", ">joints", *wide, "frames from", "title")
     for robot in robots:
         names = ", ".join(robot.detectors) or "none"
-        table.add_row(plain(robot.name), str(len(robot.joints)), plain(names), plain(robot.title))
+        cells = [names] * len(wide) + [_name_source(robot), robot.title]
+        table.add_row(plain(robot.name), str(len(robot.joints)), *map(plain, cells))
     return render(table, color=color, width=width)
+
+
+def _name_source(robot: Robot) -> str:
+    """Who published most of its frames: the first words of their source; nothing if no source is named."""
+    named = Counter(source.text for where, source in robot.provenance.items() if where[0] == "frames")
+    published = {source.text for source in robot.provenance.values() if source.kind == "published"}
+    text = next((text for text, _ in named.most_common() if text in published), "")
+    return text.partition(",")[0].partition(":")[0].strip("[]")
 
 
 def robot_json(collision: CollisionModel) -> dict[str, Any]:

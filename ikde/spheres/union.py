@@ -40,7 +40,7 @@ def _outside(part: Floats, others: list[Floats]) -> Floats:
 
 def _outside_one(pieces: Floats, source: Ints, other: Triangles) -> tuple[Floats, Ints, Ints]:
     """The pieces that are not inside another part, whose they are, and which sources have lost some."""
-    kept, sources, lost = [], [], []
+    kept, sources, lost = [pieces[:0]], [source[:0]], [source[:0]]
     planes = _planes(other)
     convex = bool((_heights(other.corners, planes) <= FLAT).all())
     while len(pieces):

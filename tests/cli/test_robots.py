@@ -22,7 +22,7 @@ def test_every_robot_is_listed(cli, command):
 def test_the_list_as_json(cli):
     data = cli("robots", "list", "--json").data
     assert [entry["name"] for entry in data] == list(ikde.robot_names())
-    assert {frozenset(entry) for entry in data} == {frozenset({"name", "title", "joints", "detectors"})}
+    assert {frozenset(entry) for entry in data} == {frozenset({"name", "title", "joints", "detectors", "source"})}
 
 
 def test_a_robot_is_shown_with_its_sources(cli, any_robot):

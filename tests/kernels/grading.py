@@ -7,11 +7,12 @@ from ikde.kernels.flat_arguments import Terms, flatten_grader
 from ikde.kernels.grade_many import grade_many
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
+from tests.conftest import ROBOTS as HAND_WRITTEN
 from tests.kernels.arrays import freeze
 from tests.random_robots import random_robot
 from tests.three_joints import CROWDED
 
-ROBOTS = [*map(ikde.load_robot, ikde.robot_names()), *map(random_robot, range(12)), CROWDED]
+ROBOTS = [*map(ikde.load_robot, HAND_WRITTEN), *map(random_robot, range(12)), CROWDED]
 
 
 def terms_of(robot, position=np.inf, orientation=np.inf):

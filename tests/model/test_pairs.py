@@ -13,6 +13,7 @@ from ikde.model.robot import AdjacentPair, Detector, LeftOutPair, SphereRow
 from ikde.model.tree import build_tree
 from ikde.model.validate import NON_ADJACENT
 from tests.bare_robot import BARE
+from tests.conftest import ROBOTS
 from tests.random_robots import make_frame, make_robot, random_robot
 
 Z = (0, 0, 1)
@@ -138,7 +139,7 @@ def test_every_pair_of_components_is_compared_or_left_out_with_a_reason(case):
 
 
 def test_the_shipped_robots_compare_as_many_pairs_as_ever():
-    count = {name: len(CollisionModel.of(r).pairs) for name in ikde.robot_names() for r in [ikde.load_robot(name)]}
+    count = {name: len(CollisionModel.of(r).pairs) for name in ROBOTS for r in [ikde.load_robot(name)]}
     assert count == {"panda": 21, "qiao2021": 35, "qiao2021_dh": 0, "ur5": 15}
     assert len(ikde.load_robot("qiao2021").pair_lists[NON_ADJACENT]) == 33
 

@@ -30,6 +30,18 @@ def test_the_list_has_a_line_a_robot():
     assert words_of(text, "qiao2021_dh")[2] == "none"
 
 
+def test_the_list_says_who_published_the_frames():
+    listed = {entry["name"]: entry["source"] for entry in robots_json(map(ikde.load_robot, ikde.robot_names()))}
+    assert (listed["ur5"], listed["qiao2021"]) == ("Universal Robots", "Qiao2021")
+    assert robots_json([load_text(ENDLESS)])[0]["source"] == ""
+
+
+def test_the_list_fits_60_columns_with_joints_and_source():
+    text = format_robots(map(ikde.load_robot, ikde.robot_names()), width=60)
+    assert max(map(len, text.splitlines())) <= 60
+    assert words_of(text, "robot") == ["robot", "joints", "frames", "from", "title"]
+
+
 def test_json_is_plain_and_in_metres_and_radians(any_robot):
     data = json.loads(json.dumps(robot_json(CollisionModel.of(any_robot)), allow_nan=False))
     assert [joint["lower"] for joint in data["joints"]] == any_robot.lower.tolist()

@@ -28,6 +28,11 @@ def test_a_part_inside_another_vanishes(outer: Floats) -> None:
     np.testing.assert_array_equal(left[0], outer)
 
 
+def test_a_part_inside_two_others_vanishes_once() -> None:
+    left = outer_triangles([CUBE, box(0.12, 0.12, 0.12) - 0.005, 0.5 * CUBE + 0.02])
+    assert len(left[2]) == 0
+
+
 def test_two_that_are_the_same_both_stay() -> None:
     assert [len(left) for left in outer_triangles([CUBE, CUBE])] == [12, 12]
 

@@ -59,15 +59,15 @@ def choose_tool(description: Description, tree: LinkTree, tool: str | None, base
 
     If none is moved by a joint of the file but its base is, all leaves are.
     """
-    if tool is not None:
-        if tool not in description.links:
-            known = nearest(tool, description.links) or f"; it has {list_names(tree.order)}"
-            raise FileError(description.path, f"no link is called {quoted(tool)}{known}", ("tool",))
+    if tool in description.links:
         return tool
     parents = {joint.parent for joint in tree.joint_of.values()}
     leaves = [link for link in tree.order if link not in parents]
     moved = [leaf for leaf in leaves if any(joint.kind != "fixed" for joint in tree.path(leaf))]
     moved = leaves if base_moves and not moved else moved
+    if tool is not None:
+        known = nearest(tool, description.links) or f"; its ends are {list_names(moved or leaves)}"
+        raise FileError(description.path, f"no link is called {quoted(tool)}{known}", ("tool",))
     if len(moved) != 1:
         found = f"it has {len(moved)} ends: {list_names(moved)}" if moved else "no joint of it moves"
         raise FileError(

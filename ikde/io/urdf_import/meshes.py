@@ -8,14 +8,15 @@ from urllib.parse import unquote
 from ikde.errors import FileError, quoted, shorten
 
 PACKAGE = ("package://", "model://")
+LOCAL = "file://"
 MAX_SHOWN = 50  # characters of a mesh's name, the last ones
 
 
 def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | None = None) -> Path:
     """The file that a mesh's name stands for.
 
-    `package://NAME/rest` is `NAME/rest` in one of the folders, or `rest` in a folder that is itself called NAME;
-    anything else is a path beside the file.
+    `package://NAME/rest` is `NAME/rest` in one of the folders, or in a folder that is itself called NAME, or like one
+    in rest, what follows that; anything else is a path beside the file.
 
     Raises:
         FileError: for a mesh that is missing, no regular file, or outside all folders.
@@ -33,28 +34,39 @@ def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | 
     except (OSError, ValueError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or "no path"
         raise FileError(urdf, f"the mesh {quoted(name)} cannot be looked for: {reason}", (), line) from None
-    found = "lies outside this folder" if outside and not name.startswith(PACKAGE) else "is not in this folder"
     shown = quoted(shorten(name, MAX_SHOWN, keep_end=True))
+    if "://" in name and not name.startswith((*PACKAGE, LOCAL)):
+        raise FileError(urdf, f"the mesh {shown} is no file on this machine, and none is fetched", (), line)
+    found = "lies outside this folder" if outside and not name.startswith(PACKAGE) else "is not in this folder"
     message = f"the mesh {shown} {found}; try --package-path {_suggest_folder(urdf, name)}, or --no-spheres"
     raise FileError(urdf, message, (), line)
 
 
 def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
-    for scheme in PACKAGE:
-        if name.startswith(scheme):
-            package, _, rest = unquote(name.removeprefix(scheme)).partition("/")
-            own = [folder / rest for folder in folders if folder.resolve().name == package]
-            return [*(folder / package / rest for folder in folders), *own]
-    if name.startswith("file://"):
-        return [Path(unquote(name.removeprefix("file://")))]
+    if parts := _split_package(name):
+        within = [(folder, k) for folder in folders for k in _find_all(folder.resolve().name, parts)]
+        return [*(folder.joinpath(*parts) for folder in folders), *(f.joinpath(*parts[k + 1 :]) for f, k in within)]
+    if name.startswith(LOCAL):
+        return [Path(unquote(name.removeprefix(LOCAL)))]
     if "://" in name:
         return []
     return [folder / name for folder in folders]
 
 
 def _suggest_folder(urdf: Path, name: str) -> str:
-    """The folder above the URDF that holds the package, going by names alone, as short as it can be written."""
-    package = next((name.removeprefix(s).partition("/")[0] for s in PACKAGE if name.startswith(s)), None)
-    above = urdf.absolute().parents
-    holder = next((str(folder.parent) for folder in above if folder.name == package), None)
-    return "FOLDER" if holder is None else min(holder, os.path.relpath(holder), key=len)
+    """The folder above the URDF that holds the package or a part of it, going by names alone, written shortly."""
+    parts, above = _split_package(name), urdf.absolute().parents
+    holders = [str(folder.parent) for folder in above if folder.name in parts[:1]]
+    holders += [str(folder) for folder in above if _find_all(folder.name, parts[1:])]
+    return min(holders[0], os.path.relpath(holders[0]), key=len) if holders else "FOLDER"
+
+
+def _split_package(name: str) -> list[str]:
+    """The package and the folders below it, and the file; nothing for other names."""
+    scheme = next((scheme for scheme in PACKAGE if name.startswith(scheme)), None)
+    return [] if scheme is None else [part for part in unquote(name.removeprefix(scheme)).split("/") if part]
+
+
+def _find_all(folder: str, parts: list[str]) -> list[int]:
+    """Where a folder's name stands before the file."""
+    return [k for k, part in enumerate(parts[:-1]) if folder and part == folder]

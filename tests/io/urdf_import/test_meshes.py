@@ -38,6 +38,16 @@ def test_a_package_is_a_folder_in_one_that_is_named_or_that_folder(robot):
         assert find_mesh(robot, f"{scheme}://arm/meshes/a.stl", (robot.parents[1],)) == mesh
 
 
+def test_a_folder_that_the_name_passes_through_holds_what_follows(robot):
+    """Part of a package, copied: `package://all/robots/arm/meshes/a.stl` in a folder called arm."""
+    arm, mesh = robot.parents[1], robot.parents[1] / "meshes" / "a.stl"
+    assert find_mesh(robot, "package://all/robots/arm/meshes/a.stl", (arm,)) == mesh
+    shown = min(str(arm), os.path.relpath(arm), key=len)
+    reject(robot, "package://all/robots/arm/meshes/a.stl", f"try --package-path {shown}, or --no-spheres")
+    reject(robot, "package://all/robots/other/meshes/a.stl", "is not in this folder", arm)
+    reject(robot, "package://all/arm/../../secret.stl", "is not in this folder", arm)
+
+
 def test_a_missing_mesh_names_the_folder_to_give(robot):
     top = robot.parents[2]
     reject(
@@ -77,7 +87,7 @@ def test_a_link_in_a_circle_and_a_name_that_is_no_path_are_one_line(robot):
 
 
 def test_no_mesh_comes_from_the_network(robot):
-    reject(robot, "http://example.com/a.stl", "is not in this folder")
+    reject(robot, "http://example.com/a.stl", "is no file on this machine, and none is fetched")
 
 
 def test_a_package_path_that_is_not_there_is_one_line(robot):

@@ -15,10 +15,12 @@ NUMBERS = st.sampled_from(["0", "1", "-0.5", "3.2", "1e-7", "1e5", "1e300", "inf
 VECTORS = st.sampled_from(
     ["0 0 1", "1 2 3", "0 0 0", "1e5 0 0", "1e200 1 1", "nan 0 0", "1 2", "", "a b c", "0.1 -0.2 0.3"]
 )
+SCALES = st.sampled_from(["1 1 1", "1 -1 1", "0.001 0.001 0.001", "0 1 1", "1e5 1 1", "nan 1 1"])
 LINKS = st.sampled_from(["base", "a", "b", "c", "tool", "world"])
 JOINTS = st.sampled_from(["j", "k", "m", "base_x"])
 KINDS = st.sampled_from(["revolute", "continuous", "prismatic", "fixed", "planar", "floating", "ball"])
-SHAPES = st.sampled_from(["sphere", "mesh", "blob"])
+SHAPES = st.sampled_from(["sphere", "box", "cylinder", "capsule", "mesh", "blob"])
+MESHES = st.sampled_from(["a.stl", "b.obj", "package://arm/a.stl", "../a.stl", "file:///etc/passwd", "b.obj/"])
 
 
 @st.composite
@@ -26,7 +28,8 @@ def links(draw):
     name = draw(LINKS)
     inside = ""
     if draw(st.booleans()):
-        shape = f'<{draw(SHAPES)} radius="{draw(NUMBERS)}" size="{draw(VECTORS)}" length="1" filename="a.stl"/>'
+        sizes = f'radius="{draw(NUMBERS)}" size="{draw(VECTORS)}" length="1" scale="{draw(SCALES)}"'
+        shape = f'<{draw(SHAPES)} {sizes} filename="{draw(MESHES)}"/>'
         inside += f'<collision><origin rpy="{draw(VECTORS)}"/><geometry>{shape}</geometry></collision>'
     if draw(st.booleans()):
         moments = f'<inertia ixx="{draw(NUMBERS)}" iyy="1" izz="1" ixy="{draw(NUMBERS)}"/>'
@@ -52,6 +55,7 @@ def joints(draw):
     st.sampled_from([None, "a", "tool"]),
 )
 def test_a_file_of_any_pieces_is_a_robot_or_one_line(tmp_path, some_links, some_joints, base, tool):
+    write(tmp_path, "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", "b.obj")
     path = write(tmp_path, f"<robot>{''.join([*some_links, *some_joints])}</robot>")
     answer_or_refuse(path, ImportOptions(base=base, tool=tool))
 

@@ -21,6 +21,7 @@ from ikde.model.generate import assemble, module
 from ikde.model.generate.collision import count_sphere_pairs, count_tests
 from ikde.model.target import KINDS
 from tests.collision_robots import SHIPPED, name_case
+from tests.conftest import ROBOTS
 from tests.hostile_names import rename
 from tests.three_joints import CROWDED, crowd
 
@@ -47,7 +48,7 @@ def functions_of(text):
 
 
 @each_kind
-@pytest.mark.parametrize("name", ikde.robot_names())
+@pytest.mark.parametrize("name", ROBOTS)
 def test_a_module_is_python_of_one_robot(name, kind):
     robot, text = ikde.load_robot(name), text_of(name, kind)
     names = [function.name for function in functions_of(text)]

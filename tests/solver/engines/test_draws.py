@@ -12,7 +12,7 @@ from ikde.model.pack import pack_robot
 from ikde.solver.engines import draws
 from ikde.solver.problem import pack_searched
 from tests.collision_robots import CASES, away_from_contact, find_gaps, name_case
-from tests.conftest import random_q
+from tests.conftest import ROBOTS, random_q
 from tests.random_robots import random_robot
 from tests.uncompiled import plain, plain_module, quietly
 
@@ -37,7 +37,7 @@ def test_sines_of_arrays_are_those_of_the_kernels(rng):
     assert np.array(draws.sin_cos(np.array(angles))).tobytes() == expected.tobytes()
 
 
-@pytest.mark.parametrize("robot", [*map(ikde.load_robot, ikde.robot_names()), *map(random_robot, range(6))])
+@pytest.mark.parametrize("robot", [*map(ikde.load_robot, ROBOTS), *map(random_robot, range(6))])
 def test_tools_stand_where_the_kernels_put_them(robot, rng, monkeypatch):
     monkeypatch.setattr(draws, "CHUNK", 4)
     arrays, Q = pack_robot(robot), random_q(robot, rng, 10)
