@@ -58,6 +58,12 @@ details: ikde.ImportedUrdf = ikde.read_urdf("my.urdf")
 options = ikde.ImportOptions()
 composed = ikde.compose("qiao2021", imported, np.eye(4))
 
+world: ikde.World = ikde.load_world("kitchen.yaml")
+notes = ikde.read_world("kitchen.yaml").notes
+among = ikde.CollisionModel.of("ur5").in_world(world.remove("lamp"), 0.005, {"wrist_3": 0.0})
+result = ikde.solve("ur5", (0.4, 0.2, 0.3), collision=among)
+files: tuple[Path, ...] = ikde.write_world(world, "copy.yaml", ["a note"])
+
 batch = ikde.load_batch("batch.yaml")
 ikde.run_batch(batch, "run")
 table = ikde.read_batch("run")

@@ -50,7 +50,8 @@ def find_urdf(file: str) -> tuple[Path, tuple[Path, ...]]:
 def robot_path(name_or_path: str | Path) -> Path:
     """The file behind a name or a path; raises `InputError` for an unknown name."""
     text = str(name_or_path)
-    if isinstance(name_or_path, Path) or is_file_name(text) or (text not in robot_names() and is_there(text)):
+    is_file = is_there(text) and Path(text).is_file()
+    if isinstance(name_or_path, Path) or is_file_name(text) or (text not in robot_names() and is_file):
         return Path(name_or_path)
     if text not in robot_names():
         known = ", ".join(robot_names())
