@@ -12,8 +12,11 @@ from ikde.model.robot import WORLD, AdjacentPair, Detector, Pairs, Robot
 from ikde.model.tree import build_tree
 from ikde.model.validate import NON_ADJACENT, check_robot
 from ikde.solver.pair_verdicts import PairVerdict, judge_pairs
+from ikde.solver.plain import compute_gaps
+from ikde.solver.touching import draw_configurations
 
 SPHERES = "spheres"
+TRIED, OFTEN, NAMED = 200, 0.25, 3  # configurations; the share of them in which a pair touches often; pairs in a line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +154,20 @@ def leave_out_touching(
         return ChosenPairs(robot=check_robot(draft), warnings=(*notes, _NONE_LEFT))
     robot = check_robot(replace(draft, detectors=detectors, default_detector=detector.name))
     never = tuple(pair for pair, verdict in verdicts.items() if verdict.touches == "never" and verdict.is_proved)
-    return ChosenPairs(robot=robot, never=never, warnings=tuple(notes))
+    return ChosenPairs(robot=robot, never=never, warnings=(*notes, *_note_often(CollisionModel.of(robot))))
+
+
+def _note_often(collision: CollisionModel) -> list[str]:
+    """What is said of pairs that touch so often that few configurations are free: spheres that are too coarse."""
+    drawn = draw_configurations(collision.robot)[:TRIED]
+    hits = compute_gaps(collision, drawn) <= collision.limit_m
+    shares = dict(zip(collision.pairs, hits.mean(axis=0).tolist(), strict=True))
+    often = sorted((pair for pair in shares if shares[pair] >= OFTEN), key=lambda pair: -shares[pair])
+    if not often:
+        return []
+    named = ", ".join(f"{a} - {b} ({shares[a, b]:.0%})" for a, b in often[:NAMED])
+    free = f"{1.0 - hits.any(axis=1).mean():.0%} of {TRIED} random configurations are free of self-collision"
+    return [f"{free}; most often these touch: {named}; spheres that stand out less (--protrusion) may keep them apart"]
 
 
 _NONE_LEFT = "no two links are left that could collide: self-collision is not checked"

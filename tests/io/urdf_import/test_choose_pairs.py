@@ -122,3 +122,15 @@ def test_a_pair_that_there_is_not_is_named(tmp_path, pair, message):
     with pytest.raises(FileError) as caught:
         choose(tmp_path, compare=(pair,))
     assert f"compare.{pair[0]}:{pair[1]}: {message}" in str(caught.value)
+
+
+def test_pairs_that_touch_often_are_said_with_what_may_help(tmp_path):
+    assert not [note for note in choose(tmp_path).warnings if "random configurations" in note]
+    path = write(tmp_path, WRIST.replace(ball("post", "0.2 0 0"), ball("post", "0.2 0 0", 0.12)))
+    imported = read_urdf(path, ImportOptions(tool="tip"))
+    said = next(note for note in imported.warnings if "random configurations" in note)
+    assert "of 200 random configurations are free of self-collision; most often these touch: hook - post (" in said
+    assert said.endswith("spheres that stand out less (--protrusion) may keep them apart")
+    share = float(said.split("hook - post (")[1].split("%")[0])
+    # Circles of 0.2 m: they touch where 2 * 0.2 * sin(turn / 2) <= 0.17, at most 0.878 rad of 3 either way.
+    assert abs(share - 100 * 0.878 / 3.0) < 10.0

@@ -55,7 +55,7 @@ def test_pairs_that_always_touch_are_found_anew(arm):
 def test_a_home_that_collides_now_is_a_warning(arm):
     home = ikde.check(arm, arm.home).clearance_m
     _, notes = exchange_spheres(arm, make("fore", (0, 0, 0, 0.04 + home + 0.01)))
-    assert notes == ["home collides with these spheres"]
+    assert notes[-1] == "home collides with these spheres"
 
 
 def test_the_safe_distance_is_kept(arm):
