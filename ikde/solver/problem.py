@@ -93,7 +93,8 @@ class Problem:
     def without_obstacle(self, name: str) -> "Problem":
         """The same question in a world without one obstacle."""
         model = self.collision
-        return replace(self, collision=model.own.in_world(model.world.remove(name), model.margin_m))
+        kept = model.own.in_world(model.world.remove(name), model.margin_m, dict(model.margins_m))
+        return replace(self, collision=kept)
 
     def with_settings(self, **changes: object) -> "Problem":
         """The same question with some settings changed."""

@@ -10,6 +10,8 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import FEASIBILITY, IGNORE, REJECT
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.collision_model import CollisionModel
+from ikde.model.solids import make_solid
+from ikde.model.world import make_obstacle, make_world
 from ikde.solver.problem import make_problem, pack_search, pack_searched
 from ikde.solver.settings import SolveSettings
 from tests.endless_robot import ENDLESS
@@ -216,3 +218,17 @@ def test_slides_do_not_turn(qiao):
 def test_what_names_no_joints_is_refused_as_freeze(qiao, freeze):
     with pytest.raises(InputError, match=r"^freeze: expected"):
         make_problem(qiao, SolveSettings(), collision=None, near=None, freeze=freeze)
+
+
+def test_without_an_obstacle_the_other_distances_are_kept(qiao):
+    balls = [make_obstacle(name, [make_solid("sphere", (0.1,))], T) for name, T in (("a", far(3.0)), ("b", far(4.0)))]
+    model = CollisionModel.of(qiao).in_world(make_world(balls), 0.02, {"LT": 0.05})
+    left = problem_of(qiao, collision=model).without_obstacle("a").collision
+    assert left.world.names == ("b",)
+    assert (left.margin_m, left.margins_m) == (0.02, (("LT", 0.05),))
+
+
+def far(x):
+    T = np.eye(4)
+    T[0, 3] = x
+    return T
