@@ -95,12 +95,19 @@ def compute_gaps(
     Without `pairs` those of components and obstacles follow (`compute_world_gaps`). `Ts_world`: the frames at `q`, if
     they are known.
     """
-    if pairs is None:
-        Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
-        own = compute_gaps(collision, q, collision.pairs, Ts_world)
-        if not collision.obstacles:
-            return own
-        return np.concatenate([own, compute_world_gaps(collision, q, Ts_world)], axis=-1)
+    if pairs is not None:
+        return _compute_own_gaps(collision, q, pairs, Ts_world)
+    Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
+    own = _compute_own_gaps(collision, q, collision.pairs, Ts_world)
+    if not collision.obstacles:
+        return own
+    return np.concatenate([own, compute_world_gaps(collision, q, Ts_world)], axis=-1)
+
+
+def _compute_own_gaps(
+    collision: CollisionModel, q: Floats, pairs: Pairs, Ts_world: Mapping[str, Floats] | None
+) -> Floats:
+    """Of pairs of components [..., P]."""
     if not pairs:
         return np.empty((*q.shape[:-1], 0))
     components = compute_components(collision, q, Ts_world)

@@ -44,7 +44,7 @@ def test_another_shell_is_refused(refuse, words):
     [
         ("ikde che", ["check"]),
         ("ikde solve --near", ["--near"]),
-        ("ikde solve --robot pa", ["panda"]),
+        ("ikde solve --robot pa", ["panda", "panda_hand"]),
         ("ikde solve --robot ur5 --freeze elbow", ["elbow_joint"]),
         ("ikde check --detector im", ["improved"]),
         ("ikde robots show panda --detector ", ["default", "none"]),

@@ -13,7 +13,7 @@ from tests.random_robots import random_robot
 ROBOTS = [ikde.load_robot("qiao2021"), *map(random_robot, range(6))]
 SHAPES = {
     "bodies": 2, "T_parent_body": 3, "frame_body": 1, "T_body_frame": 3, "p_body_sphere": 2, "radius": 1,
-    "components": 2, "bounds": 2, "pairs": 2, "rows": 2, "offset": 1, "kind": 1, "T_world_tool": 3,
+    "components": 2, "bounds": 2, "pairs": 2, "rows": 2, "offset": 1, "kind": 1, "T_world_tool": 3, "world": 1,
 }  # fmt: skip
 INDICES = ("frame_body", "components", "pairs", "rows")  # without a sign
 DTYPES = {"bodies": np.int64, "kind": np.int64} | dict.fromkeys(INDICES, np.uint64)
