@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
-SEED, FILES = 2, 400
+SEED, FILES = 2, 250
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +33,9 @@ def test_a_mutated_file_is_an_answer_or_one_line(fuzzer):
 
 def test_the_same_number_is_the_same_file(fuzzer):
     module, files = fuzzer
-    forwards = [files.make(SEED, number) for number in range(FILES)]
-    assert forwards == [files.make(SEED, number) for number in reversed(range(FILES))][::-1]
+    numbers = range(100)
+    forwards = [files.make(SEED, number) for number in numbers]
+    assert forwards == [files.make(SEED, number) for number in reversed(numbers)][::-1]
     assert [files.make(SEED, number)[0] for number in range(16)] == list(module.KINDS)
 
 
