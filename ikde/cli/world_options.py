@@ -27,19 +27,22 @@ NEAR_M = 0.02  # a gap that could be asked for as a margin
 def place_in_world(
     collision: "CollisionModel", world: Path | None, margin: str | None, unit: LengthUnit
 ) -> "CollisionModel":
-    """The robot in the world of a file; says on stderr what stands near an obstacle whatever the joints do."""
+    """The robot in the world of a file; stderr says how it was read, and what is near whatever joints do."""
     from ikde.errors import InputError
 
     if world is None:
         if margin is not None:
             raise InputError("a margin needs a --world to be kept from", ("margin",))
         return collision
-    from ikde.io.world_file import load_world
+    from ikde.io.world_file import read_world
     from ikde.solver.standing import find_standing_obstacles, refuse_touching
 
     margin_m, margins_m = read_margins(margin, unit)
-    model = collision.in_world(load_world(world), margin_m, margins_m)
+    found = read_world(world)
+    model = collision.in_world(found.world, margin_m, margins_m)
     refuse_touching(model)
+    for note in found.notes:
+        print_note(f"ikde: {note}")
     near = [pair for pair in find_standing_obstacles(model) if pair.clearance_m <= NEAR_M]
     if near:
         near.sort(key=lambda pair: pair.clearance_m)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.plot.images import show_as_text
-from ikde.plot.pose import find_eye
+from ikde.plot.style import find_eye
 from ikde.scene.drawn_motion import DrawnMotion
 from ikde.scene.drawn_pose import COLORS, Role
 

@@ -9,7 +9,8 @@ import numpy as np
 from ikde.errors import FileError
 from ikde.kernels.arrays import Floats
 from ikde.plot.images import any_letters, show_as_text
-from ikde.plot.style import set_box
+from ikde.plot.style import find_eye, set_box
+from ikde.plot.world import draw_obstacles
 from ikde.scene.drawn_pose import AXIS_COLORS, COLORS, DrawnPose, DrawnRobot, Mark, Role
 
 MESH = 24  # facets around a sphere
@@ -48,6 +49,7 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0), vie
     axes.plot(*pose.robot.links_m.T, color=COLORS[Role.LINK], linewidth=LINK_PT, zorder=5, label="links", **look)
     _draw_axes(axes, pose.Ts_world_frame, length_m=0.15, dashes=SOLID, width=2.5)
     _draw_spheres(axes, pose.robot)
+    draw_obstacles(axes, pose.obstacles)
     for mark in pose.marks:
         _draw_mark(axes, mark)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=pose.title)
@@ -151,12 +153,6 @@ def _draw_mark(axes: Any, mark: Mark) -> None:
         axes.scatter(*mark.points_m.T, marker="*", s=160, depthshade=False, zorder=11, **look)
     else:
         axes.plot(*mark.points_m.T, "o-", linewidth=2.5, markersize=4, zorder=10, **look)
-
-
-def find_eye(elevation_deg: float, azimuth_deg: float) -> Floats:
-    """Direction [3] from what is drawn to the eye."""
-    elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
-    return np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
 
 
 def _set_box(axes: Any, box_m: Floats, half_m: float, height_m: float) -> None:

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ikde.kernels.arrays import Floats
 from ikde.plot.images import INK, show_as_text
 
@@ -113,6 +115,12 @@ def set_box(axes: Any, low: Floats, high: Floats, *, zoom: float = 1.0) -> None:
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.set_zlim(low[2], high[2])
     axes.set_box_aspect(high - low, zoom=zoom)
+
+
+def find_eye(elevation_deg: float, azimuth_deg: float) -> Floats:
+    """Direction [3] from what is drawn to the eye."""
+    elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
+    return np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
 
 
 def legend_name(name: str) -> str:

@@ -4,7 +4,7 @@ Renderers place these things in the colours of their roles; they compute no geom
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -17,6 +17,8 @@ from ikde.model.pairs import component_bodies
 from ikde.model.robot import WORLD, Robot
 from ikde.model.target import Target
 from ikde.model.tree import build_tree
+from ikde.scene.drawn_near import draw_near, reach_obstacle
+from ikde.scene.drawn_world import DrawnObstacle
 from ikde.solver.plain import compute_components, compute_frames, compute_gaps, compute_sphere_gaps
 
 NOT_CHECKED = "self-collision not checked"
@@ -33,6 +35,8 @@ class Role(StrEnum):
     CLOSEST = "closest pair"
     TARGET = "target"
     LINK = "link"
+    OBSTACLE = "obstacle"
+    TOUCHED = "obstacle that is too near"
 
 
 COLORS: Mapping[Role, str] = {  # as the paper draws it: arm red, platform blue, collisions black
@@ -42,6 +46,8 @@ COLORS: Mapping[Role, str] = {  # as the paper draws it: arm red, platform blue,
     Role.CLOSEST: "#0b8a3c",
     Role.TARGET: "#e69f00",
     Role.LINK: "#333333",
+    Role.OBSTACLE: "#6f7f8f",
+    Role.TOUCHED: "#8e24aa",
 }
 AXIS_COLORS = ("#c00000", "#008000", "#0000c0")  # of a frame's x, y and z
 
@@ -62,6 +68,11 @@ class DrawnRobot:
     """Index of each sphere's component [S]."""
     roles: NDArray[np.str_]
     """`Role.ARM`, `BASE` or `COLLIDING` of each component [..., C]."""
+
+    def list_spheres(self, component: str) -> tuple[Floats, Floats]:
+        """Centres [..., S, 3] and radii [S] of a component, m."""
+        own = self.parts == self.components.index(component)
+        return self.centres_m[..., own, :], self.radii_m[own]
 
     def compute_box(self, directions: Floats) -> Floats:
         """Lower and upper corner [2, k] in m around everything, along unit `directions` [k, 3]."""
@@ -94,35 +105,42 @@ class DrawnPose:
     marks: tuple[Mark, ...] = ()
     heading_rad: float = 0.0
     """About the world's z axis, of the base."""
+    obstacles: tuple[DrawnObstacle, ...] = ()
+    """What of them is near."""
 
     def compute_box(self) -> Floats:
-        """Lower and upper corner [2, 3] in m around robot and marks."""
-        points = np.concatenate([self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks)])
+        """Lower and upper corner [2, 3] in m around robot and marks, and what is drawn of obstacles."""
+        solids = [solid for obstacle in self.obstacles for solid in obstacle.solids]
+        parts = [self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks)]
+        points = np.concatenate([*parts, *(part for solid in solids for part in (*solid.polygons_m, solid.points_m))])
         return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = None) -> DrawnPose:
     """The robot at `q` [N] with the spheres that are compared, the closest pair, its tool's axes, and the target."""
-    robot, gaps_m, pairs = collision.robot, compute_gaps(collision, q), len(collision.pairs)
+    robot, gaps_m = collision.robot, compute_gaps(collision, q)
     Ts_world = compute_frames(robot, q)
     drawn = draw_robot(collision, q, gaps_m)
-    marks = []
-    if collision.pairs:
-        closest = int(np.argmin(gaps_m[:pairs]))
-        marks.append(_mark_closest(drawn, *collision.pairs[closest], float(gaps_m[closest])))
+    marks = [_find_closest(collision, drawn, gaps_m, Ts_world)] if collision.pairs else []
     if target is not None:
         marks.append(Mark(points_m=target.p_world_tool[None, :], role=Role.TARGET, text="target"))
     base = Ts_world[_list_chain(robot)[0]]
     heading_rad = float(np.arctan2(base[1, 0], base[0, 0]))
     if base_joints(robot):
         marks.append(_mark_base(base[:2, 3], heading_rad))
-    return DrawnPose(
-        title=f"{robot.name}  ·  {_describe(collision, drawn)}",
+    pose = DrawnPose(
+        title=f"{robot.name}  ·  {_describe(collision, gaps_m)}",
         robot=drawn,
         Ts_world_frame=Ts_world[robot.tool][None],
         marks=tuple(marks),
         heading_rad=heading_rad,
     )
+    if not collision.obstacles:
+        return pose
+    hits = collision.fold(gaps_m <= collision.limit_m)[len(collision.pairs) :]
+    touched = {obstacle.name for obstacle, hit in zip(collision.obstacles, hits.tolist(), strict=True) if hit}
+    near = draw_near(collision.world, Ts_world, pose.compute_box(), touched)
+    return replace(pose, obstacles=near)
 
 
 def draw_frames(robot: Robot, q: Floats, names: Sequence[str], *, title: str) -> DrawnPose:
@@ -158,7 +176,9 @@ def draw_robot(collision: CollisionModel, q: Floats, gaps_m: Floats, links: Sequ
 
 def _choose_roles(collision: CollisionModel, components: Sequence[str], gaps_m: Floats) -> NDArray[np.str_]:
     """The role of each component [..., C]."""
-    base, pairs = base_components(collision), collision.all_pairs
+    base, pairs = base_components(collision), [*collision.pairs]
+    pairs += [(name, "") for name, _ in collision.all_pairs[len(pairs) :]]  # an obstacle may be called like a component
+    pairs = pairs[: gaps_m.shape[-1]]
     involved = np.array([[name in pair for name in components] for pair in pairs], bool)
     touching = (gaps_m <= collision.limit_m)[..., None] & involved.reshape(len(pairs), len(components))
     own = np.where([name in base for name in components], Role.BASE, Role.ARM)
@@ -197,11 +217,16 @@ def base_components(collision: CollisionModel) -> set[str]:
     return {name for name, body in bodies.items() if not set(bodies.values()) & carrying.get(body, set())}
 
 
-def _describe(collision: CollisionModel, drawn: DrawnRobot) -> str:
+def _describe(collision: CollisionModel, gaps_m: Floats) -> str:
     if not collision.pairs:
         return NOT_CHECKED
-    free = "" if Role.COLLIDING in drawn.roles else "free of "
-    return f"detector {collision.name}: {free}self-collision"
+    touching, pairs = gaps_m <= collision.limit_m, len(collision.pairs)
+    own, world = bool(touching[:pairs].any()), bool(touching[pairs:].any())
+    if not collision.obstacles:
+        return f"detector {collision.name}: {'' if own else 'free of '}self-collision"
+    said = {(False, False): "free of self-collision and of the world", (True, True): "self-collision, and in the world"}
+    said |= {(True, False): "self-collision; free of the world", (False, True): "in collision with the world"}
+    return f"detector {collision.name}: {said[own, world]}"
 
 
 def _mark_base(place_m: Floats, heading_rad: float) -> Mark:
@@ -211,10 +236,21 @@ def _mark_base(place_m: Floats, heading_rad: float) -> Mark:
     return Mark(points_m=np.column_stack([corners_m, np.zeros(4)]), role=Role.BASE, text="base, pointing forward")
 
 
+def _find_closest(collision: CollisionModel, drawn: DrawnRobot, gaps_m: Floats, Ts_world: Mapping[str, Floats]) -> Mark:
+    """The mark of what has the least room: two components, or a component and an obstacle."""
+    closest, pairs = int(np.argmin(gaps_m)), len(collision.pairs)
+    a, b = collision.name_pair(closest)
+    gap_m = float(gaps_m[closest]) + collision.extra_m(closest)
+    if closest < pairs:
+        return _mark_closest(drawn, a, b, gap_m)
+    obstacle = collision.obstacles[(closest - pairs) % len(collision.obstacles)]
+    points_m = reach_obstacle(obstacle, drawn.list_spheres(a), Ts_world)
+    return Mark(points_m=points_m, role=Role.CLOSEST, text=f"closest, {a} - {b}: {gap_m * 1e3:.1f} mm")
+
+
 def _mark_closest(drawn: DrawnRobot, a: str, b: str, gap_m: float) -> Mark:
     """A line between the two nearest spheres of two components."""
-    owned = [drawn.parts == drawn.components.index(name) for name in (a, b)]
-    spheres = [(drawn.centres_m[own], drawn.radii_m[own]) for own in owned]
+    spheres = [drawn.list_spheres(name) for name in (a, b)]
     sphere_gaps_m = compute_sphere_gaps(*spheres)
     i, j = np.unravel_index(int(np.argmin(sphere_gaps_m)), sphere_gaps_m.shape)
     points_m = np.array([spheres[0][0][i], spheres[1][0][j]])

@@ -38,6 +38,8 @@ class DrawnObstacle:
     solids: tuple[DrawnSolid, ...]
     is_on: bool
     """False if its group is off."""
+    is_touched: bool = False
+    """True if the robot is nearer than is asked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,7 +62,7 @@ def draw_world(world: World, title: str) -> DrawnWorld:
     box_m = _compute_box(shown)
     obstacles = []
     for obstacle in shown:
-        solids = tuple(_draw_solid(solid, obstacle.T_world_obstacle, box_m) for solid in obstacle.solids)
+        solids = tuple(draw_solid(solid, obstacle.T_world_obstacle, box_m) for solid in obstacle.solids)
         obstacles.append(
             DrawnObstacle(name=obstacle.name, solids=solids, is_on=obstacle.group not in world.switched_off)
         )
@@ -75,13 +77,15 @@ def _compute_box(obstacles: Sequence[Obstacle]) -> Floats:
     for obstacle in obstacles:
         for solid in obstacle.solids:
             if solid.kind != "half_space":
-                drawn = _draw_solid(solid, obstacle.T_world_obstacle, np.zeros((2, 3)))
+                drawn = draw_solid(solid, obstacle.T_world_obstacle, np.zeros((2, 3)))
                 parts += [*drawn.polygons_m, drawn.points_m]
     points = np.concatenate(parts)
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-def _draw_solid(solid: Solid, T_world_obstacle: Floats, box_m: Floats) -> DrawnSolid:
+def draw_solid(solid: Solid, T_world_obstacle: Floats, box_m: Floats) -> DrawnSolid:
+    """A solid where its obstacle stands; of a half-space a square, as large as the box [2, 3]."""
+
     def place(P: Floats) -> Floats:
         for T in (solid.T_obstacle_solid, T_world_obstacle):
             P = P @ T[:, :3].T + T[:, 3]
