@@ -1,12 +1,13 @@
 """Why there is no solution: proved by a bound, or as far as trying tells."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
+from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target
 from ikde.solver.branches import tell_branches
 from ikde.solver.digits import at_least
@@ -30,7 +31,7 @@ from ikde.solver.proof import prove
 from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.touching import find_always_touching
-from ikde.solver.verify import Grade, verify
+from ikde.solver.verify import Bools, Grade, verify
 
 COUNTED = 64  # attempts whose collisions are counted pair by pair
 
@@ -65,6 +66,8 @@ class _Met:
 
     colliding: int
     blocking: Mapping[tuple[str, str], int]
+    often: Mapping[str, str] = field(default_factory=dict)
+    """The component that touched an obstacle most often, by the obstacle; empty where that was not counted."""
 
 
 def stop_from_counts(problem: Problem, found: SearchState) -> Ints:
@@ -168,7 +171,7 @@ def _explain_by_remedies(
     remedy = try_removing(problem, probe, met.blocking)
     remedy = remedy or try_freeing(problem, probe) or try_widening(problem, probe)
     if met.colliding > 0:
-        return _colliding(problem, met, remedy)
+        return _colliding(problem, met, graded, remedy)
     if remedy:
         reason = f"no solution inside the joint ranges found in {_count(found.counts[0, ATTEMPTS])}; {_best(graded)}"
         return Explanation(stop_reason=StopReason.LIMITS, reason=reason, hint=remedy, blocking_pairs={})
@@ -204,11 +207,11 @@ def _ruled_out(
     return Explanation(stop_reason=stop, reason=reason, hint=hint, blocking_pairs=blocking)
 
 
-def _colliding(problem: Problem, met: _Met, remedy: str | None) -> Explanation:
+def _colliding(problem: Problem, met: _Met, graded: Grade, remedy: str | None) -> Explanation:
     own, stop = set(problem.collision.pairs), StopReason.COLLISION
     if not met.blocking.keys() <= own:
         stop = StopReason.WORLD
-    worst = ", ".join(f"{a}-{b} ({n} of {met.colliding})" for (a, b), n in list(met.blocking.items())[:3])
+    worst = ", ".join(_tell_blocker(pair, pair in own, met, graded) for pair in list(met.blocking)[:3])
     collisions = f"{met.colliding} met the target, each in collision; blocked by {worst}"
     return Explanation(
         stop_reason=stop,
@@ -216,6 +219,18 @@ def _colliding(problem: Problem, met: _Met, remedy: str | None) -> Explanation:
         hint=remedy,
         blocking_pairs=met.blocking,
     )
+
+
+def _tell_blocker(pair: tuple[str, str], is_own: bool, met: _Met, graded: Grade) -> str:
+    """Two components, or an obstacle and who touches it: most often if that was counted, else in the best answer."""
+    count = f"{met.blocking[pair]} of {met.colliding}"
+    if is_own:
+        return f"{'-'.join(pair)} ({count})"
+    name = pair[1]
+    if name in met.often:
+        return f"{name} ({count}, most often {met.often[name]})"
+    best = [a for a, b in graded.colliding_pairs if b == name]
+    return f"{name} ({count}{f', the best by {best[0]}' if best else ''})"
 
 
 def _spent(found: SearchState, graded: Grade, hint: str | None) -> Explanation:
@@ -274,5 +289,15 @@ def _count_pairs(problem: Problem, found: SearchState) -> _Met:
     collision = problem.collision
     if not collision.pairs or not len(met):
         return _Met(0, {})
-    hits = collision.fold(compute_gaps(collision, met) <= collision.limit_m).sum(axis=0)
-    return _Met(len(met), count_blocking_pairs(collision.counted, hits))
+    touching = compute_gaps(collision, met) <= collision.limit_m
+    blocking = count_blocking_pairs(collision.counted, collision.fold(touching).sum(axis=0))
+    return _Met(len(met), blocking, _find_often(collision, touching))
+
+
+def _find_often(collision: CollisionModel, touching: Bools) -> dict[str, str]:
+    """The component that touches each obstacle most often, of flags [K, P + C O]."""
+    if not collision.obstacles:
+        return {}
+    counts = touching[:, len(collision.pairs) :].sum(axis=0).reshape(len(collision.components), -1)
+    most = zip(collision.obstacles, counts.argmax(axis=0).tolist(), counts.any(axis=0).tolist(), strict=True)
+    return {obstacle.name: collision.components[place] for obstacle, place, is_any in most if is_any}

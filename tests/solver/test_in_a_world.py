@@ -1,6 +1,7 @@
 """Solving among obstacles: what is called free is free for plain numpy, one by one and in bulk."""
 
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -140,3 +141,42 @@ def test_a_world_alone_comes_with_the_default_detector():
     world = make_world([post(1.5, 1.5)])
     checked = ikde.check(ROBOT, ROBOT.home, world)
     assert (checked.collision, checked.obstacles[0].obstacle, checked.obstacles[0].margin_m) == (False, "post", 0.0)
+
+
+def test_a_reason_names_the_obstacle_and_who_touches_it(rng):
+    q = free_q(3)[2]
+    target, tool = meet(ROBOT, q, "position"), ikde.forward(ROBOT, q)[ROBOT.tool][:3, 3]
+    model = OWN.in_world(make_world([post(tool[0], tool[1], 0.02, "pole")]))
+    for method, who in (("memetic", "most often hand"), ("de", "the best by hand")):
+        reason = ikde.solve(ROBOT, target, collision=model, method=method).reason
+        assert re.search(rf"blocked by (.*, )?pole \(\d+ of \d+, {who}\)", reason), reason
+
+
+def test_distinct_solutions_are_each_free(rng):
+    model, target = OWN.in_world(crowd(rng), 0.01), meet(ROBOT, free_q(5)[4], "position")
+    alone = ikde.solve_distinct(ROBOT, target, 3)
+    found = ikde.solve_distinct(ROBOT, target, 3, collision=model, rank="clearance")
+    assert 1 <= len(found) <= len(alone)
+    assert found[0].reached
+    for result in found:
+        assert is_free(model, result.q)
+        assert (result.collision, result.verified) == (False, True)
+    room = [result.clearance_m for result in found]
+    assert room == sorted(room, reverse=True)
+
+
+def test_what_is_frozen_stays_and_is_checked_against_the_world(rng):
+    q = free_q(3)[2]
+    target, tool = meet(ROBOT, q, "position"), ikde.forward(ROBOT, q)[ROBOT.tool][:3, 3]
+    frozen = dict(zip(ROBOT.joint_names, q.tolist(), strict=True))
+    pole = make_world([post(tool[0], tool[1], 0.02, "pole")])
+    far = make_world([post(tool[0] + 0.5, tool[1], 0.02, "pole")])
+    free = ikde.solve(ROBOT, target, collision=OWN.in_world(far), freeze=frozen)
+    assert (free.reached, free.q.tolist()) == (True, q.tolist())
+    blocked = ikde.solve(ROBOT, target, collision=OWN.in_world(pole), freeze=frozen)
+    assert (blocked.reached, blocked.stop_reason) == (False, "world")
+    assert "pole" in blocked.reason
+    model = OWN.in_world(crowd(rng), 0.01)
+    result = ikde.solve(ROBOT, target, collision=model, freeze={"reach": float(q[2])})
+    assert result.q[2] == q[2]
+    assert not result.reached or is_free(model, result.q)
