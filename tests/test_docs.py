@@ -1,6 +1,7 @@
 """The examples of the documentation, loaded and run as their readers would."""
 
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import yaml
 
 import ikde
+from ikde.cli.app import run
 
 ROOT = Path(__file__).parent.parent
 PAGES = {page.name: page.read_text(encoding="utf-8") for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]}
@@ -115,6 +117,25 @@ def test_a_python_example_of_a_world_writes_it(tmp_path, monkeypatch):
     names = {"ikde": ikde}
     exec(compile(PYTHON["worlds.md"][0].values[0], "example", "exec"), names)
     assert ikde.load_world("ball.yaml").digest == names["world"].digest
+
+
+def test_the_example_of_a_world_is_solved_and_blocked(capsys):
+    names = {}
+    exec(compile(PYTHON["worlds.md"][1].values[0], "example", "exec"), names)
+    assert names["result"].reached
+    assert ikde.check("ur5", names["result"].q, names["model"]).collision is False
+    assert (names["blocked"].reached, names["blocked"].stop_reason) == (False, "world")
+    assert names["blocked"].hint.startswith("without can")
+    assert capsys.readouterr().out.endswith("True\n")
+
+
+def test_the_commands_of_a_world_run_in_its_first_example(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("world.yaml").write_text(WORLDS[0].values[0], encoding="utf-8")
+    (block,) = find_blocks("worlds.md", "bash", having="--world")
+    for line in block.values[0].splitlines():
+        assert run(shlex.split(line)[1:]) == 0, capsys.readouterr()
+    assert Path("answer.png").exists()
 
 
 @pytest.mark.parametrize("text", [block for blocks in PYTHON.values() for block in blocks])

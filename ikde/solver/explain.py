@@ -222,7 +222,7 @@ def _colliding(problem: Problem, met: _Met, graded: Grade, remedy: str | None) -
 
 
 def _tell_blocker(pair: tuple[str, str], is_own: bool, met: _Met, graded: Grade) -> str:
-    """Two components, or an obstacle and who touches it: most often if that was counted, else in the best answer."""
+    """Two components, or an obstacle and what touches it: most often if that was counted, else in the best answer."""
     count = f"{met.blocking[pair]} of {met.colliding}"
     if is_own:
         return f"{'-'.join(pair)} ({count})"

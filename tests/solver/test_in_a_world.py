@@ -143,7 +143,7 @@ def test_a_world_alone_comes_with_the_default_detector():
     assert (checked.collision, checked.obstacles[0].obstacle, checked.obstacles[0].margin_m) == (False, "post", 0.0)
 
 
-def test_a_reason_names_the_obstacle_and_who_touches_it(rng):
+def test_a_reason_names_the_obstacle_and_what_touches_it(rng):
     q = free_q(3)[2]
     target, tool = meet(ROBOT, q, "position"), ikde.forward(ROBOT, q)[ROBOT.tool][:3, 3]
     model = OWN.in_world(make_world([post(tool[0], tool[1], 0.02, "pole")]))

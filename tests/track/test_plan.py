@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import ikde
 from ikde.errors import InputError
+from ikde.model.collision_model import CollisionModel
 from ikde.track.limits import MotionLimits
 from ikde.track.plan import TrackPlan
 from ikde.track.settings import ContinuationSettings, OptimizedSettings
@@ -23,6 +25,14 @@ def test_joints_are_frozen_where_the_start_has_them(qiao):
     frozen = TrackPlan.of(qiao, PATH, start=start, freeze={"q1": None, "q2": 0.5}).frozen
     assert frozen == {"q1": start[3], "q2": 0.5}
     assert TrackPlan.of(qiao, PATH, freeze=["q1"]).frozen == {"q1": qiao.home[3]}
+
+
+def test_a_world_is_refused_since_a_track_is_not_checked_against_one(qiao):
+    wall = ikde.load_world({"obstacles": {"wall": {"box": [0.1, 2, 2], "position": [5, 0, 1]}}})
+    with pytest.raises(InputError, match=r"^collision: a track is not checked against a world: leave it out$"):
+        TrackPlan.of(qiao, PATH, collision=wall)
+    with pytest.raises(InputError, match="a track is not checked against a world"):
+        ikde.follow_path(qiao, PATH, collision=CollisionModel.of(qiao).in_world(wall))
 
 
 def test_typical_ignores_the_drive(qiao):
