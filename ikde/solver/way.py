@@ -74,7 +74,9 @@ class Way:
         self.waited_s, self.compile_s = 0.0, 0.0
 
     def begin(self, *arguments: Any) -> bool:
-        """A call while machine code is not there, or the one that waits for it."""
+        """A call while machine code is not there, the one that waits for it, or a later part of that question."""
+        if self.machine is not None:
+            return self.machine(*arguments)
         *block, T_world_tool, seed, stream, first, last, row = arguments
         bound = self._kernel.bind(*block)
         if first > 0 or answers_plainly(bound, self._question):

@@ -63,3 +63,13 @@ def test_what_it_waits_for_is_named_counted_and_told_once(asked, substitute, cap
     waited_s, compile_s = way.take_waited_s()
     assert waited_s >= compile_s > 0.0
     assert way.take_waited_s() == (0.0, 0.0)
+
+
+def test_further_attempts_of_the_question_that_waited_are_machine_code(asked, substitute, capsys):
+    way, kernel = asked
+    substitute(way_module.answers_plainly, lambda answer, question: False)
+    assert way.begin(*CALL)
+    kernel.ran.clear()
+    assert way.begin(*CALL[:4], 16, 400, CALL[6])
+    assert kernel.ran == ["compiled"]
+    assert capsys.readouterr().err.count("compiling") == 1
