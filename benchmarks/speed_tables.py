@@ -24,14 +24,14 @@ def format_five(call: Record, bulk: Record, tracks: Record) -> str:
     task = next(one for one in tracks["tracks"] if one["drive"] == "differential")
     run = next(run for run in task["runs"] if run["method"] == "continuation")
     rows = (
-        ("`ikde.solve` in a loop, a pose", call[FIVE]["after"], "µs"),
+        ("`ikde.solve` of poses in a loop", call[FIVE]["after"], "µs"),
         (
             "the same after 5 ms of other work, as in a control loop",
             call[f"{FIVE}, after 5 ms of sleep"]["after"],
             "µs",
         ),
         ("`ikde.solve(near=q)`, another `q` each time", call[f"{FIVE}, another near each time"]["after"], "µs"),
-        ("`ikde.solve_many`, 100,000 poses, a pose", bulk[f"{FIVE} n=100000 threads=1"]["after"], "µs"),
+        ("`ikde.solve_many` of 100,000 poses, for each", bulk[f"{FIVE} n=100000 threads=1"]["after"], "µs"),
         ("`ikde.run_track`, a path of 500 samples as a whole", [run["search_s"]], "s"),
     )
     lines = [*make_head(("one CPU core, `qiao2021` (9 joints)", "median", "p99", "unit"))]
