@@ -56,7 +56,7 @@ def exchange_robot_spheres(
     Example: ikde robots spheres arm.yaml --urdf arm.urdf --link forearm --protrusion 10 -o arm.yaml --report arm.html
     """
     from ikde.errors import InputError
-    from ikde.io.robots import find_urdf, robot_path
+    from ikde.io.robots import check_kept, find_urdf, is_urdf, robot_path
     from ikde.io.urdf_import.options import ImportOptions
     from ikde.io.urdf_import.refit import exchange_spheres
 
@@ -66,6 +66,7 @@ def exchange_robot_spheres(
         raise InputError(f"expected a file with the ending .html, got {report.name!r}", ("report",))
     path = robot_path(file)
     shapes_in, folders = find_urdf(urdf) if urdf else (path, ())
+    check_kept(out, spheres, *filter(is_urdf, (path, shapes_in)))  # a robot file may be written in its own place
     options = ImportOptions(
         package_paths=(*(package_path or []), *folders), mesh_scale=mesh_scale, protrusion_m=protrusion / 1000.0
     )

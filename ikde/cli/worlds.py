@@ -84,10 +84,12 @@ def convert(
     Example: ikde worlds convert scene.yaml --out world.yaml
     """
     from ikde.errors import InputError
+    from ikde.io.robots import check_kept
     from ikde.io.scene_writers import FORMATS
     from ikde.io.world_file import read_world
     from ikde.io.world_writer import save_text
 
+    check_kept(out, file)
     found = read_world(file)
     written = FORMATS[to.value](found.world, out.stem if out else file.stem, found.notes)
     if out is None and written.files:

@@ -72,6 +72,9 @@ def test_what_is_wrong_is_one_line_and_nothing_is_written(cli, refuse, tmp_path)
         ((out, "--urdf", "nothing", "--link", "upper"), "nothing"),
     ):
         assert message in refuse("robots", "spheres", *asked, "-o", new)
+    before = path.read_text()
+    assert "is what is read" in refuse("robots", "spheres", out, "--urdf", path, "--link", "upper", "-o", path)
+    assert path.read_text() == before
     assert out.read_text() == text
     assert not new.exists()
     assert not list(tmp_path.glob("page.*"))

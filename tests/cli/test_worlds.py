@@ -64,3 +64,9 @@ def test_a_bad_file_is_one_line(refuse, file, tmp_path, monkeypatch, command):
 
 def test_a_picture_of_no_kind(refuse, file):
     assert "cannot be drawn" in refuse("worlds", "show", str(file), "--plot", "a.docx")
+
+
+def test_a_world_is_not_written_over_what_it_is_read_from(refuse, file):
+    before = file.read_bytes()
+    assert "is what is read; expected another file" in refuse("worlds", "convert", str(file), "--out", str(file))
+    assert file.read_bytes() == before
