@@ -131,7 +131,7 @@ def _ball(sphere: Sphere) -> Ball:
 
 
 def _find_root(robot: Robot, names: Mapping[str, str]) -> str:
-    """The link that all others hang on: the only frame in the world, if components are links of a URDF's own."""
+    """The root link: the only frame whose parent is the world, if components are links of a URDF's own."""
     roots = [frame.name for frame in robot.frames if frame.parent == WORLD]
     is_own = bool(names) and all(component == link for component, link in names.items())
     return roots[0] if is_own and len(roots) == 1 and robot.frames[0].joint is None else WORLD
