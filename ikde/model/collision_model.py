@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.kernels.arrays import CollisionArrays, Floats, Ints
+from ikde.kernels.arrays import CollisionArrays, Floats, Ints, read_only
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
@@ -215,14 +215,18 @@ class CollisionModel:
         """Distances [T] of graders, which are less what is asked for beyond the safe distance, as what they are, m."""
         if not self.obstacles:
             return least
-        return least + np.array([self.extra_m(place) for place in places.tolist()])
+        return least + self.extras_m[places]
+
+    @cached_property
+    def extras_m(self) -> Floats:
+        """What each of `all_pairs` is asked for beyond the safe distance, m: distances of graders are less by it."""
+        margins_m = np.array([obstacle.margin_m for obstacle in self.obstacles], dtype=float)
+        of_world = [self.kept_m(name) + margins_m - self.limit_m for name in self.components if self.obstacles]
+        return read_only(np.concatenate([np.zeros(len(self.pairs)), *of_world]))
 
     def extra_m(self, place: int) -> float:
-        """What a pair is asked for beyond the safe distance, m; the distances of graders are less by this."""
-        if place < len(self.pairs):
-            return 0.0
-        component, obstacle = divmod(place - len(self.pairs), len(self.obstacles))
-        return self.kept_m(self.components[component]) + self.obstacles[obstacle].margin_m - self.limit_m
+        """What one of them is asked for, m."""
+        return self.extras_m.item(place)
 
     @cached_property
     def arrays(self) -> CollisionArrays:

@@ -42,7 +42,17 @@ def _digest(value: Any) -> bytes:
         return value._digest
 
 
-class ReadOnlyValue(Value):
+class MadeAnew:
+    """A dataclass that pickling and copying make anew from its fields: arrays that travel would arrive writable."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        known = {field.name: _pack(getattr(self, field.name)) for field in fields(self)}  # type: ignore[arg-type]
+        return _make, (type(self), known)
+
+
+class ReadOnlyValue(MadeAnew, Value):
     """A value whose arrays and mappings are read-only copies, also after pickling or copying: what is found is kept."""
 
     __slots__ = ()
@@ -50,10 +60,6 @@ class ReadOnlyValue(Value):
     def __post_init__(self) -> None:
         for field in fields(self):  # type: ignore[arg-type]
             object.__setattr__(self, field.name, _keep(getattr(self, field.name)))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        known = {field.name: _pack(getattr(self, field.name)) for field in fields(self)}  # type: ignore[arg-type]
-        return make_anew, (type(self), known)
 
 
 def _keep(value: Any) -> Any:
@@ -70,6 +76,5 @@ def _pack(value: Any) -> Any:
     return {key: _pack(item) for key, item in value.items()} if isinstance(value, MappingProxyType) else value
 
 
-def make_anew(kind: Callable[..., Any], known: Mapping[str, Any]) -> Any:
-    """One of a class, by the names of its fields: how pickling comes to read-only arrays again."""
+def _make(kind: Callable[..., Any], known: Mapping[str, Any]) -> Any:
     return kind(**known)

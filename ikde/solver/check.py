@@ -1,7 +1,6 @@
 """Whether a configuration is free of itself and of a world, and by how much, pair by pair."""
 
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +10,7 @@ from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Pairs
-from ikde.model.value import make_anew
+from ikde.model.value import MadeAnew
 from ikde.solver.joints import JointValues, joints_outside, read_configuration, read_joints
 from ikde.solver.plain import compute_gaps
 from ikde.solver.standing import find_model
@@ -43,7 +42,7 @@ class ObstacleClearance:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class CheckResult:
+class CheckResult(MadeAnew):
     """What a detector sees. Without a detector there are no pairs; collision and clearance are None."""
 
     q: Floats
@@ -65,9 +64,6 @@ class CheckResult:
     def __post_init__(self) -> None:
         object.__setattr__(self, "q", read_only(self.q.copy()))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return make_anew, (CheckResult, {field.name: getattr(self, field.name) for field in fields(self)})
-
     def __repr__(self) -> str:
         if self.clearance_m is None or self.closest_pair is None:
             return "<CheckResult: self-collision not checked>"
@@ -77,7 +73,7 @@ class CheckResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CheckResults:
+class CheckResults(MadeAnew):
     """What a detector sees of K configurations, as columns."""
 
     q: Floats
@@ -101,9 +97,6 @@ class CheckResults:
             read_only(getattr(self, name))
         read_only(self.collision.data)
         self.collision.setflags(write=False)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return make_anew, (CheckResults, {field.name: getattr(self, field.name) for field in fields(self)})
 
     def __len__(self) -> int:
         return len(self.q)
@@ -171,7 +164,7 @@ def check_many(
     unchecked = np.full(len(values), not model.pairs)
     closest = gaps_m.argmin(axis=1) if model.pairs else np.full(len(values), -1)
     if model.obstacles:
-        gaps_m = gaps_m + np.array([model.extra_m(place) for place in range(gaps_m.shape[1])])
+        gaps_m = gaps_m + model.extras_m
     return CheckResults(
         q=values,
         collision=np.ma.masked_array(least <= model.limit_m, mask=unchecked),

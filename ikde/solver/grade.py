@@ -5,9 +5,8 @@ every row or a sample, and must agree to 1e-11. What each shares with the search
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from ikde.errors import VerificationError
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.robot import Robot
 from ikde.model.target import Targets
-from ikde.model.value import make_anew
+from ikde.model.value import MadeAnew
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.explain import Explanation, explain, stop_from_counts
 from ikde.solver.metrics import AGREEMENT, Metrics, compute_disagreement, judge_clearances, measure_scale
@@ -30,7 +29,7 @@ AT_ONCE = 256  # rows that plain numpy grades in a call: 11 us each (qiao2021); 
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Outcomes:
+class Outcomes(MadeAnew):
     """The grades of T rows, whether they agree, and why rows ended."""
 
     problem: Problem
@@ -43,10 +42,6 @@ class Outcomes:
     """[T] accepted by every grader that graded it, and none disagrees."""
     explanations: Mapping[int, Explanation]
     """Row -> why, of rows that were explained; the others have their counts."""
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        known = {field.name: getattr(self, field.name) for field in fields(self)}
-        return make_anew, (Outcomes, known)  # without what was computed of them: arrays that travel arrive writable
 
     @property
     def metrics(self) -> Metrics:

@@ -137,21 +137,22 @@ def compute_world_gaps(
     of those that no joint moves.
     """
     Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
-    placed, obstacles, still = compute_components(collision, q, Ts_world), collision.obstacles, WORLD
+    placed, obstacles = compute_components(collision, q, Ts_world), collision.obstacles
     components = {name: placed[name] for name in (placed if some is None else some)}
-    if not components:
-        return np.empty((*q.shape[:-1], 0))
+    if not (components and q.size):
+        return np.empty((*q.shape[:-1], len(components) * len(obstacles)))
     centres = np.concatenate([own for own, _ in components.values()], axis=-2)
     radii = np.concatenate([own for _, own in components.values()])
     firsts = np.cumsum([0, *(len(own) for _, own in components.values())])[:-1]
-    kept_m = np.array([collision.kept_m(name) for name in components]) - collision.limit_m
+    extras_m = collision.extras_m[len(collision.pairs) :].reshape(-1, len(obstacles))
+    extras_m = extras_m[[collision.components.index(name) for name in components]]
     is_fixed = np.array([some is None and name in collision.fixed_components for name in components])
     gaps = np.empty((*q.shape[:-1], len(components), len(obstacles)))
     for other, obstacle in enumerate(obstacles):
-        T = Ts_world[obstacle.frame].reshape(-1, 4, 4)[0] if obstacle.frame != still else np.eye(4)
+        T = Ts_world[obstacle.frame].reshape(-1, 4, 4)[0]  # frames of obstacles stay in their place
         distance = measure_obstacle(obstacle, (centres - T[:3, 3]) @ T[:3, :3]) - radii
         is_left_out = is_fixed | np.array([name in obstacle.ignore for name in components])
-        nearest = np.minimum.reduceat(distance, firsts, axis=-1) - (kept_m + obstacle.margin_m)
+        nearest = np.minimum.reduceat(distance, firsts, axis=-1) - extras_m[:, other]
         gaps[..., other] = np.where(is_left_out, np.inf, nearest)
     return gaps.reshape(*q.shape[:-1], len(components) * len(obstacles))
 

@@ -11,7 +11,7 @@ from ikde.errors import InputError
 from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints, read_only
 from ikde.model.target import KINDS, Target, Targets
-from ikde.model.value import make_anew
+from ikde.model.value import MadeAnew
 from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import SearchState
@@ -38,7 +38,7 @@ EVERY_ROW = BulkOptions(verify="all")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SolveResults:
+class SolveResults(MadeAnew):
     """Finished searches, a sequence of `SolveResult`: row k belongs to target k. Its columns are arrays."""
 
     problem: Problem
@@ -130,10 +130,6 @@ class SolveResults:
             for column in (getattr(known, field.name) for field in fields(known)):
                 if isinstance(column, np.ndarray):
                     read_only(column)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        known = {field.name: getattr(self, field.name) for field in fields(self)}
-        return make_anew, (SolveResults, known)  # arrays that travel arrive writable
 
     def __len__(self) -> int:
         return len(self.targets)

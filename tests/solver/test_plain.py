@@ -8,6 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Detector, SphereRow
+from ikde.model.solids import make_solid
+from ikde.model.world import make_obstacle, make_world
 from ikde.solver import plain
 from ikde.solver.plain import (
     compute_components,
@@ -157,3 +159,15 @@ def test_a_group_holds_no_more_pairs_of_spheres_than_asked_or_one_pair(qiao, mos
         assert starts.tolist() == (np.cumsum(tests) - tests).tolist()
         assert sum(tests) <= most or len(tests) == 1
     assert (len(groups) == 1) == (most == 10**6)
+
+
+@pytest.mark.parametrize("frame", ["world", "base_link"])
+def test_no_configurations_have_no_distances_from_a_world(frame):
+    ball = make_obstacle("ball", [make_solid("sphere", (0.1,))], np.eye(4) + 2.0 * np.eye(4, k=3), frame=frame)
+    model = CollisionModel.of("ur5").in_world(make_world([ball]))
+    q = model.robot.home
+    none = compute_gaps(model, np.empty((0, len(q))))
+    assert none.shape == (0, len(model.all_pairs))
+    one = compute_gaps(model, q)
+    assert one.shape == (len(model.all_pairs),)
+    np.testing.assert_array_equal(compute_gaps(model, np.stack([q, q])), np.stack([one, one]))
