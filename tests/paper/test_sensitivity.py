@@ -39,10 +39,9 @@ def test_each_variation_changes_one_thing():
 @pytest.fixture(scope="module")
 def table(inputs):
     few = [v for v in list_variations() if v.group in {"as stated", "update"}]
-    patch = pytest.MonkeyPatch()
-    patch.setattr(module, "list_variations", lambda: few)
-    yield compute_sensitivity(replace(inputs, budget=replace(inputs.budget, variation_solves=8)))
-    patch.undo()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "list_variations", lambda: few)
+        return compute_sensitivity(replace(inputs, budget=replace(inputs.budget, variation_solves=8)))
 
 
 def test_rows_of_both_readings_and_of_other_judgements(table):
