@@ -48,24 +48,22 @@ def cover_mesh(path: Path, scale: tuple[float, float, float], protrusion_m: floa
         InputError: without trimesh, and for a surface too large for spheres that protrude so little.
     """
     triangles, warnings = read_mesh(path, scale)
-    cover = _cover_triangles(triangles, protrusion_m, warnings, only_hulls=False)
+    own, parts = make_solid(triangles, convex_hull)
+    cover = _cover_surface(own, parts, protrusion_m, warnings)
     if len(cover.rows.radii) <= MAX_SPHERES:
         return cover
-    coarse = _cover_triangles(triangles, protrusion_m, warnings, only_hulls=True)
+    hulls, parts = make_solid(triangles, convex_hull, only_hulls=True)
+    coarse = replace(_cover_surface(hulls, parts, protrusion_m, warnings), only_hulls=True)
     if len(coarse.rows.radii) >= len(cover.rows.radii):
         return cover
-    own, _ = make_solid(triangles, convex_hull)
     out_m = bound_protrusion(own, coarse.rows.centres, coarse.rows.radii)
     return replace(coarse, rows=coarse.rows._replace(protrusion_m=out_m))
 
 
-def _cover_triangles(
-    triangles: Floats, protrusion_m: float, warnings: tuple[str, ...], *, only_hulls: bool
-) -> MeshCover:
-    solid, parts = make_solid(triangles, convex_hull, only_hulls=only_hulls)
+def _cover_surface(solid: Solid, parts: PartCounts, protrusion_m: float, warnings: tuple[str, ...]) -> MeshCover:
     rows = cover_solid(solid, protrusion_m)
     certificate = certify(solid.surface.corners, rows.centres, rows.radii)
-    return MeshCover(rows, certificate.area_m2, certificate.covered, parts, warnings, only_hulls)
+    return MeshCover(rows, certificate.area_m2, certificate.covered, parts, warnings)
 
 
 def cover_solid(solid: Solid, protrusion_m: float) -> Rows:

@@ -1,5 +1,6 @@
 """A body given by triangles: how far points are from its surface, and which are inside."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,18 +46,17 @@ class Triangles:
 
         The nearest point of a triangle is the foot of the perpendicular where that is inside, else a point of an edge.
         """
+        corners, edges, inward = (a.transpose(1, 2, 0) for a in (self.corners, self.edges, self.inward))
+        # coordinate by coordinate: twice as fast as vectors along the last axis
         size = _dot(self.normals, self.normals)
-        away = points[:, None] - self.corners[:, 0]
-        plane = _dot(away, self.normals) ** 2 / np.where(size > 0.0, size, 1.0)
-        over = np.broadcast_to(size > 0.0, plane.shape)
-        nearest = np.full(plane.shape, np.inf)
-        for k in range(3):
-            edge, away = self.edges[:, k], points[:, None] - self.corners[:, k]
-            length = _dot(edge, edge)
-            along = np.clip(_dot(away, edge) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
-            foot = away - along[..., None] * edge
-            nearest = np.minimum(nearest, _dot(foot, foot))
-            over = over & (_dot(away, self.inward[:, k]) >= 0.0)
+        plane = _sum(_away(points, corners[0]), self.normals.T) ** 2 / np.where(size > 0.0, size, 1.0)
+        over, nearest = np.broadcast_to(size > 0.0, plane.shape), np.full(plane.shape, np.inf)
+        for corner, edge, side in zip(corners, edges, inward, strict=True):
+            away, length = _away(points, corner), _sum(edge, edge)
+            over = over & (_sum(away, side) >= 0.0)
+            along = np.clip(_sum(away, edge) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+            foot = [a - along * e for a, e in zip(away, edge, strict=True)]
+            nearest = np.minimum(nearest, _sum(foot, foot))
         return np.sqrt(np.where(over, plane, nearest).min(axis=1))
 
     def winding(self, point: Floats) -> float:
@@ -81,6 +81,16 @@ class Triangles:
 def _dot(a: Floats, b: Floats) -> Floats:
     """Of vectors along the last axis, in one order: the same bits on every machine."""
     return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
+
+
+def _sum(a: Sequence[Floats] | Floats, b: Sequence[Floats] | Floats) -> Floats:
+    """The same of vectors along the first axis."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _away(points: Floats, corners: Floats) -> list[Floats]:
+    """[P, T] of each coordinate, from corners [3, T] to points [P, 3]."""
+    return [p[:, None] - c for p, c in zip(points.T, corners, strict=True)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
