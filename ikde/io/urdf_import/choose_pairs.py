@@ -26,6 +26,8 @@ class ChosenPairs:
     robot: Robot
     never: Pairs = ()
     """Compared pairs that are proved never to touch."""
+    often: Pairs = ()
+    """Compared pairs that touch in a quarter of random configurations or more, the worst first."""
     warnings: tuple[str, ...] = ()
 
 
@@ -154,20 +156,22 @@ def leave_out_touching(
         return ChosenPairs(robot=check_robot(draft), warnings=(*notes, _NONE_LEFT))
     robot = check_robot(replace(draft, detectors=detectors, default_detector=detector.name))
     never = tuple(pair for pair, verdict in verdicts.items() if verdict.touches == "never" and verdict.is_proved)
-    return ChosenPairs(robot=robot, never=never, warnings=(*notes, *_note_often(CollisionModel.of(robot))))
+    often, warnings = _find_often(CollisionModel.of(robot))
+    return ChosenPairs(robot=robot, never=never, often=often, warnings=(*notes, *warnings))
 
 
-def _note_often(collision: CollisionModel) -> list[str]:
-    """What is said of pairs that touch so often that few configurations are free: spheres that are too coarse."""
+def _find_often(collision: CollisionModel) -> tuple[Pairs, list[str]]:
+    """Pairs that touch so often that few configurations are free, and what is said of them."""
     drawn = draw_configurations(collision.robot)[:TRIED]
     hits = compute_gaps(collision, drawn) <= collision.limit_m
     shares = dict(zip(collision.pairs, hits.mean(axis=0).tolist(), strict=True))
-    often = sorted((pair for pair in shares if shares[pair] >= OFTEN), key=lambda pair: -shares[pair])
+    often = tuple(sorted((pair for pair in shares if shares[pair] >= OFTEN), key=lambda pair: -shares[pair]))
     if not often:
-        return []
+        return (), []
     named = ", ".join(f"{a} - {b} ({shares[a, b]:.0%})" for a, b in often[:NAMED])
     free = f"{1.0 - hits.any(axis=1).mean():.0%} of {TRIED} random configurations are free of self-collision"
-    return [f"{free}; most often these touch: {named}; spheres that stand out less (--protrusion) may keep them apart"]
+    advice = "spheres that stand out less (--protrusion) may keep them apart"
+    return often, [f"{free}; most often these touch: {named}; {advice}"]
 
 
 _NONE_LEFT = "no two links are left that could collide: self-collision is not checked"

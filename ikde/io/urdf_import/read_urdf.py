@@ -11,6 +11,7 @@ from ikde.io.urdf_import.assemble import add_spheres, assemble, free_home, set_h
 from ikde.io.urdf_import.chain import LinkTree, choose_tool, find_tree
 from ikde.io.urdf_import.cover_links import LinkSpheres, cover_links
 from ikde.io.urdf_import.description import Description, read_description
+from ikde.io.urdf_import.finer import choose_finer, cover_finer
 from ikde.io.urdf_import.frames import build_skeleton
 from ikde.io.urdf_import.given_spheres import give_spheres
 from ikde.io.urdf_import.held import HeldJoint, find_held
@@ -91,6 +92,9 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
         robot = set_home(robot, values)
         pairs = add_spheres(robot, skeleton, covered, srdf, options.compare)
+        if finer := choose_finer(pairs.often, covered, skeleton.frame_of):
+            covered |= cover_finer(description, tree, options, finer)
+            pairs = add_spheres(robot, skeleton, covered, srdf, options.compare)
     except FileError:
         raise
     except InputError as error:
