@@ -147,32 +147,64 @@ def export(
     ] = False,
     xrdf: Annotated[bool, typer.Option("--xrdf", help="Write XRDF: spheres, ignored pairs.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Where it goes (default: printed).")] = None,
+    urdf_path: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="The URDF that --curobo and --xrdf go with (default: written beside --out)."),
+    ] = None,
     detector: DetectorOption = None,
 ) -> None:
     """Write a robot for other programs: frames, joints, limits, and the detector's spheres as collision shapes.
 
-    What cuRobo's file and XRDF cannot hold is listed, on the screen and in the file.
+    What the format cannot hold is listed, on the screen and in the file. A URDF goes beside cuRobo's file and XRDF
+    unless one is named.
 
     Example: ikde robots export qiao2021 --urdf --out qiao2021.urdf
     """
+    from functools import partial
+
     from ikde.errors import InputError
     from ikde.io.mjcf import format_mjcf
-    from ikde.io.sphere_writers import format_curobo, format_xrdf, list_unheld
+    from ikde.io.sphere_writers import format_curobo, format_xrdf
     from ikde.io.srdf_writer import format_srdf
+    from ikde.io.unheld import BESIDE, Format, list_unheld
     from ikde.io.urdf import format_urdf
     from ikde.io.xml_file import write_xml
     from ikde.model.collision_model import CollisionModel
 
-    forms = {format_urdf: urdf, format_srdf: srdf, format_mjcf: mjcf, format_curobo: curobo, format_xrdf: xrdf}
-    wanted = [form for form, is_asked in forms.items() if is_asked]
+    kinds: dict[Format, bool] = {"URDF": urdf, "SRDF": srdf, "MJCF": mjcf, "cuRobo": curobo, "XRDF": xrdf}
+    wanted: list[Format] = [kind for kind, is_asked in kinds.items() if is_asked]
     if len(wanted) != 1:
         raise InputError(f"expected one of --urdf, --srdf, --mjcf, --curobo and --xrdf, got {len(wanted) or 'none'}")
+    kind: Format = wanted[0]
+    if urdf_path is not None and kind not in BESIDE:
+        raise InputError("only --curobo and --xrdf go with a URDF", ("urdf-path",))
     robot = read_robot(name)
-    text = wanted[0](robot, collision=detector)
+    is_alone = kind not in BESIDE or out is None or urdf_path is not None
+    beside_text = "" if is_alone else format_urdf(robot, collision=detector)
+    beside = None if is_alone or out is None else _find_beside(out, beside_text)
+    named = urdf_path or (beside.name if beside else "")
+    forms = {"URDF": format_urdf, "SRDF": format_srdf, "MJCF": format_mjcf, "XRDF": format_xrdf}
+    text = {**forms, "cuRobo": partial(format_curobo, urdf_path=named)}[kind](robot, collision=detector)
     if out is None:
         print_result(text)
     else:
-        write_xml(out, text)
+        write_xml(out, text, {beside.name: beside_text} if beside else None)
         print_written(out)
-    if curobo or xrdf:
-        print_note(f"ikde: not held: {'; '.join(list_unheld(CollisionModel.of(robot, detector)))}")
+    if beside:
+        print_written(beside)
+    unheld = list_unheld(CollisionModel.of(robot, detector), kind)
+    if kind in BESIDE and not named:
+        unheld = (*unheld, "the URDF: name it (--urdf-path FILE), or write it beside (--out FILE)")
+    if unheld:
+        print_note(f"ikde: {kind} does not hold: {'; '.join(unheld)}")
+
+
+def _find_beside(out: Path, text: str) -> Path:
+    """Where the URDF goes; raises `InputError` if another one is there, which may be the user's own."""
+    from ikde.errors import InputError
+
+    path = out.with_suffix(".urdf")
+    if path.exists() and not (path.is_file() and path.read_bytes() == text.encode()):
+        message = f"{path} is there already, and is not written over; name the URDF that goes with it (--urdf-path)"
+        raise InputError(message, ("out",))
+    return path

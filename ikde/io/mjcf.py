@@ -5,6 +5,7 @@ from itertools import combinations, product
 
 import numpy as np
 
+from ikde.io.unheld import describe_unheld, list_unheld
 from ikde.io.xml_file import (
     INERTIA_KG_M2,
     MASS_KG,
@@ -54,7 +55,8 @@ def format_mjcf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     moving = [home[frame.joint] for frame in robot.frames if frame.joint is not None]
     ET.SubElement(keys, "key", name="home", qpos=format_numbers(moving))
     tool = f"The tool is the body {robot.tool!r}."
-    return format_document(root, (describe_collision(model), tool, PLACEHOLDERS))
+    unheld = describe_unheld(list_unheld(model, "MJCF"))
+    return format_document(root, (describe_collision(model), tool, PLACEHOLDERS, *unheld))
 
 
 def _add_bodies(root: ET.Element, robot: Robot) -> dict[str, ET.Element]:

@@ -2,13 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
 from ikde.errors import FileError, quoted
 from ikde.formats.reading import read_text
+from ikde.io.sphere_pairs import read_ignored
+from ikde.io.srdf import Srdf
 from ikde.io.xml_elements import XmlFile
 from ikde.io.yaml_file import Document, Where, read_yaml
 from ikde.model.robot import MAX_MAGNITUDE
@@ -32,6 +34,8 @@ class SphereFile:
     spheres: Mapping[str, tuple[Ball, ...]]
     """By link; none for a link that is not to collide."""
     notes: tuple[str, ...] = ()
+    ignored: Srdf = field(default_factory=Srdf)
+    """Pairs that it leaves out, and a home, of cuRobo's and XRDF."""
 
 
 def read_spheres(path: Path) -> SphereFile:
@@ -76,10 +80,11 @@ def _read_curobo(document: Document) -> SphereFile:
     spheres = section[SPHERES]
     where = (*where, SPHERES)
     if isinstance(spheres, str):
-        return _follow(document, spheres, where)
+        return replace(_follow(document, spheres, where), ignored=read_ignored(document, section, where[:-1]))
     found = {name: _read_list(document, own, (*where, name)) for name, own in _items(document, spheres, where)}
     buffers = [key for key in ("collision_sphere_buffer", "self_collision_buffer") if _says_more(section.get(key))]
-    return _make(document.path, "cuRobo", found, [f"{key} is not added to radii" for key in buffers])
+    made = _make(document.path, "cuRobo", found, [f"{key} is not added to radii" for key in buffers])
+    return replace(made, ignored=read_ignored(document, section, where[:-1]))
 
 
 def _find_curobo(document: Document) -> tuple[Where, dict[Any, Any]]:
@@ -125,7 +130,8 @@ def _read_xrdf(document: Document, data: dict[Any, Any]) -> SphereFile:
     notes = [f"{key}.buffer_distance is not added to radii" for key in buffers]
     if _says_more(data.get("modifiers")):
         notes.append("modifiers, such as frames that are added, are not made")
-    return _make(document.path, "XRDF", found, notes)
+    made = _make(document.path, "XRDF", found, notes)
+    return replace(made, ignored=read_ignored(document, {"format": "xrdf", **data}, ()))
 
 
 def _choose_geometry(document: Document, data: dict[Any, Any]) -> tuple[Any, Where]:

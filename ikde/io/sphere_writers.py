@@ -1,10 +1,11 @@
-"""A robot's spheres for other programs: cuRobo's robot file, and XRDF; and what neither can hold."""
+"""A robot's spheres for other programs: cuRobo's robot file, and XRDF."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ikde.errors import printable
-from ikde.io.sphere_files import Ball
+from ikde.io.sphere_files import Ball, Kind
+from ikde.io.unheld import describe_unheld, list_unheld
 from ikde.io.xml_file import list_components, name_components
 from ikde.io.yaml_text import format_block
 from ikde.model.arguments import RobotLike, read_robot
@@ -16,15 +17,16 @@ GEOMETRY = "ikde"
 Links = dict[str, tuple[Ball, ...]]
 
 
-def format_curobo(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
+def format_curobo(robot: RobotLike, *, collision: CollisionChoice = None, urdf_path: str = "") -> str:
     """The robot as the text of cuRobo's robot file, in m and rad: spheres, pairs that are ignored, joints and home.
 
     Where each component's spheres stand in a frame of its name, as an import from URDF makes them, links are those
-    frames; otherwise components are the links of what `format_urdf` writes. `urdf_path` is left to be filled in.
+    frames; otherwise components are the links of what `format_urdf` writes, which has those frames as links as well.
 
     Args:
         robot: the robot, its name or the path of its file.
         collision: whose spheres and pairs to write, as for `ikde.solve`.
+        urdf_path: where cuRobo finds the URDF; nothing: it is left to be filled in.
 
     Raises:
         InputError: for an unknown detector.
@@ -34,7 +36,7 @@ def format_curobo(robot: RobotLike, *, collision: CollisionChoice = None) -> str
     buffers = _list_buffers(model, links)
     accelerations = _max_accelerations(model.robot)
     kinematics = {
-        "urdf_path": "",
+        "urdf_path": urdf_path,
         "base_link": _find_root(model.robot, names),
         "ee_link": model.robot.tool,
         "collision_link_names": list(links),
@@ -48,7 +50,7 @@ def format_curobo(robot: RobotLike, *, collision: CollisionChoice = None) -> str
             **({"max_acceleration": accelerations} if accelerations else {}),
         },
     }
-    return _format(model, names, {"robot_cfg": {"kinematics": kinematics}}, "cuRobo's robot file")
+    return _format(model, names, {"robot_cfg": {"kinematics": kinematics}}, "cuRobo")
 
 
 def format_xrdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
@@ -87,24 +89,6 @@ def format_xrdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
             "geometry": {GEOMETRY: {"spheres": {link: _entries(balls) for link, balls in links.items()}}},
         }
     return _format(model, names, data, "XRDF")
-
-
-def list_unheld(collision: CollisionModel) -> tuple[str, ...]:
-    """What cuRobo's robot files and XRDF do not hold of a robot."""
-    robot, detector = collision.robot, collision.detector
-    others = [name for name in robot.detectors if detector is None or name != detector.name]
-    kept = {
-        "joint limits, speeds and frames: they are in the URDF": True,
-        "limits of jerk, which ikde does not know": True,
-        "reasons of pairs that are left out": bool(collision.left_out_pairs),
-        f"the other detectors: {', '.join(others)}": bool(others),
-        "accelerations, as not all joints have one": not _max_accelerations(robot)
-        and any(joint.max_acceleration for joint in robot.joints),
-        f"conventions: {', '.join(robot.conventions)}": bool(robot.conventions),
-        "the drive and the wheels of the base": robot.drive is not None or robot.wheels is not None,
-        "where numbers come from": bool(robot.provenance),
-    }
-    return tuple(what for what, is_there in kept.items() if is_there)
 
 
 def _list_links(model: CollisionModel) -> tuple[dict[str, str], Links]:
@@ -159,10 +143,11 @@ def _max_accelerations(robot: Robot) -> list[float]:
     return found if len(found) == len(robot.joints) else []
 
 
-def _format(model: CollisionModel, names: Mapping[str, str], data: Mapping[str, Any], kind: str) -> str:
+def _format(model: CollisionModel, names: Mapping[str, str], data: Mapping[str, Any], kind: Kind) -> str:
     """YAML with a comment on top: what it belongs to, and what it does not hold."""
     is_own = all(component == link for component, link in names.items())
-    belongs = "the URDF that the robot comes from" if names and is_own else "what `ikde robots export --urdf` writes"
-    notes = [f"{kind} of {model.robot.name}, by ikde; m and rad. It belongs to {belongs}.", "Not held:"]
-    notes += [f"* {what}" for what in list_unheld(model)]
+    own = ", and the URDF that the robot comes from" if names and is_own else ""
+    belongs = f"It belongs to what `ikde robots export --urdf` writes{own}."
+    notes = [f"{kind}'s robot file" if kind == "cuRobo" else kind, f"of {model.robot.name}, by ikde; m and rad."]
+    notes = [" ".join([*notes, belongs]), *describe_unheld(list_unheld(model, kind))]
     return "\n".join([*(f"# {printable(note)}" for note in notes), *format_block(data)]) + "\n"

@@ -27,6 +27,12 @@ class Srdf:
     states: tuple[tuple[str, str, dict[str, float]], ...] = ()
     """Group, name, and values by joint, in m or rad."""
     disabled: tuple[DisabledPair, ...] = ()
+    enabled: tuple[tuple[str, str], ...] = ()
+    """Pairs of links that are compared whatever joins them."""
+    is_whole: bool = False
+    """Whether all pairs that are not disabled are compared, whatever joins them."""
+    source: str = "the SRDF"
+    """What says so."""
 
     def choose_states(self) -> tuple[tuple[str, ...], dict[str, float]]:
         """One state of each group, called home, ready or default if there is one, else its first; and all values."""
@@ -66,4 +72,8 @@ def read_srdf(path: Path) -> Srdf:
         )
         for pair in file.root.find_all("disable_collisions")
     ]
-    return Srdf(states=tuple(states), disabled=tuple(disabled))
+    enabled = tuple(
+        (file.read_name(pair, "link1", "enable_collisions"), file.read_name(pair, "link2", "enable_collisions"))
+        for pair in file.root.find_all("enable_collisions")
+    )
+    return Srdf(states=tuple(states), disabled=tuple(disabled), enabled=enabled)

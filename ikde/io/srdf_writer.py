@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 
+from ikde.io.unheld import describe_unheld, list_unheld
 from ikde.io.xml_file import describe_collision, format_document, format_numbers, list_components, name_components
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
@@ -13,8 +14,8 @@ def format_srdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
     """The text of an SRDF file that belongs to what `format_urdf` writes for the same detector.
 
     The group `ikde` holds every joint of the robot, its state `home` their home in m and rad. Each pair of components
-    that the detector does not compare is a `disable_collisions` of their links with the reason; its spheres are the
-    `link_sphere_approximation` of its link. The safe distance is in the comment only.
+    that the detector does not compare is a `disable_collisions` of their links with the reason, and each that it does
+    an `enable_collisions`, whatever joins them; its spheres are the `link_sphere_approximation` of its link.
 
     Args:
         robot: the robot.
@@ -37,4 +38,7 @@ def format_srdf(robot: Robot, *, collision: CollisionChoice = None) -> str:
             ET.SubElement(approximation, "sphere", center=center, radius=radius)
     for pair in model.left_out_pairs:
         ET.SubElement(root, "disable_collisions", link1=links[pair.a], link2=links[pair.b], reason=pair.reason)
-    return format_document(root, (describe_collision(model), f"The tool is the link {robot.tool!r}."))
+    for a, b in model.pairs:
+        ET.SubElement(root, "enable_collisions", link1=links[a], link2=links[b])
+    unheld = describe_unheld(list_unheld(model, "SRDF"))
+    return format_document(root, (describe_collision(model), f"The tool is the link {robot.tool!r}.", *unheld))

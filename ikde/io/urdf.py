@@ -1,14 +1,15 @@
 """A robot as URDF, for programs that read that: the same frames, joints, limits and spheres."""
 
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ikde.io.unheld import describe_unheld, list_unheld
 from ikde.io.xml_file import (
     EFFORT,
     INERTIA_KG_M2,
     MASS_KG,
-    PLACEHOLDERS,
     VELOCITY,
     describe_collision,
     format_document,
@@ -21,7 +22,7 @@ from ikde.io.xml_file import (
 from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.robot import WORLD, Frame, Robot
+from ikde.model.robot import WORLD, Frame, Inertia, Robot
 from ikde.model.spheres import Sphere
 
 
@@ -31,7 +32,10 @@ def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     Every frame is a link of its name and every joint keeps its name; a fixed frame hangs on the joint `fixed_<frame>`.
     Each component is a link `component_<name>`, fixed to the link that its joint moves, so that pairs of components
     are pairs of links; its spheres are the collision (and visual) elements `<name>_0`, `<name>_1` and so on. A name
-    that is taken gets an underscore. URDF cannot say which pairs count: `format_srdf` writes that.
+    that is taken gets an underscore. URDF cannot say which pairs count: `format_srdf` writes that. Of a joint without
+    a speed or effort, and a link without a mass, there are placeholders. The element `<ikde>`, which others pass over,
+    says which they are, names the tool, the joints in the order of q and the components, and has accelerations and the
+    safe distance: `ikde.import_urdf` makes the same robot of it.
 
     Args:
         robot: the robot, its name or the path of its file.
@@ -46,7 +50,9 @@ def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     links, joints = name_components(model), set(robot.joint_names)
     _add_link(root, WORLD)
     for frame in robot.frames:
-        _add_link(root, frame.name, has_mass=frame.joint is not None)
+        link = _add_link(root, frame.name)
+        if frame.joint is not None or frame.name in robot.inertias:
+            _add_mass(link, robot.inertias.get(frame.name))
         _add_joint(root, robot, frame, joints)
     carriers = list_carriers(robot)
     for component, spheres in list_components(model).items():
@@ -55,21 +61,66 @@ def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
         joint = ET.SubElement(root, "joint", name=reserve_name(f"fixed_{link.attrib['name']}", joints), type="fixed")
         ET.SubElement(joint, "parent", link=carriers[spheres[0].body])
         ET.SubElement(joint, "child", link=link.attrib["name"])
-    limits = f"Efforts ({EFFORT:g} N or N m) and velocities ({VELOCITY:g} m/s or rad/s) are placeholders as well."
-    ET.SubElement(root, "ikde", tool=robot.tool)
+    _add_marks(root, model, links)
     tool = f"The tool is the link {robot.tool!r}."
-    return format_document(root, (describe_collision(model), tool, PLACEHOLDERS, limits))
+    unheld = describe_unheld(list_unheld(model, "URDF"))
+    return format_document(root, (describe_collision(model), tool, *_note_placeholders(robot), *unheld))
 
 
-def _add_link(root: ET.Element, name: str, *, has_mass: bool = False) -> ET.Element:
-    link = ET.SubElement(root, "link", name=name)
-    if has_mass:
-        inertial = ET.SubElement(link, "inertial")
-        ET.SubElement(inertial, "mass", value=repr(MASS_KG))
-        diagonal, zero = repr(INERTIA_KG_M2), "0.0"
-        moments = {"ixx": diagonal, "iyy": diagonal, "izz": diagonal, "ixy": zero, "ixz": zero, "iyz": zero}
-        ET.SubElement(inertial, "inertia", moments)
-    return link
+def _add_link(root: ET.Element, name: str) -> ET.Element:
+    return ET.SubElement(root, "link", name=name)
+
+
+def _add_mass(link: ET.Element, known: Inertia | None) -> None:
+    """The mass that is known, or a placeholder."""
+    mass_kg, moments = (known.mass_kg, known.I_com_frame) if known else (MASS_KG, INERTIA_KG_M2 * np.eye(3))
+    inertial = ET.SubElement(link, "inertial")
+    if known:
+        _add_origin(inertial, known.p_frame_com, np.eye(3))
+    ET.SubElement(inertial, "mass", value=repr(mass_kg))
+    places = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "ixz": (0, 2), "iyz": (1, 2)}
+    ET.SubElement(inertial, "inertia", {key: format_numbers([moments[place]]) for key, place in places.items()})
+
+
+def _list_placeholders(robot: Robot) -> Iterator[dict[str, str]]:
+    """What stands for something that is not known: `{joint or link: name, key: value}`."""
+    for joint in robot.joints:
+        missing = {"velocity": VELOCITY if joint.max_speed is None else None}
+        missing |= {"effort": EFFORT if joint.max_effort is None else None}
+        keys = {key: format_numbers([value]) for key, value in missing.items() if value is not None}
+        if keys:
+            yield {"joint": joint.name, **keys}
+    for frame in robot.frames:
+        if frame.joint is not None and frame.name not in robot.inertias:
+            yield {"link": frame.name, "mass": repr(MASS_KG)}
+
+
+def _note_placeholders(robot: Robot) -> Iterator[str]:
+    keys = {key for own in _list_placeholders(robot) for key in own}
+    if "mass" in keys:
+        yield f"Masses ({MASS_KG:g} kg) and inertias ({INERTIA_KG_M2:g} kg m2) of <placeholder>: put in your own."
+    for key, what in (
+        ("effort", f"Efforts ({EFFORT:g} N or N m)"),
+        ("velocity", f"Velocities ({VELOCITY:g} a second)"),
+    ):
+        if key in keys:
+            yield f"{what} of <placeholder>: not known."
+
+
+def _add_marks(root: ET.Element, model: CollisionModel, links: Mapping[str, str]) -> None:
+    """What the elements of URDF cannot say, for an import."""
+    robot = model.robot
+    own = ET.SubElement(root, "ikde", tool=robot.tool)
+    if model.limit_m:
+        own.attrib["safe_distance"] = format_numbers([model.limit_m])
+    for joint in robot.joints:
+        limit = joint.max_acceleration
+        known = {} if limit is None else {"acceleration": format_numbers([limit])}
+        ET.SubElement(own, "coordinate", {"joint": joint.name, **known})
+    for component, link in links.items():
+        ET.SubElement(own, "component", name=component, link=link)
+    for placeholder in _list_placeholders(robot):
+        ET.SubElement(own, "placeholder", placeholder)
 
 
 def _add_joint(root: ET.Element, robot: Robot, frame: Frame, taken: set[str]) -> None:
@@ -82,7 +133,12 @@ def _add_joint(root: ET.Element, robot: Robot, frame: Frame, taken: set[str]) ->
     if moving and frame.axis is not None:
         ET.SubElement(joint, "axis", xyz=format_numbers(frame.axis))
         ends = {} if moving.kind == "continuous" else {"lower": moving.lower, "upper": moving.upper}
-        limits = {**ends, "effort": EFFORT, "velocity": VELOCITY}
+        effort, speed = moving.max_effort, moving.max_speed
+        limits = {
+            **ends,
+            "effort": EFFORT if effort is None else effort,
+            "velocity": VELOCITY if speed is None else speed,
+        }
         ET.SubElement(joint, "limit", {key: format_numbers([value]) for key, value in limits.items()})
 
 

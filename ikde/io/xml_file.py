@@ -2,7 +2,7 @@
 
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from ikde.errors import FileError, InputError
@@ -79,10 +79,11 @@ def describe_collision(collision: CollisionModel) -> str:
     )
 
 
-def write_xml(path: Path, text: str) -> None:
-    """Write a whole file or none; raises `FileError` in one line."""
+def write_xml(path: Path, text: str, beside: Mapping[str, str] | None = None) -> None:
+    """Write a whole file, and others in its folder by name, or none; raises `FileError` in one line."""
     if path.exists() and not path.is_file():
         raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
     if not path.parent.is_dir():
         raise FileError(path, "cannot be written: its folder does not exist")
-    replace_all(path.parent, {path.name: text.encode()})
+    texts = {path.name: text, **(beside or {})}
+    replace_all(path.parent, {name: own.encode() for name, own in texts.items()})

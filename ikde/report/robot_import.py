@@ -8,7 +8,7 @@ from ikde.formats.units import ANGLES_RAD, LENGTHS_M
 from ikde.io.urdf_import.held import HeldJoint
 from ikde.io.urdf_import.imported import OF_THE_TREE, CoveredLink, ImportedUrdf, describe_pairs
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import Joint
+from ikde.model.robot import WORLD, Joint, Robot
 from ikde.report.numbers import Units, count_of
 from ikde.report.pairs import pairs_json
 from ikde.report.render import make_table, plain, render
@@ -24,6 +24,7 @@ def import_json(imported: ImportedUrdf) -> dict[str, Any]:
         "tool": robot.tool,
         "tool_was_chosen": imported.tool_was_chosen,
         "drive": robot.drive,
+        "chain": [{"joint": joint, "link": link} for joint, link, _ in _list_chain(robot)],
         "joints": [_joint_json(joint, imported.joint_notes.get(joint.name, "")) for joint in robot.joints],
         "frames": len(robot.frames),
         "frozen": [asdict(held) for held in imported.held],
@@ -52,9 +53,32 @@ def format_import(imported: ImportedUrdf, units: Units, *, color: bool = False, 
     tables += [sphere_table(imported.links, units)] if imported.links else []
     collision = CollisionModel.of(robot)
     tables += [_pair_table(collision)] if _list_told(collision) else []
-    lines = [f"home: {plain(imported.home)}{_say_free(imported.is_home_free)}"]
+    lines = [*map(plain, _describe_chain(imported))]
+    lines += [f"home: {plain(imported.home)}{_say_free(imported.is_home_free)}"]
     lines += [f"[bold]warning:[/] {plain(warning)}" for warning in imported.warnings]
     return render(head, "", *tables, "", f"pairs: {describe_pairs(imported)}", *lines, color=color, width=width)
+
+
+def _list_chain(robot: Robot) -> list[tuple[str, str, str]]:
+    """Joints from the root to the tool, the frame that each moves, and that frame's parent."""
+    frames, chain, name = {frame.name: frame for frame in robot.frames}, [], robot.tool
+    while name != WORLD:
+        frame = frames[name]
+        chain += [(frame.joint, name, frame.parent)] if frame.joint else []
+        name = frame.parent
+    return chain[::-1]
+
+
+def _describe_chain(imported: ImportedUrdf) -> list[str]:
+    """What moves the tool, link by link; and how the last joint is left out if the tool was not named."""
+    robot, chain = imported.robot, _list_chain(imported.robot)
+    steps = [f"{joint} moves {link}" for joint, link, _ in chain]
+    end = [] if chain and chain[-1][1] == robot.tool else [f"the tool {robot.tool} is fixed to it"]
+    lines = [f"chain: {', '.join([*steps, *end])}"]
+    if imported.tool_was_chosen and len(chain) > 1:
+        joint, _, parent = chain[-1]
+        lines.append(f"tool: if {joint} opens a gripper, --tool {parent} names a link before it")
+    return lines
 
 
 def _say_free(is_free: bool | None) -> str:

@@ -66,7 +66,7 @@ def test_whatever_a_robot_is_called_it_is_checked_shown_and_exported(cli, tmp_pa
     for command in asked:
         outcome = cli(*command)
         assert outcome.code == 0, (command, outcome)
-        assert outcome.err == "" or outcome.err.startswith("compiling the kernels")
+        assert outcome.err == "" or outcome.err.startswith(("compiling the kernels", "ikde: URDF", "ikde: MJCF"))
     assert sorted(tmp_path.rglob("*")) == [tmp_path / "two.xml", path]
 
 
@@ -203,12 +203,30 @@ def test_what_robots_refuses(refuse, command, words):
 @pytest.mark.parametrize(("option", "function"), [("--urdf", ikde.format_urdf), ("--mjcf", ikde.format_mjcf)])
 def test_a_robot_is_exported(cli, tmp_path, any_robot, option, function):
     printed = cli("robots", "export", any_robot.name, option)
-    assert (printed.code, printed.err) == (0, "")
+    assert printed.code == 0
+    assert f"ikde: {option[2:].upper()} does not hold: " in printed.err
     assert printed.out == function(any_robot)
     path = tmp_path / "robot.xml"
     written = cli("robots", "export", any_robot.name, option, "--detector", "none", "--out", path)
-    assert (written.code, written.out, written.err) == (0, f"wrote {path}\n", "")
+    assert (written.code, written.out) == (0, f"wrote {path}\n")
     assert path.read_text(encoding="utf-8") == function(any_robot, collision="none")
+
+
+@pytest.mark.parametrize("option", ["--curobo", "--xrdf"])
+def test_a_urdf_goes_beside_and_none_of_the_users_own_is_written_over(cli, refuse, tmp_path, option):
+    path, urdf = tmp_path / "arm.yml", tmp_path / "arm.urdf"
+    assert cli("robots", "export", "ur5", option, "--out", path).out == f"wrote {path}\nwrote {urdf}\n"
+    assert urdf.read_text(encoding="utf-8") == ikde.format_urdf("ur5")
+    assert cli("robots", "export", "ur5", option, "--out", path).code == 0  # the same once more
+    urdf.write_text("<robot/>")
+    assert "arm.urdf is there already, and is not written over" in refuse(
+        "robots", "export", "ur5", option, "--out", path
+    )
+    named = cli("robots", "export", "ur5", option, "--out", path, "--urdf-path", "mine.urdf")
+    assert named.code == 0
+    assert ("urdf_path: mine.urdf" in path.read_text(encoding="utf-8")) == (option == "--curobo")
+    assert urdf.read_text() == "<robot/>"
+    assert "the URDF: name it (--urdf-path FILE)" in cli("robots", "export", "ur5", option).err
 
 
 def test_a_robot_file_is_exported(cli, tmp_path):
@@ -221,6 +239,7 @@ def test_a_robot_file_is_exported(cli, tmp_path):
     ("command", "words"),
     [
         ("ur5", "expected one of --urdf, --srdf, --mjcf, --curobo and --xrdf, got none"),
+        ("ur5 --urdf --urdf-path ur5.urdf", "only --curobo and --xrdf go with a URDF"),
         ("ur5 --urdf --mjcf", "expected one of --urdf, --srdf, --mjcf, --curobo and --xrdf, got 2"),
         ("ur --urdf", "did you mean 'ur5'"),
         ("nope.yaml --urdf", "no such file"),

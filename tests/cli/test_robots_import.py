@@ -72,8 +72,8 @@ def test_spheres_come_from_a_file_and_go_to_one(cli, refuse, tmp_path):
     path, out, curobo = write(tmp_path, ARM), tmp_path / "arm.yaml", tmp_path / "curobo.yml"
     assert cli("robots", "import", path, "-o", out).code == 0
     written = cli("robots", "export", out, "--curobo", "--out", curobo)
-    assert (written.code, written.out) == (0, f"wrote {curobo}\n")
-    assert written.err.startswith("ikde: not held: joint limits")
+    assert (written.code, written.out) == (0, f"wrote {curobo}\nwrote {tmp_path / 'curobo.urdf'}\n")
+    assert written.err.startswith("ikde: cuRobo does not hold: joint limits")
     curobo.write_text(curobo.read_text().replace("upper:", "uper:"), encoding="utf-8")
     outcome = cli("robots", "import", path, "--spheres", curobo, "--json")
     assert [(own["link"], own["how"]) for own in outcome.data["spheres"]] == [

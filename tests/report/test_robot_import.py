@@ -95,3 +95,13 @@ def test_names_are_text_not_markup(tmp_path):
     text = format_import(imported, Units(), width=120)
     assert "[red]x[/]" in text
     assert "[b]" in text
+
+
+def test_the_chain_is_told_and_how_a_gripper_is_left_out(tmp_path):
+    path = write(tmp_path, ARM)
+    text = format_import(read_urdf(path), Units("mm", "deg"), width=140)
+    assert "chain: shoulder moves upper, slide moves fore, the tool tip is fixed to it" in text
+    assert "tool: if slide opens a gripper, --tool upper names a link before it" in text
+    named = read_urdf(path, ImportOptions(tool="fore"))
+    assert "opens a gripper" not in format_import(named, Units("mm", "deg"))
+    assert import_json(named)["chain"] == [{"joint": "shoulder", "link": "upper"}, {"joint": "slide", "link": "fore"}]

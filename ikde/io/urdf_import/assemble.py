@@ -8,14 +8,14 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.io.robot_file import MAX_ENTRIES, MAX_JOINTS
 from ikde.io.srdf import Srdf
-from ikde.io.urdf_import.choose_pairs import SPHERES, ChosenPairs, choose_pairs
+from ikde.io.urdf_import.choose_pairs import SPHERES, ChosenPairs, PairChoice, choose_pairs
 from ikde.io.urdf_import.cover_links import LinkSpheres
 from ikde.io.urdf_import.description import Description
 from ikde.io.urdf_import.frames import Skeleton
 from ikde.io.urdf_import.free_home import find_free_home
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import NO_DETECTOR, WORLD, Drive, FreeSpheres, Joint, Pairs, Robot
+from ikde.model.robot import NO_DETECTOR, WORLD, Drive, FreeSpheres, Joint, Robot
 from ikde.model.validate import check_robot
 
 DRIVES: dict[str, Drive] = {"omni": "omnidirectional", "differential": "differential"}
@@ -23,7 +23,8 @@ DRIVES: dict[str, Drive] = {"omni": "omnidirectional", "differential": "differen
 
 def assemble(description: Description, skeleton: Skeleton, tool: str, options: ImportOptions) -> Robot:
     """The robot without spheres, not yet checked."""
-    masses = {frame: description.links[link].inertia for link, frame in skeleton.frame_of.items() if frame != WORLD}
+    frames = {link: frame for link, frame in skeleton.frame_of.items() if frame != WORLD and link not in skeleton.parts}
+    masses = {frame: description.links[link].inertia for link, frame in frames.items()}
     return Robot(
         name=description.name,
         title=f"from {description.path.name}",
@@ -52,10 +53,8 @@ def set_home(draft: Robot, values: Mapping[str, float]) -> Robot:
     return replace(draft, joints=tuple(map(move, draft.joints)))
 
 
-def add_spheres(
-    draft: Robot, skeleton: Skeleton, covered: Mapping[str, LinkSpheres], srdf: Srdf, asked: Pairs = ()
-) -> ChosenPairs:
-    """The robot with spheres and a detector of the pairs that are chosen, checked; `asked` are pairs of links."""
+def add_spheres(draft: Robot, skeleton: Skeleton, covered: Mapping[str, LinkSpheres], ask: PairChoice) -> ChosenPairs:
+    """The robot with spheres and a detector of the pairs that are chosen, checked."""
     free = _place_spheres(skeleton, covered)
     for what, number, most in (
         ("joints", len(draft.joints), MAX_JOINTS),
@@ -66,25 +65,26 @@ def add_spheres(
             raise InputError(f"a robot has at most {most:,} {what}, and this one {number:,}", (what,))
     if not free:
         return ChosenPairs(robot=check_robot(draft), warnings=("no link has spheres: self-collision is not checked",))
-    return choose_pairs(replace(draft, approximations={SPHERES: free}), skeleton.frame_of, srdf, asked)
+    return choose_pairs(replace(draft, approximations={SPHERES: free}), skeleton.component_of, ask)
 
 
 def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tuple[FreeSpheres, ...]:
-    """The spheres of each link that has any, in its frame."""
-    return tuple(
-        FreeSpheres(
-            component=skeleton.frame_of[link],
-            frame=skeleton.frame_of[link],
-            spheres=tuple((x, y, z, r) for x, y, z, r in np.column_stack([own.centres, own.radii]).tolist()),
-        )
-        for link, own in covered.items()
-        if len(own.radii)
-    )
+    """The spheres of each link that has any, in its frame, or that which it is part of."""
+    placed = []
+    for link, own in covered.items():
+        frame = skeleton.frame_of[link]
+        component, p, R = skeleton.parts.get(link, (frame, np.zeros(3), np.eye(3)))
+        rows = np.column_stack([own.centres @ R.T + p if link in skeleton.parts else own.centres, own.radii])
+        if len(rows):
+            balls = tuple((x, y, z, r) for x, y, z, r in rows.tolist())
+            placed.append(FreeSpheres(component=component, frame=frame, spheres=balls))
+    return tuple(placed)
 
 
-def free_home(robot: Robot, states: tuple[str, ...]) -> tuple[Robot, str, bool | None]:
+def free_home(robot: Robot, states: tuple[str, ...], srdf: Srdf) -> tuple[Robot, str, bool | None]:
     """The robot with a home that is free if one is found, where it comes from, and whether it is free."""
-    source = f"SRDF state {', '.join(states)}" if states else "0, or mid-range"
+    named = f"{srdf.source.removeprefix('the ')} state {', '.join(states)}"
+    source = named if states else "0, or mid-range"
     if not robot.detectors:
         return robot, source, None
     found = find_free_home(CollisionModel.of(robot), robot.home)

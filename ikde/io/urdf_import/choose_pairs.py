@@ -1,7 +1,7 @@
 """Which pairs of links are compared: all but adjacent ones, those that the SRDF disables, and those that touch."""
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from ikde.errors import InputError, nearest, quoted
@@ -16,6 +16,7 @@ from ikde.solver.plain import compute_gaps
 from ikde.solver.touching import draw_configurations
 
 SPHERES = "spheres"
+NamedPairs = dict[frozenset[str], tuple[str, str]]
 TRIED, OFTEN, NAMED = 200, 0.25, 3  # configurations; the share of them in which a pair touches often; pairs in a line
 
 
@@ -31,9 +32,19 @@ class ChosenPairs:
     warnings: tuple[str, ...] = ()
 
 
-def choose_pairs(
-    draft: Robot, frame_of: Mapping[str, str], srdf: Srdf, asked: Iterable[tuple[str, str]]
-) -> ChosenPairs:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PairChoice:
+    """What is said of pairs before any is measured."""
+
+    srdf: Srdf = field(default_factory=Srdf)
+    """Pairs that its maker left out, or put in."""
+    asked: Pairs = ()
+    """Pairs of links that are compared whatever is found."""
+    safe_distance_m: float = 0.0
+    """The clearance at which collision begins."""
+
+
+def choose_pairs(draft: Robot, component_of: Mapping[str, str], choice: PairChoice) -> ChosenPairs:
     """Choose the pairs of a robot with spheres, and give each that is left out its reason in the robot.
 
     Links of one body, and links between which a joint stands and no other link with spheres, are adjacent. Of all
@@ -42,32 +53,35 @@ def choose_pairs(
 
     Args:
         draft: the robot with the approximation `spheres`, not yet checked.
-        frame_of: the frame of each link.
-        srdf: pairs that its maker left out.
-        asked: pairs of links that are compared whatever is found.
+        component_of: the component that each link is.
+        choice: what is said of pairs.
 
     Raises:
         InputError: for a pair that is asked for and that there is not, or what is wrong with the robot.
     """
     components = dict.fromkeys(entry.component for entry in draft.approximations[SPHERES])
-    wanted = _find_asked(frame_of, components, asked)
-    disabled, notes = _read_disabled(frame_of, components, srdf)
+    srdf = choice.srdf
+    wanted = _find_asked(component_of, components, choice.asked)
+    wanted |= _read_enabled(component_of, components, srdf)
+    disabled, notes = _read_disabled(component_of, components, srdf)
     joined, adjacent = _find_joined(check_robot(draft))
-    left_out = tuple(pair for key, pair in disabled.items() if key not in {*wanted, *adjacent})
-    compared = [pair for key, pair in joined.items() if key not in disabled]
-    compared += [pair for key, pair in wanted.items() if key in adjacent or (key in joined and key in disabled)]
-    draft = replace(draft, adjacent=left_out, compared=tuple(compared))
-    chosen = leave_out_touching(draft, Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT), wanted)
+    left_out = tuple(pair for key, pair in disabled.items() if key not in wanted.keys() | adjacent.keys())
+    whole = adjacent if srdf.is_whole else {}
+    compared = {key: pair for key, pair in (joined | whole).items() if key not in disabled}
+    compared |= {key: pair for key, pair in wanted.items() if key in adjacent or key in joined}
+    draft = replace(draft, adjacent=left_out, compared=tuple(compared.values()))
+    detector = Detector(name=SPHERES, spheres=SPHERES, pairs=NON_ADJACENT, safe_distance_m=choice.safe_distance_m)
+    chosen = leave_out_touching(draft, detector, wanted)
     return replace(chosen, warnings=(*notes, *chosen.warnings))
 
 
 def _find_asked(
-    frame_of: Mapping[str, str], components: Iterable[str], asked: Iterable[tuple[str, str]]
-) -> dict[frozenset[str], tuple[str, str]]:
+    component_of: Mapping[str, str], components: Iterable[str], asked: Iterable[tuple[str, str]]
+) -> NamedPairs:
     """Pairs of components by what they are made of."""
     found, known = {}, list(components)
     for a, b in asked:
-        pair = (frame_of.get(a, a), frame_of.get(b, b))
+        pair = (component_of.get(a, a), component_of.get(b, b))
         for link, component in zip((a, b), pair, strict=True):
             if component not in known:
                 message = f"no link with spheres is called {quoted(link)}{nearest(link, known)}"
@@ -79,7 +93,7 @@ def _find_asked(
 
 
 def _read_disabled(
-    frame_of: Mapping[str, str], components: Iterable[str], srdf: Srdf
+    component_of: Mapping[str, str], components: Iterable[str], srdf: Srdf
 ) -> tuple[dict[frozenset[str], AdjacentPair], list[str]]:
     """Pairs of components that the SRDF leaves out, each once, and which of its links are unknown."""
     found: dict[frozenset[str], AdjacentPair] = {}
@@ -87,27 +101,40 @@ def _read_disabled(
     known = set(components)
     for pair in srdf.disabled:
         for link in (pair.a, pair.b):
-            if link not in frame_of:
+            if link not in component_of:
                 unknown[link] = None
-        a, b = (frame_of.get(link, "") for link in (pair.a, pair.b))
+        a, b = (component_of.get(link, "") for link in (pair.a, pair.b))
         if a != b and {a, b} <= known:
-            found.setdefault(frozenset((a, b)), AdjacentPair(a=a, b=b, reason=f"SRDF: {pair.reason or 'disabled'}"))
-    notes = [f"the SRDF names links that there are not: {', '.join(list(unknown)[:8])}"] if unknown else []
+            found.setdefault(frozenset((a, b)), AdjacentPair(a=a, b=b, reason=_describe_source(srdf, pair.reason)))
+    notes = [f"{srdf.source} names links that there are not: {', '.join(list(unknown)[:8])}"] if unknown else []
     return found, notes
 
 
-def _find_joined(robot: Robot) -> tuple[dict[frozenset[str], tuple[str, str]], set[frozenset[str]]]:
+def _describe_source(srdf: Srdf, reason: str) -> str:
+    """What leaves a pair out, and why."""
+    return f"{srdf.source.removeprefix('the ')}: {reason or 'disabled'}"
+
+
+def _read_enabled(component_of: Mapping[str, str], components: Iterable[str], srdf: Srdf) -> NamedPairs:
+    """Pairs of components that the SRDF compares whatever joins them."""
+    known = set(components)
+    named = [(component_of.get(a, ""), component_of.get(b, "")) for a, b in srdf.enabled]
+    return {frozenset(pair): pair for pair in named if pair[0] != pair[1] and set(pair) <= known}
+
+
+def _find_joined(robot: Robot) -> tuple[NamedPairs, NamedPairs]:
     """Pairs that a joint joins although another link with spheres stands between them; and pairs that are adjacent."""
     tree = build_tree(robot)
     bodies = component_bodies(robot.approximations[SPHERES], tree)
     parents = {frame.name: frame.parent for frame in robot.frames}
-    joined, adjacent = {}, set()
+    frames = {entry.component: entry.start for entry in robot.approximations[SPHERES]}
+    joined, adjacent = {}, {}
     for a, b in combinations(bodies, 2):
         if describe_link(robot, tree, bodies[a], bodies[b]):
-            if bodies[a] != bodies[b] and _is_anything_between(parents, a, b, set(bodies)):
-                joined[frozenset((a, b))] = (a, b)
-            else:
-                adjacent.add(frozenset((a, b)))
+            is_apart = bodies[a] != bodies[b] and _is_anything_between(
+                parents, frames[a], frames[b], {*frames.values()}
+            )
+            (joined if is_apart else adjacent)[frozenset((a, b))] = (a, b)
     return joined, adjacent
 
 

@@ -1,6 +1,6 @@
 """What a URDF file says: links with shapes and masses, joints with axes and limits; numbers read, names resolved."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 from typing import Literal, TypeVar, cast, get_args
@@ -8,6 +8,7 @@ from typing import Literal, TypeVar, cast, get_args
 import numpy as np
 
 from ikde.errors import FileError, InputError, nearest, quoted
+from ikde.io.urdf_import.own_marks import OwnMarks, read_marks
 from ikde.io.xml_elements import Element, XmlFile
 from ikde.kernels.arrays import Floats
 from ikde.model.names import check_printable
@@ -83,8 +84,8 @@ class Description:
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
     warnings: tuple[str, ...]
-    tool: str | None = None
-    """What `<ikde tool="LINK"/>` names, as in files that ikde has written."""
+    marks: OwnMarks = field(default_factory=OwnMarks)
+    """What `<ikde>` says, in files that ikde has written."""
 
     def error(self, message: str, part: UrdfLink | UrdfJoint) -> FileError:
         """An error about a link or joint."""
@@ -111,14 +112,28 @@ def read_description(path: Path) -> Description:
     joints = _named(file, "joint", [_read_joint(file, element, links) for element in root.find_all("joint")])
     name = root.attributes.get("name") or path.stem
     check_name(file, name, root, "robot")
-    own = root.find("ikde")
-    tool = _read_tool(own.attributes.get("tool"), links) if own else None
-    return Description(path=path, name=name, links=links, joints=joints, warnings=tuple(warnings), tool=tool)
+    marks = read_marks(file, links, joints)
+    return Description(
+        path=path,
+        name=name,
+        links={own.name: _drop_mass(own, marks) for own in links.values()},
+        joints={own.name: _drop_limits(own, marks) for own in joints.values()},
+        warnings=tuple(warnings),
+        marks=marks,
+    )
 
 
-def _read_tool(tool: str | None, links: dict[str, UrdfLink]) -> str | None:
-    """The tool if there is such a link."""
-    return tool if tool in links else None
+def _drop_mass(link: UrdfLink, marks: OwnMarks) -> UrdfLink:
+    """The link without a mass that is a placeholder."""
+    mass_kg = marks.keep("link", link.name, "mass", link.inertia.mass_kg if link.inertia else None)
+    return link if mass_kg is not None else replace(link, inertia=None)
+
+
+def _drop_limits(joint: UrdfJoint, marks: OwnMarks) -> UrdfJoint:
+    """The joint without a speed or an effort that is a placeholder."""
+    speed = marks.keep("joint", joint.name, "velocity", joint.max_speed)
+    effort = marks.keep("joint", joint.name, "effort", joint.max_effort)
+    return replace(joint, max_speed=speed, max_effort=effort)
 
 
 def _named(file: XmlFile, tag: str, parts: list[Part]) -> dict[str, Part]:

@@ -18,7 +18,8 @@ MAX_SPHERES = 14
 def choose_finer(often: Pairs, covered: Mapping[str, LinkSpheres], frame_of: Mapping[str, str]) -> list[str]:
     """The smaller link of each pair of components that touch often, where few spheres cover it."""
     link_of = {frame_of[link]: link for link in covered}
-    smaller = (min((link_of[a], link_of[b]), key=lambda link: len(covered[link].radii)) for a, b in often)
+    pairs = ((link_of[a], link_of[b]) for a, b in often if a in link_of and b in link_of)  # else of given spheres
+    smaller = (min(pair, key=lambda link: len(covered[link].radii)) for pair in pairs)
     return [link for link in dict.fromkeys(smaller) if covered[link].report.protrusion_m and _is_small(covered[link])]
 
 

@@ -1,7 +1,7 @@
 """Joints and frames of a robot from the tree of a URDF, with the base that it stands on."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,17 +20,24 @@ FAR_M = 100.0
 
 @dataclass(slots=True, kw_only=True)
 class Skeleton:
-    """Joints and frames as they are collected; `frame_of` is the frame of each link."""
+    """Joints and frames as they are collected; `frame_of` is the frame of each link, or that which it is part of."""
 
     joints: list[Joint] = field(default_factory=list)
     frames: list[Frame] = field(default_factory=list)
     frame_of: dict[str, str] = field(default_factory=dict)
+    parts: dict[str, tuple[str, Floats, Floats]] = field(default_factory=dict)
+    """Link that is no frame -> the component that it is, and its place [3] and rotation [3, 3] in that frame."""
     notes: dict[str, str] = field(default_factory=dict)
     """Joint -> what is worth knowing about it."""
     warnings: list[str] = field(default_factory=list)
     joint_names: set[str] = field(default_factory=set)
     """Taken."""
     frame_names: set[str] = field(default_factory=set)
+
+    @property
+    def component_of(self) -> dict[str, str]:
+        """The component that each link's spheres make: that of its name, unless the file says another one."""
+        return self.frame_of | {link: component for link, (component, *_) in self.parts.items()}
 
     def add(self, name: str, parent: str, p: Floats, R: Floats, moved: tuple[Joint, Floats] | None = None) -> None:
         """A frame, and the joint that moves it about or along an axis."""
@@ -58,6 +65,10 @@ def build_skeleton(
     for link in tree.order[1:]:
         joint = tree.joint_of[link]
         parent = skeleton.frame_of[joint.parent]
+        if link in description.marks.components:
+            skeleton.frame_of[link] = parent
+            skeleton.parts[link] = description.marks.components[link], joint.p_parent_child, joint.R_parent_child
+            continue
         name = _name_frame(skeleton, link, tool)
         p, R = joint.p_parent_child, joint.R_parent_child
         if joint.name in held:
@@ -71,7 +82,15 @@ def build_skeleton(
             skeleton.add(name, parent, p, R)
         else:
             skeleton.add(name, parent, p, R, (_to_joint(skeleton, joint), joint.axis))
+    _follow_marks(skeleton, description.marks.joints)
     return skeleton
+
+
+def _follow_marks(skeleton: Skeleton, marked: Mapping[str, float | None]) -> None:
+    """Joints in the order of q in which they were written, with their accelerations; others stand before them."""
+    order = {name: place for place, name in enumerate(marked)}
+    skeleton.joints.sort(key=lambda joint: order.get(joint.name, -1))
+    skeleton.joints = [replace(joint, max_acceleration=marked.get(joint.name)) for joint in skeleton.joints]
 
 
 def _name_frame(skeleton: Skeleton, link: str, tool: str) -> str:

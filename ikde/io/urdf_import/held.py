@@ -35,7 +35,8 @@ def find_held(
     for name, joint in description.joints.items():
         if joint.kind == "fixed":
             continue
-        reason = _find_reason(description, tree, joint, options, name in on_chain)
+        moves = name in on_chain or name in description.marks.joints
+        reason = _find_reason(description, tree, joint, options, moves)
         if reason:
             value, how = _find_value(description, joint, options.hold, state)
             held[name] = HeldJoint(
@@ -57,12 +58,12 @@ def _check_hold(description: Description, name: str, value: float) -> None:
 
 
 def _find_reason(
-    description: Description, tree: LinkTree, joint: UrdfJoint, options: ImportOptions, on_chain: bool
+    description: Description, tree: LinkTree, joint: UrdfJoint, options: ImportOptions, moves: bool
 ) -> str | None:
     """Why a joint is held; None if it moves the tool."""
     if joint.name in options.hold:
         return "asked for"
-    if not on_chain:
+    if not moves:
         return "off the chain to the tool"
     if joint.mimic is not None:
         message = f"it mimics {quoted(joint.mimic.joint)} and moves the tool; hold it (--hold {joint.name}=VALUE)"

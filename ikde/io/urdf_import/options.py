@@ -73,3 +73,14 @@ def read_pairs(words: Iterable[str]) -> tuple[tuple[str, str], ...]:
             raise InputError(f"expected LINK:LINK, got {quoted(word)}", ("compare",))
         pairs.append((a, b))
     return tuple(pairs)
+
+
+def check_pairs(pairs: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Pairs of names as they are; raises `InputError` for anything else, a text among them."""
+    checked = []
+    for pair in pairs:
+        is_pair = not isinstance(pairs, str) and isinstance(pair, tuple | list) and len(pair) == 2
+        if not is_pair or not all(isinstance(name, str) for name in pair):
+            raise InputError(f"expected pairs of links, such as [('base', 'hand')], got {quoted(pair)}", ("compare",))
+        checked.append((pair[0], pair[1]))
+    return tuple(checked)

@@ -5,10 +5,11 @@ from os import PathLike
 from pathlib import Path
 
 from ikde.errors import FileError, InputError
-from ikde.io.sphere_files import read_spheres
+from ikde.io.sphere_files import SphereFile, read_spheres
 from ikde.io.srdf import Srdf, read_srdf
 from ikde.io.urdf_import.assemble import add_spheres, assemble, free_home, set_home
 from ikde.io.urdf_import.chain import LinkTree, choose_tool, find_tree
+from ikde.io.urdf_import.choose_pairs import PairChoice
 from ikde.io.urdf_import.cover_links import LinkSpheres, cover_links
 from ikde.io.urdf_import.description import Description, read_description
 from ikde.io.urdf_import.finer import choose_finer, cover_finer
@@ -16,7 +17,7 @@ from ikde.io.urdf_import.frames import build_skeleton
 from ikde.io.urdf_import.given_spheres import give_spheres
 from ikde.io.urdf_import.held import HeldJoint, find_held
 from ikde.io.urdf_import.imported import ImportedUrdf
-from ikde.io.urdf_import.options import Base, ImportOptions
+from ikde.io.urdf_import.options import Base, ImportOptions, check_pairs
 from ikde.model.robot import Robot
 
 
@@ -30,11 +31,12 @@ def import_urdf(
     hold: Mapping[str, float] | None = None,
     package_paths: Sequence[str | PathLike[str]] = (),
     protrusion_m: float = 0.02,
-    mesh_scale: float = 1.0,
+    compare: Sequence[tuple[str, str]] = (),
 ) -> Robot:
     """A robot from a URDF file: the joints that move the tool, every link as a frame, spheres and pairs.
 
-    `ikde.read_urdf` gives the same robot with an account of what was frozen, covered and left out.
+    `ikde.read_urdf` gives the same robot with an account of what was frozen, covered and left out, and takes what is
+    asked for more rarely, such as the scale of meshes in mm.
 
     Args:
         path: the file.
@@ -47,7 +49,7 @@ def import_urdf(
         hold: joints that stay where they are, m or rad; joints off the chain to the tool stay anyway.
         package_paths: folders that meshes may lie in, beside the file's own.
         protrusion_m: how far spheres may stand out of the shapes that they cover.
-        mesh_scale: what meshes are scaled by beside what the file says: 0.001 for meshes in mm.
+        compare: pairs of links that are compared although they are adjacent, always touch, or the SRDF leaves them out.
 
     Raises:
         InputError: for a value that makes no sense.
@@ -61,7 +63,7 @@ def import_urdf(
         package_paths=tuple(map(Path, package_paths)),
         spheres=spheres if isinstance(spheres, bool) else Path(spheres),
         protrusion_m=protrusion_m,
-        mesh_scale=mesh_scale,
+        compare=check_pairs(compare),
     )
     return read_urdf(path, options).robot
 
@@ -80,31 +82,34 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     options = options or ImportOptions()
     description = read_description(Path(path))
     tree = find_tree(description)
-    tool = choose_tool(description, tree, options.tool or description.tool, options.drives)
-    srdf = read_srdf(options.srdf) if options.srdf else Srdf()
+    tool = choose_tool(description, tree, options.tool or description.marks.tool, options.drives)
+    file = read_spheres(options.spheres) if isinstance(options.spheres, Path) else None
+    srdf = read_srdf(options.srdf) if options.srdf else file.ignored if file else Srdf()
     states, values = srdf.choose_states()
     held = find_held(description, tree, tool, options, values)
     skeleton = build_skeleton(description, tree, tool, options, held)
     if not skeleton.joints:
         raise FileError(description.path, f"no joint moves the tool {tool!r}; name another link or a base", ("tool",))
-    covered, given = _find_spheres(description, tree, options)
+    covered, given = _find_spheres(description, tree, options, file)
+    covered = _sort_components(covered, description.marks.components)
     try:
         robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
         robot = set_home(robot, values)
-        pairs = add_spheres(robot, skeleton, covered, srdf, options.compare)
+        choice = PairChoice(srdf=srdf, asked=options.compare, safe_distance_m=description.marks.safe_distance_m)
+        pairs = add_spheres(robot, skeleton, covered, choice)
         if finer := choose_finer(pairs.often, covered, skeleton.frame_of):
             covered |= cover_finer(description, tree, options, finer)
-            pairs = add_spheres(robot, skeleton, covered, srdf, options.compare)
+            pairs = add_spheres(robot, skeleton, covered, choice)
     except FileError:
         raise
     except InputError as error:
         raise FileError(description.path, error.message, error.where) from None
-    robot, home, is_free = free_home(pairs.robot, states)
+    robot, home, is_free = free_home(pairs.robot, states, srdf)
     return ImportedUrdf(
         robot=robot,
         file=str(path),
         root=tree.root,
-        tool_was_chosen=options.tool is None and description.tool is None,
+        tool_was_chosen=options.tool is None and description.marks.tool is None,
         joint_notes=skeleton.notes,
         held=tuple(held.values()),
         links=tuple(covered[link].report for link in covered),
@@ -123,13 +128,22 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
 
 
 def _find_spheres(
-    description: Description, tree: LinkTree, options: ImportOptions
+    description: Description, tree: LinkTree, options: ImportOptions, file: SphereFile | None
 ) -> tuple[dict[str, LinkSpheres], list[str]]:
     """Spheres of links, made or given, and what is worth a warning of a file that gives them."""
-    if isinstance(options.spheres, Path):
-        links = {name: bool(description.links[name].shapes) for name in tree.order}
-        return give_spheres(read_spheres(options.spheres), links)
+    if file:
+        parts = description.marks.components
+        links = {
+            name: bool(description.links[name].shapes) and parts.get(name) not in file.spheres for name in tree.order
+        }
+        return give_spheres(file, links)
     return (cover_links(description, tree, options) if options.spheres else {}), []
+
+
+def _sort_components(covered: dict[str, LinkSpheres], parts: Mapping[str, str]) -> dict[str, LinkSpheres]:
+    """Components in the order in which they were written, after all others."""
+    order = {name: place for place, name in enumerate(parts.values())}
+    return dict(sorted(covered.items(), key=lambda item: order.get(parts.get(item[0], item[0]), -1)))
 
 
 def _list_followers(description: Description, held: Mapping[str, HeldJoint]) -> list[str]:

@@ -65,5 +65,5 @@ def test_only_what_few_spheres_cover_is_covered_anew(spheres):
 
     covered = {"large": own(40), "small": own(spheres), "given": own(2, None)}
     frame_of = {"large": "frame", "small": "small", "given": "given"}
-    often = (("frame", "small"), ("small", "frame"), ("given", "frame"))
+    often = (("frame", "small"), ("small", "frame"), ("given", "frame"), ("frame", "other"))
     assert finer.choose_finer(often, covered, frame_of) == (["small"] if spheres <= finer.MAX_SPHERES else [])

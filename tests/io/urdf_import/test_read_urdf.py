@@ -6,7 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import ikde
-from ikde.errors import IkdeError
+from ikde.errors import IkdeError, InputError
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.io.urdf_import.read_urdf import import_urdf, read_urdf
 from tests.urdf_texts import ARM, FINGERS, extend, joint, write
@@ -148,3 +148,14 @@ def test_a_urdf_is_a_robot_wherever_one_is_named(tmp_path):
         ikde.load_robot("nowhere.urdf")
     run = {"robot": str(path), "targets": {"inline": [{"position": [0.3, 0.1, 0.8]}]}}
     assert ikde.load_batch(run).robot.joint_names == ("shoulder", "slide")
+
+
+def test_a_pair_that_is_asked_for_is_compared(tmp_path):
+    path = write(tmp_path, ARM)
+    assert ("upper", "fore") not in ikde.import_urdf(path).pair_lists["non_adjacent"]
+    assert ("upper", "fore") in ikde.import_urdf(path, compare=[("upper", "fore")]).pair_lists["non_adjacent"]
+    with pytest.raises(InputError, match="no link with spheres is called 'uper'"):
+        ikde.import_urdf(path, compare=[("uper", "fore")])
+    for wrong in ("upper:fore", ["upper:fore"], [("upper",)], [(1, 2)]):
+        with pytest.raises(InputError, match="compare: expected pairs of links"):
+            ikde.import_urdf(path, compare=wrong)
