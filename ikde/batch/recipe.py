@@ -23,6 +23,8 @@ LEAVES_ANSWERS_ALONE = (  # all pairs are in `pair_lists`
         "file_ranges",
         "drive",
         "inertias",
+        "tools",
+        "free_joints",
     ),
 )
 OF_TRACKS = ("max_speed", "max_acceleration", "max_effort")  # of joints: a batch solves for poses, not for motions

@@ -170,6 +170,8 @@ class BatchSpec(Entry):
     """What to call the run (default: the file's name)."""
     robot: Text
     """A robot that ships with ikde, or its file, relative to the run file."""
+    tool: Name | None = None
+    """Which of its tools, or a frame (default: as the robot's file says); joints that do not move it are held."""
     units: UnitsEntry = UnitsEntry()
     """Units of everything written here."""
     targets: TargetsEntry

@@ -6,12 +6,14 @@ from ikde.cli import options
 from ikde.cli.candidates import DEFAULT_ROBOT
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.output import layout, print_json, print_result
+from ikde.cli.robot_choice import ToolOption, read_whole
 from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 
 
 def check(
     q: options.QOption = None,
     robot: options.RobotOption = DEFAULT_ROBOT,
+    tool: ToolOption = None,
     detector: options.DetectorOption = None,
     pairs: options.PairsOption = None,
     safe_distance: options.SafeDistanceOption = None,
@@ -33,7 +35,7 @@ def check(
     from ikde.report.numbers import Units
     from ikde.solver.check import check as check_configuration
 
-    model = options.read_robot(robot)
+    model = read_whole(robot, tool)
     values = options.read_q(model, q, unit, angles, convention)
     collision = options.read_collision(model, detector, pairs, safe_distance, unit)
     collision = place_in_world(collision, world, margin, unit)

@@ -3,11 +3,13 @@
 from ikde.cli import options
 from ikde.cli.candidates import DEFAULT_ROBOT
 from ikde.cli.output import layout, print_json, print_result
+from ikde.cli.robot_choice import ToolOption, read_whole
 
 
 def fk(
     q: options.QOption = None,
     robot: options.RobotOption = DEFAULT_ROBOT,
+    tool: ToolOption = None,
     detector: options.DetectorOption = None,
     unit: options.UnitOption = options.LengthUnit.m,
     angles: options.AnglesOption = options.AngleUnit.rad,
@@ -25,7 +27,7 @@ def fk(
     from ikde.solver.forward import forward
     from ikde.solver.joints import joints_outside
 
-    model = options.read_robot(robot)
+    model = read_whole(robot, tool)
     values = options.read_q(model, q, unit, angles, convention)
     frames, outside = forward(model, values), joints_outside(model, values)
     options.check_drawable(plot)

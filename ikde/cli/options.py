@@ -152,21 +152,6 @@ def check_environment() -> None:
         choose_way()
 
 
-def read_robot(name: str) -> "Robot":
-    """The robot that an option names; an error about one that the environment names says so."""
-    from ikde.errors import FileError, InputError
-    from ikde.io.robots import load_robot
-
-    try:
-        return load_robot(name)
-    except FileError:
-        raise
-    except InputError as error:
-        if name != os.environ.get(ROBOT):
-            raise
-        raise InputError(error.message, (f"${ROBOT}",)) from None
-
-
 def read_q(
     robot: "Robot", text: str | None, unit: LengthUnit, angles: AngleUnit, convention: str | None, key: str = "q"
 ) -> "Floats":

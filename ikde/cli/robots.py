@@ -16,9 +16,9 @@ from ikde.cli.options import (
     RobotArgument,
     UnitOption,
     check_environment,
-    read_robot,
 )
 from ikde.cli.output import layout, print_json, print_line, print_note, print_result, print_written
+from ikde.cli.robot_choice import read_whole
 from ikde.cli.robots_compose import compose_robot
 from ikde.cli.robots_import import import_robot
 from ikde.cli.robots_spheres import exchange_robot_spheres
@@ -82,7 +82,7 @@ def show(
 
     if kernels and pairs:
         raise InputError("expected one of --kernels and --pairs, got both")
-    model = read_robot(name)
+    model = read_whole(name)
     chosen = CollisionModel.of(model, detector)
     if kernels:
         source = _format_kernels(chosen, kind)
@@ -126,7 +126,7 @@ def validate(
     from ikde.report.numbers import Units
     from ikde.report.pairs import format_pairs, pairs_json
 
-    model = load_robot(file)
+    model = load_robot(file).whole
     chosen = CollisionModel.of(model, detector)
     if as_json:
         counts = {"joints": len(model.joints), "frames": len(model.frames)}
@@ -178,7 +178,7 @@ def export(
     kind: Format = wanted[0]
     if urdf_path is not None and kind not in BESIDE:
         raise InputError("only --curobo and --xrdf go with a URDF", ("urdf-path",))
-    robot = read_robot(name)
+    robot = read_whole(name)
     is_alone = kind not in BESIDE or out is None or urdf_path is not None
     beside_text = "" if is_alone else format_urdf(robot, collision=detector)
     beside = None if is_alone or out is None else _find_beside(out, beside_text)

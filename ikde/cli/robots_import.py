@@ -19,6 +19,13 @@ class BaseChoice(StrEnum):
     differential = "differential"
 
 
+ToolsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="LINK|NAME=LINK",
+        help="The tool (default: the only end that a joint moves); of several arms NAME=LINK, again and again.",
+    ),
+]
 CompareOption = Annotated[
     list[str] | None,
     typer.Option(metavar="LINK:LINK", help="Compare a pair that would be left out; as often as you like."),
@@ -31,9 +38,7 @@ def import_robot(
         typer.Argument(metavar="FILE|NAME", help="A URDF file, or one of installed example-robot-data or rtb-data."),
     ],
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="The robot file to write.")] = None,
-    tool: Annotated[
-        str | None, typer.Option(metavar="LINK", help="The tool (default: the only end that a joint moves).")
-    ] = None,
+    tool: ToolsOption = None,
     base: Annotated[
         BaseChoice, typer.Option(help="urdf: as it is. fixed: a floating root is held. omni, differential: x, y, yaw.")
     ] = BaseChoice.urdf,
@@ -73,7 +78,7 @@ def import_robot(
     from ikde.io.robot_writer import write_robot
     from ikde.io.robots import check_kept, find_urdf
     from ikde.io.urdf_import.imported import list_notes
-    from ikde.io.urdf_import.options import ImportOptions, read_holds, read_pairs
+    from ikde.io.urdf_import.options import ImportOptions, read_holds, read_pairs, read_tools
     from ikde.io.urdf_import.read_urdf import read_urdf
     from ikde.report.numbers import Units
     from ikde.report.robot_import import format_import, import_json
@@ -85,7 +90,7 @@ def import_robot(
     imported = read_urdf(
         path,
         ImportOptions(
-            tool=tool,
+            tool=read_tools(tool or []),
             base=base.value,
             base_reach_m=base_reach,
             hold=read_holds(hold or []),

@@ -10,6 +10,7 @@ from ikde.cli.candidates import DEFAULT_ROBOT, offer, offer_joints
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import layout, print_json, print_note, print_result, working
+from ikde.cli.robot_choice import ToolOption, hold_at, read_robot
 from ikde.cli.startup import skip_blas_probe
 from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
@@ -100,6 +101,7 @@ def solve(
     tolerance: ToleranceOption = None,
     orientation_tolerance: OrientationToleranceOption = None,
     robot: options.RobotOption = DEFAULT_ROBOT,
+    tool: ToolOption = None,
     near: NearOption = None,
     freeze: FreezeOption = None,
     weights: WeightsOption = None,
@@ -136,12 +138,13 @@ def solve(
     from ikde.solver.grade import confirm
     from ikde.solver.solve import solve as solve_one
 
-    model, units = options.read_robot(robot), Units(unit, angles)
+    model, units = read_robot(robot, tool), Units(unit, angles)
+    start = None if near is None else options.read_q(model.whole, near, unit, angles, convention, "near")
+    model = hold_at(model, start)
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
     checked = options.read_collision(model, detector, pairs, safe_distance, unit)
     checked = place_in_world(checked, world, margin, unit)
-    start = None if near is None else options.read_q(model, near, unit, angles, convention, "near")
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = options.read_freeze(model, freeze, unit, angles, convention)
     weighed = None if weights is None else parse_weights(model, weights)

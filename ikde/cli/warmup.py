@@ -6,14 +6,20 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ikde.cli.candidates import DEFAULT_ROBOT
-from ikde.cli.options import DetectorOption, JsonOption, RobotOption, read_robot
+from ikde.cli.options import DetectorOption, JsonOption, RobotOption
 from ikde.cli.output import is_live, layout, note_console, print_json, print_note, print_result
+from ikde.cli.robot_choice import ToolOption, read_robot
 
 if TYPE_CHECKING:
     from ikde.solver.warmup import Stage
 
 
-def warmup(robot: RobotOption = DEFAULT_ROBOT, detector: DetectorOption = None, as_json: JsonOption = False) -> None:
+def warmup(
+    robot: RobotOption = DEFAULT_ROBOT,
+    tool: ToolOption = None,
+    detector: DetectorOption = None,
+    as_json: JsonOption = False,
+) -> None:
     """Compile the kernels of a robot ahead: all engines and kinds of target, and tracks; seconds if that is done.
 
     Example: ikde warmup --robot ur5
@@ -22,7 +28,7 @@ def warmup(robot: RobotOption = DEFAULT_ROBOT, detector: DetectorOption = None, 
     from ikde.solver.warmup import list_stages, warm_up
     from ikde.track.run import list_track_stages
 
-    model = read_robot(robot)
+    model = read_robot(robot, tool)
     stages = [*list_stages(model, detector), *list_track_stages(model, detector)]
     with _progress(len(stages)) as tell:
         done = warm_up(stages, tell)

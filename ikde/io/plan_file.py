@@ -69,6 +69,8 @@ def _resolve(
     try:
         with prefix_errors("robot"):
             robot = _load_robot(spec.robot, folder)
+        if spec.tool is not None:
+            robot = robot.with_tool(spec.tool)
         return make(spec, robot, folder=folder, file=file)
     except FileError:
         raise

@@ -35,7 +35,12 @@ from ikde.model.robot import (
 from ikde.model.rotation import rotation_from_rpy
 from ikde.model.validate import check_robot
 
-MAX_JOINTS, MAX_ENTRIES, MAX_LISTS = 500, 2000, 100  # of a robot: what it takes to load grows with their squares
+MAX_JOINTS, MAX_ENTRIES, MAX_LISTS, MAX_TOOLS = (
+    500,
+    2000,
+    100,
+    100,
+)  # of a robot: what it takes to load grows with their squares
 MAX_SPHERES = 100_000  # of a robot's approximations together
 OfLists = Field(max_length=MAX_LISTS)
 LIMITS_BY_KIND: JsonDict = {
@@ -128,6 +133,8 @@ class InertiaEntry(SourcedEntry):
 class RobotFile(Entry):
     """The whole file."""
 
+    model_config = ConfigDict(json_schema_extra={"anyOf": [{"required": ["tool"]}, {"required": ["tools"]}]})
+
     name: Name
     title: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] = ""
     units: UnitsEntry = UnitsEntry()
@@ -135,7 +142,9 @@ class RobotFile(Entry):
     sources: dict[Name, SourceEntry] = {}
     joints: Annotated[dict[Name, JointEntry], Field(max_length=MAX_JOINTS)]
     frames: Annotated[dict[Name, FrameEntry], Field(max_length=MAX_ENTRIES)]
-    tool: Name
+    tool: Name | None = None
+    tools: Annotated[dict[Name, Name], Field(max_length=MAX_TOOLS)] = {}
+    """Name -> frame, of a robot with several tools; `tool` names one of them, or a frame (default: the first)."""
     conventions: Annotated[dict[Name, ConventionEntry], OfLists] = {}
     spheres: Annotated[dict[Name, Annotated[list[SphereRowEntry], Field(max_length=MAX_ENTRIES)]], OfLists] = {}
     adjacent: AdjacentEntry | None = None
@@ -151,7 +160,8 @@ class RobotFile(Entry):
 
 def parse_robot(document: Document) -> Robot:
     """Turn a YAML document into a checked `Robot`, SI inside; raises `FileError` with line and key."""
-    return _parse(document, check_robot)
+    robot = _parse(document, check_robot)
+    return robot.with_tool() if robot.tools else robot
 
 
 def parse_part(document: Document) -> Robot:
@@ -192,7 +202,8 @@ def _to_robot(file: RobotFile) -> Robot:
         title=file.title,
         joints=tuple(_to_joint(name, entry, unit[entry.kind]) for name, entry in file.joints.items()),
         frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
-        tool=file.tool,
+        tool=_choose_tool(file),
+        tools=file.tools,
         approximations={
             name: tuple(to_spheres(e, length, ("spheres", name, k)) for k, e in enumerate(rows))
             for name, rows in file.spheres.items()
@@ -272,6 +283,13 @@ def _to_pairs(file: RobotFile, name: str, seen: tuple[str, ...], known: dict[str
 
 def _to_adjacent(pairs: dict[str, dict[str, str]]) -> tuple[AdjacentPair, ...]:
     return tuple(AdjacentPair(a=a, b=b, reason=reason) for a, others in pairs.items() for b, reason in others.items())
+
+
+def _choose_tool(file: RobotFile) -> str:
+    """The frame of the tool that the file names, or of its first one."""
+    if file.tool is None and not file.tools:
+        raise InputError("this key is missing", ("tool",))
+    return next(iter(file.tools.values())) if file.tool is None else file.tools.get(file.tool, file.tool)
 
 
 def _choose_default(file: RobotFile) -> str:

@@ -25,6 +25,7 @@ def write_robot(robot: Robot, path: str | PathLike[str], notes: Iterable[str] = 
 
 def format_robot_file(robot: Robot, notes: Iterable[str] = ()) -> str:
     """The text of a robot's file, a line an entry, `notes` as comments on top."""
+    robot = robot.whole
     sources = _Sources(robot.provenance)
     sections = {
         "joints": {joint.name: _joint_entry(joint) for joint in robot.joints},
@@ -47,7 +48,7 @@ def format_robot_file(robot: Robot, notes: Iterable[str] = ()) -> str:
         *(f"# {printable(note)}" for note in notes),
         *(f"{key}: {format_flow(value)}" for key, value in head.items()),
     ]
-    below = [*texts["joints"], *texts["frames"], "", f"tool: {format_flow(robot.tool)}", *_base_lines(robot, sources)]
+    below = [*texts["joints"], *texts["frames"], "", *_tool_lines(robot), *_base_lines(robot, sources)]
     below += [*texts["conventions"], *_sphere_lines(robot, sources), *_adjacent_lines(robot, sources)]
     below += [*_compare_lines(robot), *texts["pairs"]]
     below += [*texts["detectors"], "", f"default_detector: {format_flow(robot.default_detector)}", *texts["inertias"]]
@@ -141,6 +142,12 @@ def _compare_lines(robot: Robot) -> list[str]:
         if grouped
         else []
     )
+
+
+def _tool_lines(robot: Robot) -> list[str]:
+    named = next((name for name, frame in robot.tools.items() if frame == robot.tool), robot.tool)
+    tools = [f"tools: {format_flow(dict(robot.tools))}"] if robot.tools else []
+    return [*tools, f"tool: {format_flow(named)}"]
 
 
 def _base_lines(robot: Robot, sources: _Sources) -> list[str]:

@@ -30,8 +30,7 @@ def _list_elsewhere(collision: CollisionModel, kind: Format) -> Iterator[str]:
 
 def _list_lost(collision: CollisionModel, kind: Format) -> Iterator[str]:
     """What is not in any file of that kind."""
-    robot, detector = collision.robot, collision.detector
-    others = [name for name in robot.detectors if detector is None or name != detector.name]
+    robot = collision.robot
     accelerations = [joint.max_acceleration for joint in robot.joints]
     if kind in BESIDE:
         yield "limits of jerk, which ikde does not know"
@@ -49,8 +48,17 @@ def _list_lost(collision: CollisionModel, kind: Format) -> Iterator[str]:
         yield "the safe distance"
     if kind not in ("URDF", "SRDF") and collision.left_out_pairs:
         yield "reasons of pairs that are left out"
+    yield from _list_own(collision)
+
+
+def _list_own(collision: CollisionModel) -> Iterator[str]:
+    """What is in no other format at all."""
+    robot, detector = collision.robot, collision.detector
+    others = [name for name in robot.detectors if detector is None or name != detector.name]
     if others:
         yield f"the other detectors: {', '.join(others)}"
+    if robot.tools:
+        yield f"tools by name: {', '.join(robot.tools)}"
     if robot.conventions:
         yield f"conventions: {', '.join(robot.conventions)}"
     if robot.drive is not None or robot.wheels is not None or base_joints(robot):

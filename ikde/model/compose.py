@@ -59,7 +59,7 @@ def compose(base: RobotLike, arm: RobotLike, T_base_arm: Floats, tool: RobotLike
     Raises:
         InputError: if what comes of it is no robot.
     """
-    base, arm = read_robot(base, ("base",)), read_robot(arm, ("arm",))
+    base, arm = read_robot(base, ("base",)).whole, read_robot(arm, ("arm",)).whole
     tool = None if tool is None else read_robot(tool, ("tool",))
     assembly = _Assembly()
     _add(assembly, base, "base", np.eye(4), is_last=False)

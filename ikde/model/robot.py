@@ -1,7 +1,7 @@
 """A robot as data: joints, a tree of frames, sphere approximations, pair lists and detectors. SI units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from importlib import import_module
 from os import PathLike
@@ -200,6 +200,10 @@ class Robot(ReadOnlyValue):
     """Every pair that `non_adjacent` leaves out; made by `model.validate`."""
     compared: Pairs = ()
     """Pairs that `non_adjacent` has although they are of one body, or one joint joins their bodies."""
+    tools: Mapping[str, str] = field(default_factory=dict)
+    """Name -> frame, of a robot with several tools; `tool` is the frame of the one that targets are for."""
+    free_joints: tuple[Joint, ...] = ()
+    """All joints as in the robot's file, if some are held that do not move the tool (`with_tool`); else nothing."""
     file_ranges: tuple[tuple[float, float], ...] = ()
     """What `drawn` was by the robot's file, m or rad, where a run has put other limits in their place; else nothing."""
 
@@ -267,6 +271,27 @@ class Robot(ReadOnlyValue):
     def components(self, spheres: str) -> tuple[str, ...]:
         """Components of an approximation, in the order of its rows."""
         return tuple(dict.fromkeys(row.component for row in self.approximations[spheres]))
+
+    @property
+    def whole(self) -> "Robot":
+        """The robot with the same tool and all joints free, as in its file."""
+        return replace(self, joints=self.free_joints, free_joints=(), file_ranges=()) if self.free_joints else self
+
+    def with_tool(self, name: str | None = None, held_at: Mapping[str, float] | None = None) -> "Robot":
+        """The robot with another of its tools, whose targets no joint of another arm has to follow.
+
+        Joints that do not move that tool are held: both of their limits are one value. They stay in q, and what they
+        carry still collides.
+
+        Args:
+            name: of `tools`, or a frame; None: the same tool as now.
+            held_at: where held joints stand, m or rad by name; others are at home.
+
+        Raises:
+            InputError: for a name that is none, with the nearest one; for a frame that no joint moves; for values of
+                joints that move the tool, or outside their limits.
+        """
+        return import_module("ikde.model.tools").with_tool(self, name, held_at)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the robot's file, from which `ikde.load_robot(path)` makes an equal one: YAML, m and rad.

@@ -178,6 +178,11 @@ def _check_tool(robot: Robot) -> None:
     _check_name(robot.tool, names, ("tool",), "frame")
     taken = f"this name stands for the tool, which is {robot.tool!r}; name this frame otherwise, or let it be the tool"
     _require(robot.tool == TOOL or TOOL not in names, taken, "frames", TOOL)
+    for name, frame in robot.tools.items():
+        check_printable(name, ("tools", name))
+        _check_name(frame, names, ("tools", name), "frame")
+        other = f"a frame is called so, and this tool is {frame!r}; expected another name"
+        _require(name == frame or name not in (*names, TOOL), other, "tools", name)
 
 
 def _check_rows(rows: tuple[Spheres, ...], tree: Tree, where: tuple[str | int, ...]) -> None:

@@ -22,6 +22,7 @@ def import_json(imported: ImportedUrdf) -> dict[str, Any]:
         "name": robot.name,
         "root": imported.root,
         "tool": robot.tool,
+        "tools": dict(robot.tools),
         "tool_was_chosen": imported.tool_was_chosen,
         "drive": robot.drive,
         "chain": [{"joint": joint, "link": link} for joint, link, _ in _list_chain(robot)],
@@ -53,7 +54,8 @@ def format_import(imported: ImportedUrdf, units: Units, *, color: bool = False, 
     tables += [sphere_table(imported.links, units)] if imported.links else []
     collision = CollisionModel.of(robot)
     tables += [_pair_table(collision)] if _list_told(collision) else []
-    lines = [*map(plain, _describe_chain(imported))]
+    lines = [f"tools: {plain(', '.join(robot.tools))}; the first one unless another is chosen"] if robot.tools else []
+    lines += map(plain, _describe_chain(imported))
     lines += [f"home: {plain(imported.home)}{_say_free(imported.is_home_free)}"]
     lines += [f"[bold]warning:[/] {plain(warning)}" for warning in imported.warnings]
     return render(head, "", *tables, "", f"pairs: {describe_pairs(imported)}", *lines, color=color, width=width)

@@ -181,6 +181,8 @@ class TrackSpec(Entry):
     """What to call the track (default: the file's name)."""
     robot: Text
     """A robot that ships with ikde, or its file, relative to the track file."""
+    tool: Name | None = None
+    """Which of its tools, or a frame (default: as the robot's file says); joints that do not move it are held."""
     units: UnitsEntry = UnitsEntry()
     """Units of everything written here; seconds are seconds."""
     dt_s: Positive

@@ -23,7 +23,8 @@ def test_the_schema_of_a_track_file_explains_its_keys(cli):
 
 def test_the_schema_of_a_robot_file_is_there_too(cli):
     data = cli("schema", "robot").data
-    assert {"joints", "frames", "tool"} <= set(data["required"])
+    assert {"joints", "frames"} <= set(data["required"])
+    assert data["anyOf"] == [{"required": ["tool"]}, {"required": ["tools"]}]
     joint = data["$defs"]["JointEntry"]
     assert joint["properties"]["kind"]["enum"] == ["revolute", "prismatic", "continuous"]
     assert joint["if"]["properties"]["kind"] == {"const": "continuous"}

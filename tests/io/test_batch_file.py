@@ -254,3 +254,15 @@ def test_nothing_that_is_written_ends_in_a_traceback(path, value):
         load_batch(data)
     except InputError as error:
         assert "\n" not in str(error)
+
+
+def test_a_run_chooses_a_tool(tmp_path):
+    run = yaml.safe_load(GOOD) | {"robot": "xarm7"}
+    run["solve"] = {"ranges": {}}
+    run.pop("arms"), run.pop("grade")
+    frame = next(frame.name for frame in ikde.load_robot("xarm7").frames if frame.joint == "joint5")
+    batch = load_batch(run | {"tool": frame})
+    assert batch.robot.tool == frame
+    assert batch.robot.lower.tolist()[5:] == batch.robot.upper.tolist()[5:] == [0.0, 0.0]
+    with pytest.raises(InputError, match="tool: no tool and no frame of xarm7 is called 'hand'"):
+        load_batch(run | {"tool": "hand"})

@@ -1,6 +1,6 @@
 """Joints that stay where they are: which, at which value, and why."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from ikde.errors import InputError, nearest, quoted
@@ -21,16 +21,20 @@ class HeldJoint:
 
 
 def find_held(
-    description: Description, tree: LinkTree, tool: str, options: ImportOptions, state: Mapping[str, float]
+    description: Description,
+    tree: LinkTree,
+    tools: Iterable[str],
+    options: ImportOptions,
+    state: Mapping[str, float],
 ) -> dict[str, HeldJoint]:
-    """Every joint that can move but does not; `state` are values of an SRDF.
+    """Every joint that can move but does not; `tools` are links, `state` values of an SRDF.
 
     Raises:
         InputError, FileError: for an unknown joint, a value outside its limits, a mimic or floating joint on the chain.
     """
     for name, value in options.hold.items():
         _check_hold(description, name, value)
-    on_chain = {joint.name for joint in tree.path(tool)}
+    on_chain = {joint.name for tool in tools for joint in tree.path(tool)}
     held: dict[str, HeldJoint] = {}
     for name, joint in description.joints.items():
         if joint.kind == "fixed":

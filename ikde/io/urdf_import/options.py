@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 from ikde.errors import InputError, quoted
 from ikde.model.robot import MAX_MAGNITUDE
@@ -16,8 +16,9 @@ REACH_M = 100.0
 class ImportOptions:
     """What a URDF does not say; raises `InputError` for a wrong value."""
 
-    tool: str | None = None
-    """The link that targets are for; None: the only leaf that a joint moves."""
+    tool: str | Mapping[str, str] | None = None
+    """The link that targets are for; None: the only leaf that a joint moves. Several links by name: joints that move
+    any of them move, and the first one is the tool unless another is chosen (`Robot.with_tool`)."""
     base: Base = "urdf"
     """`urdf`: the file as it is. `fixed`: a floating or planar joint of its root is held. `omni` and `differential`:
     x, y and a continuous yaw under the root."""
@@ -36,6 +37,16 @@ class ImportOptions:
     """Whether links get spheres; a file (cuRobo's, XRDF or SRDF): those that it has for links, and no others."""
     protrusion_m: float = 0.02
     """How far spheres may stand out of the shapes that they cover."""
+
+    @property
+    def tools(self) -> dict[str, str]:
+        """Links by name, if several are named."""
+        return {} if self.tool is None or isinstance(self.tool, str) else dict(self.tool)
+
+    @property
+    def first_tool(self) -> str | None:
+        """The link that is asked for, the first of several; None if none is."""
+        return next(iter(self.tools.values()), None) if self.tools else cast(str | None, self.tool)
 
     @property
     def drives(self) -> bool:
@@ -62,6 +73,20 @@ def read_holds(words: Iterable[str]) -> dict[str, float]:
         if not name:
             raise InputError(f"expected JOINT=VALUE, in m or rad, got {quoted(word)}", ("hold",))
     return held
+
+
+def read_tools(words: Iterable[str]) -> str | dict[str, str] | None:
+    """A link, or links by name out of `NAME=LINK`; raises `InputError` for several links without names."""
+    given = list(words)
+    if len(given) <= 1 and "=" not in "".join(given):
+        return given[0] if given else None
+    tools: dict[str, str] = {}
+    for word in given:
+        name, _, link = word.partition("=")
+        if not (name and link) or name in tools:
+            raise InputError(f"expected NAME=LINK, each name once, got {quoted(word)}", ("tool",))
+        tools[name] = link
+    return tools
 
 
 def read_pairs(words: Iterable[str]) -> tuple[tuple[str, str], ...]:

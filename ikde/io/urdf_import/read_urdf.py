@@ -1,6 +1,7 @@
 """From a URDF file to a robot that has been checked, with an account of what was decided."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from ikde.model.robot import Robot
 def import_urdf(
     path: str | PathLike[str],
     *,
-    tool: str | None = None,
+    tool: str | Mapping[str, str] | None = None,
     base: Base = "urdf",
     srdf: str | PathLike[str] | None = None,
     spheres: bool | str | PathLike[str] = True,
@@ -40,7 +41,8 @@ def import_urdf(
 
     Args:
         path: the file.
-        tool: the link that targets are for; None: the only leaf that a joint moves.
+        tool: the link that targets are for; None: the only leaf that a joint moves. Several links by name, as of two
+            arms: the first is the tool, `robot.with_tool(name)` another one; joints that do not move it are held.
         base: `urdf` takes the file as it is; `fixed` holds a floating or planar joint of the root; `omni` and
             `differential` put x, y (within 100 m) and a continuous yaw under the root.
         srdf: an SRDF, for the home configuration and pairs of links that need no test.
@@ -65,7 +67,8 @@ def import_urdf(
         protrusion_m=protrusion_m,
         compare=check_pairs(compare),
     )
-    return read_urdf(path, options).robot
+    robot = read_urdf(path, options).robot
+    return robot.with_tool() if robot.tools else robot
 
 
 def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -> ImportedUrdf:
@@ -82,11 +85,12 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     options = options or ImportOptions()
     description = read_description(Path(path))
     tree = find_tree(description)
-    tool = choose_tool(description, tree, options.tool or description.marks.tool, options.drives)
+    tool = choose_tool(description, tree, options.first_tool or description.marks.tool, options.drives)
+    tools = {name: choose_tool(description, tree, link) for name, link in options.tools.items()}
     file = read_spheres(options.spheres) if isinstance(options.spheres, Path) else None
     srdf = read_srdf(options.srdf) if options.srdf else file.ignored if file else Srdf()
     states, values = srdf.choose_states()
-    held = find_held(description, tree, tool, options, values)
+    held = find_held(description, tree, (tool, *tools.values()), options, values)
     skeleton = build_skeleton(description, tree, tool, options, held)
     if not skeleton.joints:
         raise FileError(description.path, f"no joint moves the tool {tool!r}; name another link or a base", ("tool",))
@@ -94,6 +98,7 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
     covered = _sort_components(covered, description.marks.components)
     try:
         robot = assemble(description, skeleton, skeleton.frame_of[tool], options)
+        robot = replace(robot, tools={name: skeleton.frame_of[link] for name, link in tools.items()})
         robot = set_home(robot, values)
         choice = PairChoice(srdf=srdf, asked=options.compare, safe_distance_m=description.marks.safe_distance_m)
         pairs = add_spheres(robot, skeleton, covered, choice)

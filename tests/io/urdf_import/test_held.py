@@ -12,7 +12,7 @@ from tests.urdf_texts import ARM, FINGERS, change, extend, joint, write
 
 def hold(folder, text, state=(), tool="tip", **options):
     found = read_description(write(folder, text))
-    held = find_held(found, find_tree(found), tool, ImportOptions(**options), dict(state))
+    held = find_held(found, find_tree(found), [tool], ImportOptions(**options), dict(state))
     return {name: (pytest.approx(one.value, abs=1e-15), one.reason) for name, one in held.items()}
 
 
