@@ -15,9 +15,9 @@ MAX_SPHERES = 14
 """Spheres of a link that is covered anew, at most: four times as many are few still, and take a second."""
 
 
-def choose_finer(often: Pairs, covered: Mapping[str, LinkSpheres], frame_of: Mapping[str, str]) -> list[str]:
+def choose_finer(often: Pairs, covered: Mapping[str, LinkSpheres], component_of: Mapping[str, str]) -> list[str]:
     """The smaller link of each pair of components that touch often, where few spheres cover it."""
-    link_of = {frame_of[link]: link for link in covered}
+    link_of = {component_of[link]: link for link in covered}
     pairs = ((link_of[a], link_of[b]) for a, b in often if a in link_of and b in link_of)  # else of given spheres
     smaller = (min(pair, key=lambda link: len(covered[link].radii)) for pair in pairs)
     return [link for link in dict.fromkeys(smaller) if covered[link].report.protrusion_m and _is_small(covered[link])]

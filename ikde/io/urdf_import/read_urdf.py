@@ -102,7 +102,7 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         robot = set_home(robot, values)
         choice = PairChoice(srdf=srdf, asked=options.compare, safe_distance_m=description.marks.safe_distance_m)
         pairs = add_spheres(robot, skeleton, covered, choice)
-        if finer := choose_finer(pairs.often, covered, skeleton.frame_of):
+        if finer := choose_finer(pairs.often, covered, skeleton.component_of):
             covered |= cover_finer(description, tree, options, finer)
             pairs = add_spheres(robot, skeleton, covered, choice)
     except FileError:
