@@ -87,6 +87,17 @@ def flatten_answer(
     return numbers, np.concatenate([search[1], grader[1], is_revolute.astype(np.int64), where])
 
 
+def exchange_world(numbers: Floats, whole: Ints, world: Floats) -> tuple[Floats, Ints]:
+    """The block of `flatten_answer` in another world: it stands last in both models, the search's and the grader's."""
+    joints, size = int(whole[0]), int(whole[whole[3] + 6])
+    first, second = int(whole[-2]), len(numbers) - 5 * joints - 2  # behind each: tolerances, limits and turns are last
+    parts = numbers[: first - size], world, numbers[first : second - size], world, numbers[second:]
+    other = whole.copy()
+    other[whole[3] + 6] = other[whole[-1] + 6] = len(world)
+    other[-2] += len(world) - size
+    return np.concatenate(parts), other
+
+
 def _append_models(numbers: Floats, whole: Ints, robot: RobotArrays, collision: CollisionArrays) -> tuple[Floats, Ints]:
     """Both models behind a search's own numbers; where they begin stands in whole[2:4]."""
     models = flatten_models(robot, collision)

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import Any, Union
@@ -16,7 +16,7 @@ from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
-from ikde.model.pack_world import find_fixed_frames, pack_world
+from ikde.model.pack_world import WorldPacker, find_fixed_frames
 from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, Spheres
 from ikde.model.spheres import Sphere, expand_rows
 from ikde.model.tree import build_tree
@@ -82,6 +82,8 @@ class CollisionModel:
     @cached_property
     def is_checked(self) -> bool:
         """True, found out once: checking walks all pairs; raises `InputError` for what does not fit the robot."""
+        if self.own is not self:
+            return self.own.is_checked
         if self.detector is not None:
             check_detector(self.robot, self.detector, ("collision", "detector"))
         return True
@@ -120,8 +122,12 @@ class CollisionModel:
             if not (is_number(value) and 0.0 <= value <= MAX_MAGNITUDE):
                 where = ("margin", name) if name else ("margin",)
                 raise InputError(f"expected a distance of at least 0 m, got {quoted(value)}", where)
-        own = tuple((name, float(value)) for name, value in given.items())
-        model = replace(self.own, world=world, margin_m=float(margin_m), margins_m=own)
+        kept = tuple((name, float(value)) for name, value in given.items())
+        own = self.own
+        model = CollisionModel(
+            robot=own.robot, detector=own.detector, world=world, margin_m=float(margin_m), margins_m=kept
+        )
+        vars(model)["own"] = own  # what is known of it is found once for all worlds
         _ = model.arrays
         return model
 
@@ -147,6 +153,8 @@ class CollisionModel:
     @cached_property
     def pairs(self) -> Pairs:
         """Pairs of components that are compared; none without a detector."""
+        if self.own is not self:
+            return self.own.pairs
         return self.robot.pair_lists[self.detector.pairs] if self.detector else ()
 
     @property
@@ -166,6 +174,8 @@ class CollisionModel:
     @cached_property
     def spheres(self) -> tuple[Sphere, ...]:
         """All spheres of its components, compared or not, each on its body; none without a detector."""
+        if self.own is not self:
+            return self.own.spheres
         if self.detector is None:
             return ()
         return tuple(expand_rows(self.robot, build_tree(self.robot), self.detector.spheres))
@@ -173,11 +183,15 @@ class CollisionModel:
     @cached_property
     def components(self) -> tuple[str, ...]:
         """Of the spheres, in their order; with a world they are all packed, else those that have a pair."""
+        if self.own is not self:
+            return self.own.components
         return tuple(dict.fromkeys(sphere.component for sphere in self.spheres))
 
     @cached_property
     def fixed_components(self) -> tuple[str, ...]:
         """Those that no joint moves: they are not compared with a world, which does not move either."""
+        if self.own is not self:
+            return self.own.fixed_components
         bodies = {sphere.component: sphere.body for sphere in self.spheres}
         return tuple(name for name, body in bodies.items() if body == 0)
 
@@ -221,8 +235,8 @@ class CollisionModel:
     def extras_m(self) -> Floats:
         """What each of `all_pairs` is asked for beyond the safe distance, m: distances of graders are less by it."""
         margins_m = np.array([obstacle.margin_m for obstacle in self.obstacles], dtype=float)
-        of_world = [self.kept_m(name) + margins_m - self.limit_m for name in self.components if self.obstacles]
-        return read_only(np.concatenate([np.zeros(len(self.pairs)), *of_world]))
+        of_world = self._list_kept_m()[:, None] + margins_m - self.limit_m
+        return read_only(np.concatenate([np.zeros(len(self.pairs)), of_world.ravel()]))
 
     def extra_m(self, place: int) -> float:
         """What one of them is asked for, m."""
@@ -233,10 +247,23 @@ class CollisionModel:
         """Packed for the kernels."""
         if not self.obstacles:
             return pack_collision(self.robot, self.detector)
+        arrays, packer, is_fixed = self.own._whole
+        kept_m = self._list_kept_m()
+        kept_m[is_fixed] = -np.inf
+        return arrays._replace(world=packer.pack(self.world, kept_m))
+
+    @cached_property
+    def _whole(self) -> tuple[CollisionArrays, WorldPacker, NDArray[np.bool_]]:
+        """All components packed; what packs worlds for them; and which no joint moves [C]."""
         arrays = pack_collision(self.robot, self.detector, every=True)
-        kept = [-np.inf if name in self.fixed_components else self.kept_m(name) for name in self.components]
-        frames, reach_m = find_fixed_frames(self.robot), float(arrays.bounds[:, 3].max())
-        return arrays._replace(world=pack_world(self.world, self.components, frames, reach_m, np.array(kept)))
+        is_fixed = np.array([name in self.fixed_components for name in self.components], dtype=bool)
+        packer = WorldPacker(self.components, find_fixed_frames(self.robot), float(arrays.bounds[:, 3].max()))
+        return arrays, packer, is_fixed
+
+    def _list_kept_m(self) -> Floats:
+        """The distance that each component keeps [C], m."""
+        others = dict(self.margins_m)
+        return np.array([others.get(name, self.margin_m) for name in self.components], dtype=float)
 
 
 def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:

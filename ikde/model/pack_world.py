@@ -1,6 +1,8 @@
 """From a `World` to the one array that the kernels take (`kernels/world_grid.py`)."""
 
+import math
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -10,14 +12,15 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.flat_arguments import GRID_COLUMNS, HEADER, SOLID_COLUMNS, unpack_world
 from ikde.model.hull import measure_normals
 from ikde.model.robot import WORLD, Robot
-from ikde.model.solids import KINDS, Solid
+from ikde.model.solids import IDENTITY, KINDS, Solid
 from ikde.model.tree import build_tree
-from ikde.model.world import World
+from ikde.model.world import Obstacle, PerObstacle, World
 
 CLOUD_PITCH_M = 0.04  # 171 ns a check of 1e5 points, with a field built in 16 ms; 2 cm: 122 ns, 377 ms
 GRID_PITCH_M = 0.08  # 149 ns a check in a bookshelf of 21 solids; 4 cm 238, 2 cm 298: the cache is missed
 MAX_CELLS = 2_000_000
 MIN_FOR_GRID = 30  # solids
+_EYE = np.eye(4)
 FAR_CELLS = 12  # cells that a cloud's field looks away
 
 
@@ -29,12 +32,86 @@ class Cells(NamedTuple):
     far: Floats
 
 
+class PackedObstacle(NamedTuple):
+    """What of an obstacle depends on no other: rows of its solids [S, 21], its hulls and its clouds, by solid."""
+
+    rows: Floats
+    faces: list[tuple[int, Floats]]
+    clouds: list[tuple[int, Cells, Floats]]
+
+
+class Packed(NamedTuple):
+    """A world as it was packed, and of what."""
+
+    obstacles: tuple[Obstacle, ...]
+    kept_m: bytes
+    whole: Floats
+
+
+class WorldPacker:
+    """Packs worlds for a robot; one that differs from the last by where obstacles are costs what those cost."""
+
+    def __init__(self, components: Sequence[str], frames: Mapping[str, Floats], reach_m: float) -> None:
+        """As `pack_world`."""
+        self._components, self._frames, self._reach_m = components, frames, reach_m
+        self._parts = PerObstacle(self._pack_obstacle)
+        self._last: Packed | None = None
+
+    def pack(self, world: World, kept_m: Floats) -> Floats:
+        """As `pack_world`."""
+        asked, key = None, kept_m.tobytes()
+        packed = self._parts.list(world.active)
+        whole = self._move(world.active, key, packed)
+        if whole is None:
+            asked = _list_asked(world, self._components, kept_m)
+            whole = _join_obstacles(packed, asked, self._reach_m)
+        whole.setflags(write=False)
+        self._last = Packed(world.active, key, whole)
+        return whole
+
+    def _move(self, obstacles: tuple[Obstacle, ...], key: bytes, packed: list[PackedObstacle]) -> Floats | None:
+        """The last world with rows of obstacles that have moved; None where more than that is new, or has a grid."""
+        last = self._last
+        if last is None or last.kept_m != key or len(last.obstacles) != len(obstacles) or last.whole[7] > 0.0:
+            return None
+        whole, first, solids = last.whole.copy(), 0, int(last.whole[0])
+        rows = whole[HEADER : HEADER + SOLID_COLUMNS * solids].reshape(solids, SOLID_COLUMNS)
+        places = whole[HEADER + SOLID_COLUMNS * solids :][: 3 * solids].reshape(3, solids)
+        for old, new, (own, *_) in zip(last.obstacles, obstacles, packed, strict=True):
+            end = first + len(own)
+            if old is not new:
+                if not _differ_by_place(old, new):
+                    return None
+                rows[first:end, 1:13], places[:, first:end] = own[:, 1:13], own[:, 10:13].T
+            first = end
+        return whole
+
+    def _pack_obstacle(self, obstacle: Obstacle) -> PackedObstacle:
+        T_world_frame = self._frames.get(obstacle.frame)
+        if T_world_frame is None:
+            known = nearest(obstacle.frame, self._frames)
+            message = f"no frame that stays in its place is called {obstacle.frame!r}{known}"
+            raise InputError(message, ("obstacles", obstacle.name, "frame"))
+        T, rows, faces, clouds = T_world_frame @ _whole(obstacle.T_world_obstacle), [], [], []
+        for place, solid in enumerate(obstacle.solids):
+            rows.append(
+                _solid_row(solid, T if solid.T_obstacle_solid is IDENTITY else T @ _whole(solid.T_obstacle_solid))
+            )
+            if solid.kind == "hull":
+                faces.append((place, _faces(solid)))
+            elif solid.kind == "cloud":
+                clouds.append((place, *sort_cloud(solid.points, CLOUD_PITCH_M)))  # type: ignore[arg-type]
+        return PackedObstacle(np.array(rows), faces, clouds)
+
+
+def _differ_by_place(one: Obstacle, other: Obstacle) -> bool:
+    """True if everything but the pose of two obstacles is the same."""
+    same = one.solids is other.solids and one.ignore is other.ignore
+    return same and (one.name, one.frame, one.margin_m) == (other.name, other.frame, other.margin_m)
+
+
 def pack_world(
-    world: World,
-    components: Sequence[str],
-    frames: Mapping[str, Floats],
-    reach_m: float,
-    kept_m: Floats,
+    world: World, components: Sequence[str], frames: Mapping[str, Floats], reach_m: float, kept_m: Floats
 ) -> Floats:
     """Pack a world for a robot.
 
@@ -48,39 +125,36 @@ def pack_world(
     Raises:
         InputError: for a frame or a component that the robot does not have.
     """
-    rows, faces, points, clouds, starts, far = [], [], [], [], [], []
-    count, asked = 0, _list_asked(world, components, kept_m)
-    widest = np.where(np.isfinite(asked), asked, 0.0).max(axis=0, initial=0.0)
-    for owner, obstacle in enumerate(world.active):
-        if obstacle.frame not in frames:
-            known = nearest(obstacle.frame, frames)
-            message = f"no frame that stays in its place is called {obstacle.frame!r}{known}"
-            raise InputError(message, ("obstacles", obstacle.name, "frame"))
-        T = frames[obstacle.frame] @ _whole(obstacle.T_world_obstacle)
-        for solid in obstacle.solids:
-            row = _solid_row(solid, T @ _whole(solid.T_obstacle_solid), owner, widest[owner])
-            if solid.kind == "hull":
-                own = _faces(solid)
-                row[19:21] = sum(map(len, faces)), len(own)
-                faces.append(own)
-            elif solid.kind == "cloud":
-                cells, sorted_points = sort_cloud(solid.points, CLOUD_PITCH_M)  # type: ignore[arg-type]
-                row[14:16] = sum(map(len, starts)), len(clouds)
-                clouds.append(cells.numbers)
-                starts.append(cells.starts + count)
-                far.append(np.append(cells.far, 0.0))
-                points.append(sorted_points)
-                count += len(sorted_points)
-            rows.append(row)
-    solids = np.array(rows).reshape(-1, SOLID_COLUMNS)
+    return WorldPacker(components, frames, reach_m).pack(world, kept_m)
+
+
+def _join_obstacles(packed: list[PackedObstacle], asked: Floats, reach_m: float) -> Floats:
+    """The whole array; `asked` [C, O], m."""
+    faces, points, clouds, starts, far = [], [], [], [], []
+    count, widest = 0, np.where(np.isfinite(asked), asked, 0.0).max(axis=0, initial=0.0)
+    solids = np.concatenate([np.empty((0, SOLID_COLUMNS)), *(obstacle.rows for obstacle in packed)])
+    owners = np.repeat(np.arange(len(packed)), [len(obstacle.rows) for obstacle in packed])
+    solids[:, 17], solids[:, 18] = widest[owners], owners
+    first = 0
+    for obstacle in packed:
+        for place, own in obstacle.faces:
+            solids[first + place, 19:21] = sum(map(len, faces)), len(own)
+            faces.append(own)
+        for place, cells, sorted_points in obstacle.clouds:
+            solids[first + place, 14:16] = sum(map(len, starts)), len(clouds)
+            clouds.append(cells.numbers)
+            starts.append(cells.starts + count)
+            far.append(np.append(cells.far, 0.0))
+            points.append(sorted_points)
+            count += len(sorted_points)
+        first += len(obstacle.rows)
     parts = [solids, _spheres(solids), asked, _stack(faces, 12), _stack(points, 3).T, _stack(clouds, GRID_COLUMNS)]
     parts += [np.concatenate([*starts, np.empty(0)]), np.concatenate([*far, np.empty(0)])]
     sizes = [len(solids), *asked.shape, len(parts[3]), count, len(clouds), len(parts[6])]
-    packed = _join(sizes, parts, solids, reach_m)
-    packed.setflags(write=False)
-    return packed
+    return _join(sizes, parts, solids, reach_m)
 
 
+@lru_cache(maxsize=64)
 def find_fixed_frames(robot: Robot) -> dict[str, Floats]:
     """T_world_frame [4, 4] of the frames that no joint moves, the world among them."""
     tree = build_tree(robot)
@@ -118,28 +192,28 @@ def _measure_far(occupied: np.ndarray, pitch: float) -> Floats:
     return pitch * np.sqrt(np.minimum(field, most)).ravel()
 
 
-def _solid_row(solid: Solid, T: Floats, owner: int, asked_m: float) -> Floats:
-    row = np.zeros(SOLID_COLUMNS)
-    row[0], row[1:10], row[10:13] = KINDS.index(solid.kind), T[:3, :3].ravel(), T[:3, 3]
-    sizes = np.array(solid.size_m)
+def _solid_row(solid: Solid, T: Floats) -> list[float]:
+    """A row of the table but for what depends on other solids: margin, owner, and where its faces or points are."""
+    sizes = list(solid.size_m)
     if solid.kind == "box":
-        sizes = 0.5 * sizes
+        sizes = [0.5 * size for size in sizes]
     elif solid.kind in ("cylinder", "capsule", "cone"):
-        sizes = sizes * (1.0, 0.5)
-    row[13 : 13 + len(sizes)] = sizes
-    row[16], row[17], row[18] = _bound(solid, sizes), asked_m, owner
-    return row
+        sizes[1] *= 0.5
+    place = [KINDS.index(solid.kind), *T[:3, :3].ravel().tolist(), *T[:3, 3].tolist()]
+    return [*place, *sizes, *[0.0] * (3 - len(sizes)), _bound(solid, sizes), 0.0, 0.0, 0.0, 0.0]
 
 
-def _bound(solid: Solid, sizes: Floats) -> float:
+def _bound(solid: Solid, sizes: list[float]) -> float:
     """Radius of a sphere about the solid's origin that holds all of it, m."""
     if solid.kind == "half_space":
         return np.inf
     if solid.points is not None:
         return float(np.linalg.norm(solid.points, axis=1).max()) + (sizes[0] if len(sizes) else 0.0)
     if solid.kind == "sphere":
-        return float(sizes[0])
-    return float(sizes.sum() if solid.kind == "capsule" else np.linalg.norm(sizes)) * (1.0 + 1e-12)
+        return sizes[0]
+    return (sum(sizes) if solid.kind == "capsule" else math.sqrt(math.fsum(size * size for size in sizes))) * (
+        1.0 + 1e-12
+    )
 
 
 def _faces(solid: Solid) -> Floats:
@@ -217,4 +291,6 @@ def _stack(rows: list[Floats], columns: int) -> Floats:
 
 
 def _whole(T: Floats) -> Floats:
-    return np.vstack([T, [0.0, 0.0, 0.0, 1.0]])
+    whole = _EYE.copy()
+    whole[:3] = T
+    return whole

@@ -101,6 +101,15 @@ def are_rotations(R: Floats) -> NDArray[np.bool_]:
     return (measure_skew(R) <= TOLERANCE) & (np.linalg.det(R) >= 0.0)
 
 
+def is_rotation(R: Floats) -> bool:
+    """The same of one finite matrix [3, 3], in a tenth of the time."""
+    a, b, c = R.tolist()
+    pairs = ((a, a, 1.0), (b, b, 1.0), (c, c, 1.0), (a, b, 0.0), (a, c, 0.0), (b, c, 0.0))
+    skew = max(abs(u[0] * v[0] + u[1] * v[1] + u[2] * v[2] - one) for u, v, one in pairs)
+    x, y, z = b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]
+    return skew <= TOLERANCE and a[0] * x + a[1] * y + a[2] * z >= 0.0
+
+
 def measure_skew(R: Floats) -> Floats:
     """Largest entry [...] of R R^T - 1, of matrices [..., 3, 3]: 0 for rotations."""
     return np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(-1, -2))

@@ -12,7 +12,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.hull import make_hull
 from ikde.model.numbers import is_number, read_numbers
 from ikde.model.robot import MAX_MAGNITUDE
-from ikde.model.rotation import are_rotations
+from ikde.model.rotation import is_rotation
 
 SolidKind = Literal["sphere", "box", "cylinder", "capsule", "cone", "half_space", "hull", "cloud"]
 KINDS: tuple[SolidKind, ...] = get_args(SolidKind)
@@ -119,7 +119,7 @@ def read_pose(T: ArrayLike, where: tuple[str | int, ...]) -> Floats:
     if pose.shape not in ((4, 4), (3, 4)):
         raise InputError(f"expected a pose [4, 4], got shape {pose.shape}", where)
     pose = pose[:3] + 0.0  # no -0.0: what is written and read again has the same bits
-    if not (np.abs(pose) <= MAX_MAGNITUDE).all() or not are_rotations(pose[:, :3]):
+    if not (np.abs(pose) <= MAX_MAGNITUDE).all() or not is_rotation(pose[:, :3]):
         raise InputError("expected a rotation and a place of finite numbers", where)
     return _frozen(pose)
 

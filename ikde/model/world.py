@@ -1,9 +1,10 @@
 """A world of obstacles, as values: named, posed, each with a margin of its own. Worlds never become types or text."""
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,7 @@ from ikde.model.robot import MAX_MAGNITUDE, WORLD
 from ikde.model.solids import Solid, read_pose
 
 MAX_OBSTACLES = MAX_SOLIDS = 100_000
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -52,7 +54,7 @@ class World:
     @property
     def names(self) -> tuple[str, ...]:
         """Of all obstacles."""
-        return tuple(obstacle.name for obstacle in self.obstacles)
+        return tuple(self._places)
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -96,7 +98,9 @@ class World:
         """The world with an obstacle at another pose [4, 4] or [3, 4], m."""
         place, T = self._place(name), read_pose(T_world_obstacle, ("T_world_obstacle",))
         moved = replace(self.obstacles[place], T_world_obstacle=T)
-        return replace(self, obstacles=(*self.obstacles[:place], moved, *self.obstacles[place + 1 :]))
+        world = replace(self, obstacles=(*self.obstacles[:place], moved, *self.obstacles[place + 1 :]))
+        vars(world)["_places"] = self._places
+        return world
 
     def switch(self, /, **groups: bool) -> "World":
         """The world with groups of obstacles on or off."""
@@ -107,10 +111,16 @@ class World:
         off = (self.switched_off - groups.keys()) | {group for group, on in groups.items() if not on}
         return replace(self, switched_off=frozenset(off))
 
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        """Where each name stands."""
+        return {obstacle.name: place for place, obstacle in enumerate(self.obstacles)}
+
     def _place(self, name: str) -> int:
-        if name not in self.names:
+        place = self._places.get(name) if isinstance(name, str) else None
+        if place is None:
             raise InputError(f"no obstacle is called {name!r}{nearest(str(name), self.names)}", ("obstacle",))
-        return self.names.index(name)
+        return place
 
 
 def make_world(obstacles: Iterable[Obstacle], switched_off: Iterable[str] = ()) -> World:
@@ -157,6 +167,26 @@ def make_obstacle(
     T = np.eye(4)[:3] if T_world_obstacle is None else T_world_obstacle
     known = {"frame": frame, "margin_m": float(margin_m), "ignore": ignored, "group": group}
     return Obstacle(name=name, solids=parts, T_world_obstacle=read_pose(T, ("T_world_obstacle",)), **known)
+
+
+class PerObstacle(Generic[Found]):
+    """What is made of each obstacle of a world, kept for the next one: where one has moved, only that is made anew."""
+
+    def __init__(self, make: Callable[[Obstacle], Found]) -> None:
+        self._make = make
+        self._last: tuple[tuple[Obstacle, ...], list[Found]] = ((), [])
+
+    def list(self, obstacles: tuple[Obstacle, ...]) -> list[Found]:
+        """Of each obstacle, in their order."""
+        make, (known, found) = self._make, self._last
+        if len(known) == len(obstacles):
+            pairs = zip(known, obstacles, found, strict=True)
+            made = [kept if old is new else make(new) for old, new, kept in pairs]
+        else:
+            kept_of = {id(obstacle): kept for obstacle, kept in zip(known, found, strict=True)}
+            made = [kept_of[id(o)] if id(o) in kept_of else make(o) for o in obstacles]
+        self._last = obstacles, made
+        return made
 
 
 NOTHING = World()

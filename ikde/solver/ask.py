@@ -11,6 +11,7 @@ import numpy as np
 
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE, size_of
 from ikde.kernels.arrays import REACHED, Floats
+from ikde.kernels.flat_arguments import exchange_world
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target, Targets
@@ -33,6 +34,7 @@ class Ways:
 
     def __init__(self, collision: CollisionModel, kind: str) -> None:
         kernels = load_kernels(collision, kind)
+        self.kind = kind
         self._ways = {}
         for engine, name in ((LM, "answer_target"), (CLOSED, "answer_pose")):
             if hasattr(kernels, name):
@@ -161,3 +163,20 @@ def keep_better(plan: Plan, tried: Floats, row: Floats) -> Floats:
 def lay_out(problem: Problem, kind: str, engine: str) -> Sequence[Any]:
     """What stays from target to target of an engine's call."""
     return analytic.pack_answer(problem) if engine == CLOSED else lm.pack_answer(problem, kind)
+
+
+class Layouts:
+    """The same of one robot's questions in any world: all but the world is laid out once."""
+
+    def __init__(self, kind: str) -> None:
+        self._kind = kind
+        self._kept: dict[str, Sequence[Any]] = {}
+
+    def lay_out(self, problem: Problem, engine: str) -> Sequence[Any]:
+        """What stays of an engine's call in the world of a problem, which is that of the first one but for that."""
+        kept = self._kept.get(engine)
+        if kept is None:
+            numbers, whole, *others = lay_out(problem, self._kind, engine)
+            kept = self._kept[engine] = *exchange_world(numbers, whole, np.empty(0)), *others
+        numbers, whole, *others = kept
+        return *exchange_world(numbers, whole, problem.collision.arrays.world), *others

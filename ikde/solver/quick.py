@@ -2,7 +2,8 @@
 
 import time
 from collections.abc import Callable, Sequence
-from functools import lru_cache, partial
+from dataclasses import replace
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -10,13 +11,14 @@ import numpy as np
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Robot
 from ikde.model.target import Target
-from ikde.solver.ask import Ask, Plan, Settled, Ways, lay_out, make_plan
+from ikde.solver.ask import Ask, Layouts, Plan, Settled, Ways, lay_out, make_plan
 from ikde.solver.choice import find_free
 from ikde.solver.engines.pool import runs_on_tables
 from ikde.solver.explain import explain_reach, explain_ruled_out
 from ikde.solver.problem import Problem, make_problem
 from ikde.solver.result import STOP_REASONS, ResultMaker, SolveResult, StopReason, change_result
 from ikde.solver.settings import SolveSettings, choose_settings
+from ikde.solver.standing import refuse_touching
 from ikde.solver.way import as_word
 
 OUT_OF_REACH = {"reached": False, "stop_reason": StopReason.OUT_OF_REACH, "_explain": explain_reach}
@@ -37,6 +39,18 @@ class Quick(Ask):
         if not self.is_ready:
             return self._solve_first(target, seed, stream, started)
         return self._ask(target, seed, stream, started)
+
+    def in_world(self, collision: CollisionModel) -> "Quick":
+        """The same among obstacles; raises `InputError` for what always touches one."""
+        refuse_touching(collision)
+        problem = replace(self._problem, collision=collision)
+        plan = self.plan._replace(size=self.plan.size + len(collision.obstacles))
+        return Quick(problem, plan, self.ways, partial(self._layouts.lay_out, problem))
+
+    @cached_property
+    def _layouts(self) -> Layouts:
+        """What stays in all worlds."""
+        return Layouts(self.ways.kind)
 
     def _ask(self, target: Target, seed: int, stream: int, started: float) -> SolveResult | None:
         plan, word = self.plan, as_word(seed)
@@ -73,7 +87,11 @@ def find_quick(
     robot: Robot, settings: SolveSettings | None, method: str, choice: CollisionChoice, kind: str
 ) -> Quick | None:
     """The quick way of a question, or None: without a plan, or on tables, where engine and grader would share code."""
-    chosen, collision = choose_settings(settings, method), CollisionModel.of(robot, choice)
+    collision = CollisionModel.of(robot, choice)
+    if collision.obstacles:
+        quick = find_quick(robot, settings, method, collision.own, kind)
+        return quick and quick.in_world(collision)
+    chosen = choose_settings(settings, method)
     plan = make_plan(collision, chosen, kind, find_free(robot.lower, robot.upper))
     if plan is None or runs_on_tables():
         return None

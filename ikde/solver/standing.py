@@ -1,17 +1,23 @@
 """What of a robot is always as far from an obstacle, whatever its joints do: fixed to the floor, or driving over it."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from ikde.errors import InputError
+from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.solver.plain import compute_components, compute_world_gaps
+from ikde.model.pack_world import find_fixed_frames
+from ikde.model.solids import Solid
+from ikde.model.world import Obstacle, PerObstacle
+from ikde.solver.plain import compute_components, compute_frames
+from ikde.solver.plain_world import measure_obstacle
 
 CONFIGURATIONS = 8
-SAME_M = 1e-9
+SAME_M, CLOSE_M = 1e-9, 0.02
 NAMED = 3  # in a message about many
 
 
@@ -28,32 +34,107 @@ class StandingObstacle:
 
 @lru_cache(maxsize=16)
 def find_standing_obstacles(collision: CollisionModel) -> tuple[StandingObstacle, ...]:
-    """Components and obstacles that are as far from each other in several random configurations."""
-    some = (*collision.fixed_components, *_list_level(collision.own))
-    if not some or not collision.obstacles:
-        return ()
-    gaps = compute_world_gaps(collision, _draw(collision.own), some=some)
-    finite = np.isfinite(gaps[0])
-    same = np.flatnonzero(finite & (np.ptp(np.where(finite, gaps, 0.0), axis=0) <= SAME_M))
-    found = []
-    for place in same.tolist():
-        component, obstacle = divmod(place, len(collision.obstacles))
-        name, pairs = some[component], len(collision.pairs)
-        extra_m = collision.extra_m(pairs + collision.components.index(name) * len(collision.obstacles) + obstacle)
-        known = {"clearance_m": float(gaps[0, place]) + extra_m, "touches": bool(gaps[0, place] <= collision.limit_m)}
-        found.append(StandingObstacle(component=name, obstacle=collision.obstacles[obstacle].name, **known))
+    """Components and obstacles that are as far from each other in several random configurations.
+
+    Those alone that are nearer than 20 mm, or than what is asked for.
+    """
+    widest_m = max([collision.limit_m, collision.margin_m, *dict(collision.margins_m).values()])
+    found, pairs, count = [], len(collision.pairs), len(collision.obstacles)
+    for place, standing in enumerate(_find_standing(collision.own, widest_m).list(collision.obstacles)):
+        for name, distance_m in standing:
+            obstacle = collision.obstacles[place]
+            extra_m = collision.extra_m(pairs + collision.components.index(name) * count + place)
+            touches = distance_m - extra_m <= collision.limit_m
+            if name not in obstacle.ignore and (touches or distance_m <= CLOSE_M):
+                known = {"clearance_m": distance_m, "touches": touches}
+                found.append(StandingObstacle(component=name, obstacle=obstacle.name, **known))
     return tuple(found)
 
 
-@lru_cache(maxsize=64)
-def _list_level(collision: CollisionModel) -> tuple[str, ...]:
-    """Components of which a sphere keeps a coordinate: others change their distance from everything."""
-    placed = compute_components(collision, _draw(collision))
-    still = {name: bool((np.ptp(centres, axis=0) <= SAME_M).any()) for name, (centres, _) in placed.items()}
-    return tuple(name for name in collision.components if still[name] and name not in collision.fixed_components)
+class Watched:
+    """Components that may keep their distance from something: what no joint moves, and what keeps a coordinate."""
+
+    def __init__(self, own: CollisionModel) -> None:
+        placed = compute_components(own, _draw(own))
+        still = {name: bool((np.ptp(centres, axis=0) <= SAME_M).any()) for name, (centres, _) in placed.items()}
+        fixed = own.fixed_components
+        names = (*fixed, *(name for name in own.components if still[name] and name not in fixed))
+        self.parts = tuple((name, *_bound(*placed[name]), *placed[name]) for name in names)
+        """Name, middle and radius of a ball about all spheres, their centres [K, n, 3] and radii [n]."""
+        home = compute_frames(own.robot, own.robot.home)
+        self._frames = {name: T for name, T in home.items() if name in find_fixed_frames(own.robot)}
+
+    def list(self, obstacle: Obstacle, within_m: float) -> list[tuple[str, float]]:
+        """Those that keep one distance from an obstacle, of at most `within_m`, and that distance, m."""
+        T, own, found = self._frames[obstacle.frame], obstacle.T_world_obstacle, []
+        T_solids = [own[:, :3] @ solid.T_obstacle_solid[:, 3] + own[:, 3] for solid in obstacle.solids]
+        balls = [
+            ((T[:3, :3] @ p + T[:3, 3]).tolist(), _measure_ball(solid))
+            for p, solid in zip(T_solids, obstacle.solids, strict=True)
+        ]
+        for name, middle, radius_m, centres, radii in self.parts:
+            reach_m = radius_m + within_m
+            near = [
+                solid
+                for solid, (place, ball_m) in zip(obstacle.solids, balls, strict=True)
+                if math.dist(place, middle) <= ball_m + reach_m
+            ]
+            if any(solid.kind == "cloud" for solid in near):
+                in_frame = (np.array(middle) - T[:3, 3]) @ T[:3, :3]
+                near = [*filter(None, (_thin(solid, (in_frame - own[:, 3]) @ own[:, :3], reach_m) for solid in near))]
+            if near:
+                P = (centres - T[:3, 3]) @ T[:3, :3]
+                gaps = (measure_obstacle(replace(obstacle, solids=tuple(near)), P) - radii).min(axis=-1)
+                if np.ptp(gaps) <= SAME_M and gaps[0] <= within_m:
+                    found.append((name, float(gaps[0])))
+        return found
+
+
+def _thin(solid: Solid, middle: Floats, reach_m: float) -> Solid | None:
+    """What is left of a cloud within a distance of a point of its obstacle's frame; other solids as they are."""
+    if solid.kind != "cloud" or solid.points is None:
+        return solid
+    R, p = solid.T_obstacle_solid[:, :3], solid.T_obstacle_solid[:, 3]
+    reach_m, own = reach_m + solid.size_m[0], (middle - p) @ R
+    is_near = np.logical_and.reduce([abs(solid.points[:, k] - own[k]) <= reach_m for k in range(3)])
+    return replace(solid, points=solid.points[is_near]) if is_near.any() else None
+
+
+def _bound(centres: Floats, radii: Floats) -> tuple[list[float], float]:
+    """Middle and radius of a ball that holds spheres with centres [K, n, 3], m."""
+    middle = 0.5 * (centres.min(axis=(0, 1)) + centres.max(axis=(0, 1)))
+    return middle.tolist(), float((np.linalg.norm(centres - middle, axis=-1) + radii).max())
+
+
+def _measure_ball(solid: Solid) -> float:
+    """Radius of a ball about a solid's origin that holds it, m."""
+    if solid.kind == "half_space":
+        return math.inf
+    if solid.points is not None:
+        return math.sqrt(float(np.einsum("ki,ki->k", solid.points, solid.points).max())) + sum(solid.size_m)
+    return sum(solid.size_m) if solid.kind == "capsule" else math.hypot(*_halve(solid))
+
+
+def _halve(solid: Solid) -> tuple[float, ...]:
+    """From a solid's middle to what is farthest, along each of its directions, m."""
+    if solid.kind == "box":
+        return tuple(0.5 * edge for edge in solid.size_m)
+    return (solid.size_m[0], *(0.5 * height for height in solid.size_m[1:]))
 
 
 @lru_cache(maxsize=64)
+def _find_watched(own: CollisionModel) -> Watched:
+    """Those of a robot."""
+    return Watched(own)
+
+
+@lru_cache(maxsize=64)
+def _find_standing(own: CollisionModel, widest_m: float) -> PerObstacle[list[tuple[str, float]]]:
+    """Of each obstacle what keeps one distance from it that is at most 20 mm, or `widest_m` and its own margin."""
+    watched = _find_watched(own)
+    return PerObstacle(lambda obstacle: watched.list(obstacle, max(CLOSE_M, widest_m + obstacle.margin_m)))
+
+
 def _draw(collision: CollisionModel) -> np.ndarray:
     """Random configurations [K, N], the same every time."""
     lower, upper = collision.robot.drawn

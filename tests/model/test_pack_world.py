@@ -6,7 +6,7 @@ import pytest
 from ikde.errors import InputError
 from ikde.kernels.flat_arguments import unpack_world
 from ikde.model.collision_model import CollisionModel
-from ikde.model.pack_world import pack_world, sort_cloud
+from ikde.model.pack_world import WorldPacker, pack_world, sort_cloud
 from ikde.model.robot import WORLD
 from ikde.model.solids import make_solid
 from ikde.model.world import make_obstacle, make_world
@@ -55,3 +55,40 @@ def test_points_are_sorted_by_cell(rng):
     assert sorted(map(tuple, points.tolist())) == sorted(map(tuple, sorted_points.tolist()))
     assert cells.starts[-1] == 500
     assert (cells.far[np.diff(cells.starts) > 0] == 0.0).all()
+
+
+def crowd(count, rng):
+    kinds = (("box", (0.1, 0.2, 0.3)), ("capsule", (0.05, 0.3)), ("cone", (0.1, 0.2)))
+    shapes = [make_solid(*kinds[k % 3]) for k in range(count)]
+    cloud = make_solid("cloud", (0.01,), points=rng.uniform(-0.2, 0.2, (50, 3)))
+    hull = make_solid("hull", points=rng.normal(size=(8, 3)))
+    solids = [[cloud, hull], *([shape, BALL] for shape in shapes)]
+    return make_world([make_obstacle(f"o{k}", own, shifted(rng)) for k, own in enumerate(solids)])
+
+
+def shifted(rng):
+    T = np.eye(4)
+    T[:3, 3] = rng.uniform(-1.0, 1.0, 3)
+    return T
+
+
+@pytest.mark.parametrize("count", [4, 20])  # the latter with a grid
+def test_a_changed_world_is_packed_as_if_nothing_had_been_before(count, rng):
+    world = crowd(count, rng)
+    packer, changed = WorldPacker(["arm", "hand"], FRAMES, 0.5), world
+    changes = [
+        lambda world: world.move("o2", shifted(rng)),
+        lambda world: world.move("o0", shifted(rng)).move("o3", shifted(rng)),
+        lambda world: world.add(make_obstacle("new", [BALL], ignore=("arm",))),
+        lambda world: world.remove("o1"),
+        lambda world: world.remove("new").add(make_obstacle("new", [BALL], margin_m=0.3)),
+        lambda world: world.remove("new").add(make_obstacle("new", [BALL], ignore=("hand",))),
+        lambda world: world.move("o0", shifted(rng)),
+        lambda _: world,
+    ]
+    for kept_m in (np.zeros(2), np.array([0.0, 0.1])):
+        for change in changes:
+            changed = change(changed)
+            found = packer.pack(changed, kept_m)
+            assert found.tobytes() == pack_world(changed, ["arm", "hand"], FRAMES, 0.5, kept_m).tobytes()
+            assert not found.flags.writeable

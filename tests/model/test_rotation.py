@@ -11,6 +11,7 @@ from ikde.model.rotation import (
     angle_between,
     are_rotations,
     check_rotation,
+    is_rotation,
     length,
     quat_wxyz_from_rotation,
     rotation_about,
@@ -197,3 +198,4 @@ def test_a_rotation_does_not_hang_on_its_neighbours(rng):
 def test_rotations_are_checked_row_by_row():
     R = np.array([np.eye(3), 2.0 * np.eye(3), np.diag([1.0, 1.0, -1.0]), np.diag([1.0, -1.0, -1.0])])
     assert are_rotations(R).tolist() == [True, False, False, True]
+    assert [*map(is_rotation, R)] == [True, False, False, True]

@@ -5,7 +5,7 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.model.solids import make_solid
-from ikde.model.world import World, make_obstacle, make_world
+from ikde.model.world import PerObstacle, World, make_obstacle, make_world
 
 BALL = make_solid("sphere", [0.1])
 BOX = make_solid("box", [0.1, 0.2, 0.3])
@@ -85,3 +85,22 @@ def test_a_digest_is_of_what_counts(world):
 def test_an_obstacle_that_is_none(given, said):
     with pytest.raises(InputError, match=said):
         make_obstacle(**{"name": "a", "solids": [BALL]} | given)
+
+
+def test_what_is_made_of_each_obstacle_is_made_once():
+    made = []
+    kept = PerObstacle(lambda obstacle: made.append(obstacle.name) or obstacle.name.upper())
+    world = make_world([make_obstacle(name, [BALL]) for name in "abc"])
+    moved = world.move("b", np.eye(4))
+    for obstacles, new in (
+        (world.active, ["a", "b", "c"]),
+        (world.active, []),
+        (moved.active, ["b"]),
+        (moved.remove("a").active, []),
+        (moved.remove("a").add(make_obstacle("d", [BALL])).active, ["d"]),
+        ((), []),
+        (moved.active, ["a", "b", "c"]),
+    ):
+        made.clear()
+        assert kept.list(obstacles) == [obstacle.name.upper() for obstacle in obstacles]
+        assert made == new

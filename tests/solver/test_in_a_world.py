@@ -15,6 +15,7 @@ from ikde.model.world import NOTHING, make_obstacle, make_world
 from ikde.solver import search as search_module
 from ikde.solver.plain import compute_components, compute_gaps
 from ikde.solver.plain_world import measure_obstacle
+from ikde.solver.quick import find_quick
 from ikde.solver.search import search
 from tests.problems import problem_of
 from tests.solids import random_world
@@ -180,3 +181,18 @@ def test_what_is_frozen_stays_and_is_checked_against_the_world(rng):
     result = ikde.solve(ROBOT, target, collision=model, freeze={"reach": float(q[2])})
     assert result.q[2] == q[2]
     assert not result.reached or is_free(model, result.q)
+
+
+def test_a_moved_obstacle_is_answered_as_in_a_new_world(rng, monkeypatch):
+    """What stays is laid out once for all worlds; no bit shows it."""
+    target, world = ikde.Target((0.3, 0.2, 0.4)), crowd(rng)
+    with written_kernels(monkeypatch):
+        for k in range(4):
+            T = world.obstacles[k].T_world_obstacle.copy()
+            T[:, 3] += 0.01
+            world = world.move(world.names[k], T)
+            quick = ikde.solve(ROBOT, target, collision=OWN.in_world(world))
+            find_quick.cache_clear()
+            again = ikde.solve(ROBOT, target, collision=CollisionModel.of(ROBOT).in_world(world))
+            assert quick.q.tobytes() == again.q.tobytes()
+            assert (quick.reached, quick.clearance_m) == (again.reached, again.clearance_m)

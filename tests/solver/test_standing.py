@@ -10,6 +10,7 @@ from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
 from ikde.model.solids import make_solid
 from ikde.model.world import make_obstacle, make_world
+from ikde.solver.plain import compute_components
 from ikde.solver.standing import find_standing_obstacles
 from tests.three_joints import ROBOT
 
@@ -40,3 +41,20 @@ def test_what_no_joint_moves_is_left_to_that_and_not_compared():
     assert "floor" in model.fixed_components
     checked = ikde.check_many(ROBOT, ROBOT.home[None], model)
     assert np.isinf(checked.gaps_m[0, checked.pairs.index(("floor", "ball"))])
+
+
+def test_what_stands_near_is_found_among_solids_and_clouds(rng):
+    post = "post"
+    centres, radii = compute_components(OWN, ROBOT.home)[post]
+    beside = centres[0] + (radii[0] + 0.012, 0.0, 0.0)
+    far = rng.uniform(3.0, 4.0, (500, 3))
+    cloud = make_solid("cloud", (0.002,), points=[*far, beside])
+    for solid in (make_solid("sphere", (0.002,), np.c_[np.eye(3), beside]), cloud):
+        world = make_world([make_obstacle("near", [make_solid("sphere", (0.1,), np.c_[np.eye(3), far[0]]), solid])])
+        found = {pair.component: pair for pair in find_standing_obstacles(OWN.in_world(world))}
+        assert found[post].clearance_m == pytest.approx(0.01, abs=1e-9)
+        assert not found[post].touches
+        near = find_standing_obstacles(OWN.in_world(world, margins_m={post: 0.011}))
+        assert post in [pair.component for pair in near if pair.touches]
+        away = world.move("near", shifted(1.0))
+        assert post not in {pair.component for pair in find_standing_obstacles(OWN.in_world(away))}
