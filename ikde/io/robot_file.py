@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
 from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
@@ -130,6 +130,12 @@ class InertiaEntry(SourcedEntry):
     """xx, yy, zz, xy, xz, yz about the centre of mass, along the axes of the frame."""
 
 
+def _need_one(tool: str | None, info: ValidationInfo) -> str | None:
+    if tool is None and not info.data.get("tools", True):
+        raise PydanticCustomError("missing", "one tool at least")
+    return tool
+
+
 class RobotFile(Entry):
     """The whole file."""
 
@@ -142,9 +148,9 @@ class RobotFile(Entry):
     sources: dict[Name, SourceEntry] = {}
     joints: Annotated[dict[Name, JointEntry], Field(max_length=MAX_JOINTS)]
     frames: Annotated[dict[Name, FrameEntry], Field(max_length=MAX_ENTRIES)]
-    tool: Name | None = None
     tools: Annotated[dict[Name, Name], Field(max_length=MAX_TOOLS)] = {}
     """Name -> frame, of a robot with several tools; `tool` names one of them, or a frame (default: the first)."""
+    tool: Annotated[Name | None, AfterValidator(_need_one), Field(validate_default=True)] = None
     conventions: Annotated[dict[Name, ConventionEntry], OfLists] = {}
     spheres: Annotated[dict[Name, Annotated[list[SphereRowEntry], Field(max_length=MAX_ENTRIES)]], OfLists] = {}
     adjacent: AdjacentEntry | None = None
@@ -287,8 +293,6 @@ def _to_adjacent(pairs: dict[str, dict[str, str]]) -> tuple[AdjacentPair, ...]:
 
 def _choose_tool(file: RobotFile) -> str:
     """The frame of the tool that the file names, or of its first one."""
-    if file.tool is None and not file.tools:
-        raise InputError("this key is missing", ("tool",))
     return next(iter(file.tools.values())) if file.tool is None else file.tools.get(file.tool, file.tool)
 
 
