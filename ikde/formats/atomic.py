@@ -47,7 +47,7 @@ def write_named(path: Path, data: Any, beside: Mapping[str, Any] | None = None) 
         FileError: if it cannot be written, is no ordinary file (a device, a pipe, a folder), or has no folder.
     """
     if not path.name:
-        raise FileError(path, "expected the name of a file to write")
+        raise FileError(path, "cannot be written: expected the name of a file")
     try:
         if path.exists() and not path.is_file():
             raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
