@@ -145,11 +145,15 @@ class Command(_Helpful, TyperCommand):
 
 
 def check_environment() -> None:
-    """Raise `InputError` for a word in `$IKDE_COMPILE` that is none; nothing is imported unless there is one."""
+    """Raise `InputError` for a word that is none in `$IKDE_COMPILE` or `$IKDE_KERNELS`; else nothing is imported."""
     if os.environ.get("IKDE_COMPILE"):
         from ikde.solver.background import choose_way
 
         choose_way()
+    if os.environ.get("IKDE_KERNELS") not in (None, "", "written", "tables"):
+        from ikde.model.generate.module import kernel_kind
+
+        kernel_kind()
 
 
 def read_q(

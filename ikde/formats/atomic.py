@@ -38,6 +38,29 @@ def write_together(files: Mapping[Path, Any]) -> None:
             os.close(descriptor)
 
 
+def write_named(path: Path, data: Any, beside: Mapping[str, Any] | None = None) -> tuple[Path, ...]:
+    """Write bytes to a file that a user named, and others by name beside it, whole or not at all; returns the files.
+
+    Where the name is a symbolic link, the file that it leads to is written and the link stays, as most programs do.
+
+    Raises:
+        FileError: if it cannot be written, is no ordinary file (a device, a pipe, a folder), or has no folder.
+    """
+    if not path.name:
+        raise FileError(path, "cannot be written: expected the name of a file")
+    try:
+        if path.exists() and not path.is_file():
+            raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
+        place = path.resolve() if path.is_symlink() else path
+    except (OSError, RuntimeError, ValueError) as error:
+        raise FileError(path, f"cannot be written: {getattr(error, 'strerror', None) or 'no path'}") from None
+    if not place.parent.is_dir():
+        raise FileError(path, "cannot be written: its folder does not exist")
+    own = {path.parent / name: content for name, content in (beside or {}).items()}
+    _write_all({**own, place: data}, path.parent)
+    return (*own, path)
+
+
 def replace_all(folder: Path, files: Mapping[str, Any], names: Iterable[str] = ()) -> tuple[Path, ...]:
     """Write bytes by name into a folder, and remove those of `names` that are not among them; returns the files.
 
@@ -45,14 +68,20 @@ def replace_all(folder: Path, files: Mapping[str, Any], names: Iterable[str] = (
         FileError: if they cannot be written; then none of them is new, or only those that were named before.
     """
     paths = {folder / name: data for name, data in files.items()}
+    _write_all(paths, folder, set(names) - set(files))
+    return tuple(paths)
+
+
+def _write_all(files: Mapping[Path, Any], folder: Path, gone: Iterable[str] = ()) -> None:
+    """Write them, remove those that are gone from the folder, and wait until the names are on the disk."""
     try:
-        write_together(paths)
-        for name in set(names) - set(files):
+        write_together(files)
+        for name in gone:
             (folder / name).unlink(missing_ok=True)
-        sync_folder(folder)
+        for parent in {folder, *(path.parent for path in files)}:
+            sync_folder(parent)
     except OSError as error:
         raise FileError(error.filename or folder, f"cannot be written: {error.strerror or error}") from None
-    return tuple(paths)
 
 
 def temporary_path(path: Path) -> Path:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ikde.errors import FileError, printable
-from ikde.formats.atomic import replace_all
+from ikde.errors import InputError, printable, quoted
+from ikde.formats.atomic import write_named
 from ikde.io.yaml_text import format_flow
 from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD
@@ -44,16 +44,17 @@ def write_world(world: World, path: str | PathLike[str], notes: Iterable[str] = 
 
     Raises:
         FileError: in one line, if it cannot be written.
+        InputError: for what is no world.
     """
+    if not isinstance(world, World):
+        raise InputError(f"expected a World, got {quoted(world)}", ("world",))
     return save_text(format_world_file(world, Path(path).stem, notes), path)
 
 
 def save_text(written: WorldText, path: str | PathLike[str]) -> tuple[Path, ...]:
     """Write a text and its files into the folder of `path`; the file itself is the last to get its name."""
     where = Path(path)
-    if not where.name:
-        raise FileError(where, "expected the name of a file to write")
-    return replace_all(where.parent, {**written.files, where.name: written.text.encode()})
+    return write_named(where, written.text.encode(), written.files)
 
 
 def format_world_file(world: World, stem: str = "world", notes: Iterable[str] = ()) -> WorldText:

@@ -5,8 +5,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from ikde.errors import FileError, InputError
-from ikde.formats.atomic import replace_all
+from ikde.errors import InputError
+from ikde.formats.atomic import write_named
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Robot
 from ikde.model.spheres import Sphere
@@ -81,9 +81,4 @@ def describe_collision(collision: CollisionModel) -> str:
 
 def write_xml(path: Path, text: str, beside: Mapping[str, str] | None = None) -> None:
     """Write a whole file, and others in its folder by name, or none; raises `FileError` in one line."""
-    if path.exists() and not path.is_file():
-        raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
-    if not path.parent.is_dir():
-        raise FileError(path, "cannot be written: its folder does not exist")
-    texts = {path.name: text, **(beside or {})}
-    replace_all(path.parent, {name: own.encode() for name, own in texts.items()})
+    write_named(path, text.encode(), {name: own.encode() for name, own in (beside or {}).items()})

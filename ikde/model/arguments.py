@@ -91,7 +91,7 @@ def read_targets(targets: TargetsLike, where: Where = ("targets",)) -> Targets:
         return targets
     if isinstance(targets, Target):
         return Targets.of([targets])
-    if _is_listed(targets):
+    if _is_listed(targets, where):
         targets = list(cast(Iterable[Any], targets))
         if not targets or not _are_numbers(targets):
             return Targets.of([read_target(one, (*where, row)) for row, one in enumerate(targets)])
@@ -99,7 +99,7 @@ def read_targets(targets: TargetsLike, where: Where = ("targets",)) -> Targets:
     if array.shape in ((3,), (4, 4)):
         return Targets.of([read_target(array, where)])
     try:
-        if array.ndim == 2 and array.shape[1] == 3 and _find_pose(targets) is None:
+        if array.ndim == 2 and array.shape[1] == 3 and find_matrix(targets, where) is None:
             return Targets(array)
         if array.ndim == 3 and array.shape[1:] == (4, 4):
             return Targets.from_matrix(array)
@@ -108,10 +108,10 @@ def read_targets(targets: TargetsLike, where: Where = ("targets",)) -> Targets:
     raise InputError(f"expected {MANY}, got {_describe(targets, array)}{_find_hint(array)}", where)
 
 
-def _is_listed(value: object) -> bool:
+def _is_listed(value: object, where: Where) -> bool:
     """Whether it holds targets one by one, rather than numbers in an array."""
     is_array = isinstance(value, np.ndarray | str | bytes | Mapping | Set) or hasattr(value, "__array__")
-    return isinstance(value, Iterable) and not is_array and _find_pose(value) is None
+    return isinstance(value, Iterable) and not is_array and find_matrix(value, where) is None
 
 
 def _are_numbers(values: list[Any]) -> bool:
@@ -122,19 +122,25 @@ def _are_numbers(values: list[Any]) -> bool:
         return False
 
 
-def _find_pose(value: object) -> Any:
-    """T_world_tool of another library's pose, or None."""
+def find_matrix(value: object, where: Where) -> Any:
+    """The matrix of another library's pose, or None; raises `InputError` with what that library raises."""
     if isinstance(value, type | np.ndarray | list | tuple):
         return None
-    for name in ("homogeneous", "A"):
-        if (found := getattr(value, name, None)) is not None:
-            return found
-    as_matrix = getattr(value, "as_matrix", None)
-    return as_matrix() if callable(as_matrix) else None
+    name = ""
+    try:
+        for name in ("homogeneous", "A", "as_matrix"):
+            if (found := getattr(value, name, None)) is not None and (name != "as_matrix" or callable(found)):
+                return found() if name == "as_matrix" else found
+    except InputError:
+        raise
+    except Exception as error:
+        text = f": {quoted(str(error))}" if str(error) else ""
+        raise InputError(f"`.{name}` of {quoted(value)} raised {type(error).__name__}{text}", where) from error
+    return None
 
 
 def _read_array(value: Any, expected: str, where: Where) -> Floats:
-    pose = _find_pose(value)
+    pose = find_matrix(value, where)
     try:
         return read_numbers(value if pose is None else pose, where)
     except InputError:

@@ -115,7 +115,9 @@ class CollisionModel:
             raise InputError(f"expected a World, got {quoted(world)}", ("world",))
         if not self.pairs:
             raise InputError("a world needs a detector: without spheres nothing can be compared with it", ("world",))
-        given = {} if margins_m is None else dict(margins_m)
+        given = {} if margins_m is None else margins_m
+        if not isinstance(given, Mapping):
+            raise InputError(f"expected distances by component, got {quoted(given)}", ("margins_m",))
         for name, value in (("", margin_m), *given.items()):
             if name and name not in self.components:
                 raise InputError(f"no component is called {name!r}{nearest(name, self.components)}", ("margin", name))

@@ -1,27 +1,29 @@
 """A world of obstacles, as values: named, posed, each with a margin of its own. Worlds never become types or text."""
 
 import hashlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.errors import InputError, nearest
-from ikde.kernels.arrays import Floats
+from ikde.errors import InputError, nearest, quoted
+from ikde.kernels.arrays import Floats, read_only
+from ikde.model.arguments import Pose, find_matrix
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE, WORLD
 from ikde.model.solids import Solid, read_pose
+from ikde.model.value import MadeAnew
 
 MAX_OBSTACLES = MAX_SOLIDS = 100_000
 Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Obstacle:
+class Obstacle(MadeAnew):
     """Solids that stand together under one name."""
 
     name: str
@@ -37,14 +39,62 @@ class Obstacle:
     group: str | None = None
     """What it is switched with."""
 
+    def __post_init__(self) -> None:
+        read_only(self.T_world_obstacle)
+
+    def __repr__(self) -> str:
+        """In a line, whatever it holds."""
+        return f"<Obstacle {self.name} of {len(self.solids)} solids>"
+
+    def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
+        return self._key == other._key if isinstance(other, Obstacle) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @property
+    def _key(self) -> tuple[object, ...]:
+        known = (self.name, self.frame, self.margin_m, self.ignore, self.group)
+        return (*known, self.T_world_obstacle.tobytes(), self.solids)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class World:
-    """Obstacles by name, in their order. It stays as it is: `add`, `move`, `remove` and `switch` give another one."""
+class World(MadeAnew):
+    """Obstacles by name, in their order. It stays as it is: `add`, `move`, `remove` and `switch` give another one.
+
+    Equal are two of the same numbers and names, to the bit, also after pickling or copying.
+
+    Raises:
+        InputError: for what is no obstacle, and for two of one name.
+    """
 
     obstacles: tuple[Obstacle, ...] = ()
     switched_off: frozenset[str] = field(default_factory=frozenset)
     """Groups that do not count."""
+
+    def __post_init__(self) -> None:
+        found: dict[str, Obstacle] = {}
+        for place, obstacle in enumerate(self.obstacles):
+            if not isinstance(obstacle, Obstacle):
+                raise InputError(f"expected an obstacle of a World, got {quoted(obstacle)}", ("obstacles", place))
+            if found.setdefault(obstacle.name, obstacle) is not obstacle or len(found) <= place:
+                raise InputError(f"two obstacles are called {obstacle.name!r}", ("obstacles", obstacle.name))
+        object.__setattr__(self, "obstacles", tuple(self.obstacles))
+        object.__setattr__(self, "switched_off", frozenset(self.switched_off))
+
+    def __eq__(self, other: object) -> bool:
+        if self is other or not isinstance(other, World):
+            return True if self is other else NotImplemented
+        return (self.switched_off, self.obstacles) == (other.switched_off, other.obstacles)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.switched_off, self.obstacles))
 
     @cached_property
     def active(self) -> tuple[Obstacle, ...]:
@@ -78,6 +128,12 @@ class World:
     def __getitem__(self, name: str) -> Obstacle:
         return self.obstacles[self._place(name)]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    def __iter__(self) -> Iterator[Obstacle]:
+        return iter(self.obstacles)
+
     def __len__(self) -> int:
         return len(self.obstacles)
 
@@ -90,13 +146,14 @@ class World:
         return make_world((*self.obstacles, *obstacles), self.switched_off)
 
     def remove(self, *names: str) -> "World":
-        """The world without some obstacles."""
+        """The world without some obstacles; a group of which none is left is forgotten: what is added to it counts."""
         gone = {self._place(name) for name in names}
-        return replace(self, obstacles=tuple(o for place, o in enumerate(self.obstacles) if place not in gone))
+        left = World(obstacles=tuple(o for place, o in enumerate(self.obstacles) if place not in gone))
+        return replace(left, switched_off=self.switched_off & set(left.groups))
 
-    def move(self, name: str, T_world_obstacle: ArrayLike) -> "World":
-        """The world with an obstacle at another pose [4, 4] or [3, 4], m."""
-        place, T = self._place(name), read_pose(T_world_obstacle, ("T_world_obstacle",))
+    def move(self, name: str, T_world_obstacle: "ArrayLike | Pose") -> "World":
+        """The world with an obstacle at another pose [4, 4] or [3, 4], m, or at that of another library."""
+        place, T = self._place(name), _read_place(T_world_obstacle)
         moved = replace(self.obstacles[place], T_world_obstacle=T)
         world = replace(self, obstacles=(*self.obstacles[:place], moved, *self.obstacles[place + 1 :]))
         vars(world)["_places"] = self._places
@@ -105,7 +162,9 @@ class World:
     def switch(self, /, **groups: bool) -> "World":
         """The world with groups of obstacles on or off."""
         known = dict.fromkeys(self.groups)
-        for group in groups:
+        for group, on in groups.items():
+            if not isinstance(on, bool | np.bool):
+                raise InputError(f"expected True or False, got {quoted(on)}", ("groups", group))
             if group not in known:
                 raise InputError(f"no group is called {group!r}{nearest(group, known)}", ("groups", group))
         off = (self.switched_off - groups.keys()) | {group for group, on in groups.items() if not on}
@@ -125,17 +184,12 @@ class World:
 
 def make_world(obstacles: Iterable[Obstacle], switched_off: Iterable[str] = ()) -> World:
     """A world whose names are known to be right; raises `InputError`."""
-    found: dict[str, Obstacle] = {}
-    for obstacle in obstacles:
-        if obstacle.name in found:
-            raise InputError(f"two obstacles are called {obstacle.name!r}", ("obstacles", obstacle.name))
-        found[obstacle.name] = obstacle
-    if len(found) > MAX_OBSTACLES:
-        raise InputError(f"expected at most {MAX_OBSTACLES:,} obstacles, got {len(found):,}", ("obstacles",))
-    count = sum(len(obstacle.solids) for obstacle in found.values())
+    world = World(obstacles=tuple(obstacles))
+    if len(world) > MAX_OBSTACLES:
+        raise InputError(f"expected at most {MAX_OBSTACLES:,} obstacles, got {len(world):,}", ("obstacles",))
+    count = sum(len(obstacle.solids) for obstacle in world)
     if count > MAX_SOLIDS:
         raise InputError(f"expected at most {MAX_SOLIDS:,} solids in all, got {count:,}", ("obstacles",))
-    world = World(obstacles=tuple(found.values()))
     return world.switch(**dict.fromkeys(switched_off, False))
 
 
@@ -187,6 +241,12 @@ class PerObstacle(Generic[Found]):
             made = [kept_of[id(o)] if id(o) in kept_of else make(o) for o in obstacles]
         self._last = obstacles, made
         return made
+
+
+def _read_place(given: "ArrayLike | Pose") -> Floats:
+    where = ("T_world_obstacle",)
+    found = find_matrix(given, where)
+    return read_pose(cast(ArrayLike, given) if found is None else found, where)
 
 
 NOTHING = World()

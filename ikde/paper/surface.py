@@ -119,6 +119,8 @@ def _read_judgement(
     chosen = CollisionModel.of(robot, choice)
     if not chosen.pairs:
         raise InputError("expected a detector, got none", ("detector",))
+    if chosen.obstacles:
+        raise InputError("surface points are not compared with a world: leave it out", ("collision",))
     directions = surface_directions(m_steps, n_steps)
     if rule == "eq. 18":
         return chosen, directions, 0.0, 0.0

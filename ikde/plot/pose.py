@@ -1,5 +1,6 @@
 """A drawn pose as a figure in space: spheres, links, frames by their axes, marks and labels."""
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -7,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ikde.errors import FileError
+from ikde.formats.atomic import write_named
 from ikde.kernels.arrays import Floats
 from ikde.plot.images import any_letters, show_as_text
 from ikde.plot.style import find_eye, set_box
@@ -85,13 +87,13 @@ def plot_frames(pose: DrawnPose) -> Any:
 
 def save_figure(figure: Any, path: Path) -> None:
     """Write a figure; raises `FileError` if the ending is unknown or the file cannot be written."""
+    drawn = io.BytesIO()
     try:
         with any_letters():
-            figure.savefig(path)
+            figure.savefig(drawn, format=path.suffix.removeprefix(".").lower() or "none")
     except ValueError as error:
         raise FileError(path, f"cannot be drawn: {error}") from None
-    except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror or error}") from None
+    write_named(path, drawn.getbuffer())
 
 
 def _draw_axes(axes: Any, Ts_world_frame: Floats, *, length_m: float, dashes: Sequence[str], width: float) -> None:

@@ -16,6 +16,7 @@ MAX_TRIANGLES = 500_000
 LARGE_M = 20.0
 """A body beyond this is most likely given in mm."""
 KINDS = {".stl": "stl", ".obj": "obj", ".dae": "dae"}
+STL_HEADER, STL_TRIANGLE = 84, 50  # bytes
 MISSING = "meshes need trimesh: pip install 'ikde[meshes]'"
 
 
@@ -76,11 +77,32 @@ def _parse(path: Path, content: bytes) -> Floats:
     kind = KINDS[path.suffix.lower()]
     unit_m = _read_unit(path, content) if kind == "dae" else 1.0
     options: Any = {"resolver": None, "process": False, "skip_materials": True}
+    fault = _find_fault(kind, content)
+    if fault:
+        raise FileError(path, f"is no {kind.upper()} that can be read: {fault}")
     try:
         mesh = trimesh.load_scene(io.BytesIO(content), file_type=kind, **options).to_mesh()
         return np.array(mesh.triangles, dtype=np.float64) * unit_m
     except Exception as error:
-        raise FileError(path, f"is no {kind.upper()} that can be read ({type(error).__name__})") from None
+        if isinstance(error, ImportError) and kind == "dae":  # trimesh reads it with packages of its own
+            raise FileError(path, f"cannot be read: {error}; a DAE needs it, or give the mesh as STL or OBJ") from None
+        raise FileError(
+            path, f"is no {kind.upper()} that can be read: it is damaged, or of another kind than its ending"
+        ) from None
+
+
+def _find_fault(kind: str, content: bytes) -> str | None:
+    """What is wrong with a mesh, as far as its length says."""
+    if not content:
+        return "it is empty"
+    if kind == "stl" and not content.lstrip().startswith(b"solid"):
+        if len(content) < STL_HEADER:
+            return f"{len(content)} bytes are less than its header of {STL_HEADER}"
+        count = int.from_bytes(content[STL_HEADER - 4 : STL_HEADER], "little")
+        expected = STL_HEADER + STL_TRIANGLE * count
+        if expected != len(content):
+            return f"its header tells of {count:,} triangles, {expected:,} bytes, but it has {len(content):,}"
+    return None
 
 
 def _read_unit(path: Path, content: bytes) -> float:

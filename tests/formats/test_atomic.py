@@ -6,7 +6,7 @@ import threading
 import pytest
 
 from ikde.errors import FileError
-from ikde.formats.atomic import remove_temporaries, replace_all, temporary_path, write_together
+from ikde.formats.atomic import remove_temporaries, replace_all, temporary_path, write_named, write_together
 
 
 def test_a_file_is_written_and_written_over(tmp_path):
@@ -115,3 +115,34 @@ def test_a_pipe_in_the_way_is_not_waited_for(tmp_path):
     writing.start()
     writing.join(20.0)
     assert path.read_bytes() == b"ours"
+
+
+def test_a_file_that_a_user_names_is_written_through_a_link(tmp_path):
+    (tmp_path / "data").mkdir()
+    aim, link = tmp_path / "data" / "a.txt", tmp_path / "link.txt"
+    link.symlink_to("data/a.txt")
+    for text in (b"new", b"newer"):  # the first time, nothing is there yet
+        assert write_named(link, text, {"b.txt": b"beside"}) == (tmp_path / "b.txt", link)
+        assert (link.is_symlink(), aim.read_bytes(), (tmp_path / "b.txt").read_bytes()) == (True, text, b"beside")
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["a.txt", "b.txt", "data", "link.txt"]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("pipe", "this is no ordinary file"),
+        ("folder", "this is no ordinary file"),
+        ("round", "Too many levels|no path|no ordinary|folder does not exist"),
+        ("away", "its folder does not exist"),
+        ("none/a.txt", "its folder does not exist"),
+    ],
+)
+def test_what_is_no_place_for_a_file_is_left_alone(tmp_path, name, said):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "round").symlink_to("round")
+    (tmp_path / "away").symlink_to("none/a.txt")
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises(FileError, match=said):
+        write_named(tmp_path / name, b"ours")
+    assert sorted(tmp_path.rglob("*")) == before

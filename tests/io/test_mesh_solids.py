@@ -96,7 +96,7 @@ def test_too_large_meshes(read, tmp_path, monkeypatch):
         ("/a.obj", InputError, "inside the folder of this one"),
         ("a.step", InputError, "a mesh that ends in .stl, .obj, .dae, got 'a.step'"),
         ("no.stl", FileError, "no such file"),
-        ("bad.stl", InputError, "no STL that can be read|without area|meshes need trimesh"),
+        ("bad.stl", InputError, "no STL that can be read: |without area|meshes need trimesh"),
     ],
 )
 def test_what_is_no_mesh(tmp_path, name, error, said):

@@ -94,6 +94,7 @@ def test_a_path_is_followed_by_a_robot_of_that_name():
         ((1.0, np.nan, 2.0), "expected finite numbers"),
         (2.0 * T, "expected the last row 0 0 0 1"),
         ([Target(P)], "got "),
+        (SimpleNamespace(as_matrix=lambda: {}["x"]), "`.as_matrix` of .* raised KeyError: "),
         (Targets([P]), "solve_many takes many"),
     ],
 )
@@ -128,6 +129,10 @@ def test_many_targets_may_be_arrays_or_a_list_of_all_kinds(given, expected):
         ([P, "x"], r"targets\[1\]: expected a Target.*got 'x'"),
         ([P, (1.0, 2.0)], r"targets\[1\]: .*shape \(2,\)"),
         ([P, (1.0, np.inf, 2.0)], r"targets\[1\]: expected finite numbers"),
+        (np.zeros((3, 4)), r"targets: .*shape \(3, 4\)"),
+        (SimpleNamespace(as_matrix=lambda: 1 / 0), "targets: `.as_matrix` .* raised ZeroDivisionError"),
+        (["1", "2", "3"], r"targets\[0\]: .*got '1'"),
+        ([None, None, None], r"targets\[0\]: .*got None"),
         (np.zeros((2, 4)), r"targets: .*shape \(2, 4\)"),
         ([T[:3, :3]] * 2, r"targets: .*rotations have no position"),
         (SimpleNamespace(A=T[:3, :3]), r"targets: .*rotations have no position"),
@@ -141,3 +146,9 @@ def test_many_targets_may_be_arrays_or_a_list_of_all_kinds(given, expected):
 def test_what_are_no_targets_is_refused_with_its_row(given, message):
     with pytest.raises(InputError, match=f"^{message}"):
         read_targets(given)
+
+
+def test_what_another_library_raises_is_the_cause():
+    with pytest.raises(InputError) as caught:
+        read_target(SimpleNamespace(as_matrix=lambda: 1 / 0))
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)

@@ -5,7 +5,7 @@ import pytest
 
 import ikde
 from ikde.errors import InputError
-from ikde.model.numbers import read_numbers
+from ikde.model.numbers import is_number, read_numbers
 
 
 class RecordsItsGradient:
@@ -48,3 +48,11 @@ def test_masked_joints_are_not_checked_as_zeros(qiao):
         ikde.check(qiao, np.ma.masked_array(qiao.home, mask=True))
     with pytest.raises(InputError, match="p_world_tool: expected numbers, but some are masked"):
         ikde.Target(np.ma.masked_array([0.8, 0.5, 1.0], mask=[0, 1, 0]))
+
+
+@pytest.mark.parametrize(
+    ("value", "is_one"),
+    [(1, True), (0.5, True), (np.float32(1), True), (np.int8(1), True), (True, False), (np.True_, False), ("1", False)],
+)
+def test_a_bool_and_text_are_no_numbers(value, is_one):
+    assert is_number(value) is is_one

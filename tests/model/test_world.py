@@ -1,5 +1,9 @@
 """Worlds: obstacles by name, switched by group; a digest of what counts."""
 
+import copy
+import pickle
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -104,3 +108,49 @@ def test_what_is_made_of_each_obstacle_is_made_once():
         made.clear()
         assert kept.list(obstacles) == [obstacle.name.upper() for obstacle in obstacles]
         assert made == new
+
+
+def test_worlds_are_equal_by_value_also_those_that_travelled(world):
+    hull = make_obstacle("hull", [make_solid("hull", points=[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])])
+    before, world = world, world.add(hull)
+    for other in (before.add(hull), pickle.loads(pickle.dumps(world)), copy.deepcopy(world), copy.copy(world)):
+        assert (world == other, hash(world) == hash(other)) == (True, True)
+        assert not other["hull"].T_world_obstacle.flags.writeable
+        assert not other["hull"].solids[0].points.flags.writeable
+    bigger = make_obstacle("hull", [make_solid("hull", points=[[0, 0, 0], [2, 0, 0], [0, 1, 0], [0, 0, 1]])])
+    others = [world.remove("hull"), before.add(bigger), world.move("hull", place(1)), world.switch(tools=False)]
+    assert all(world != other for other in others)
+    assert world != 3
+
+
+def test_a_group_of_which_nothing_is_left_is_forgotten():
+    ball = make_obstacle("ball", [BALL], group="tools")
+    world = make_world([ball, make_obstacle("other", [BALL])]).switch(tools=False)
+    left = world.remove("ball")
+    assert (left.switched_off, left.add(ball).active[-1].name) == (frozenset(), "ball")
+
+
+def test_a_world_is_walked_through_and_searched_by_name(world):
+    assert [obstacle.name for obstacle in world] == list(world.names)
+    assert (world.names[0] in world, "none" in world, 0 in world) == (True, False, False)
+    assert len(repr(list(world))) < 200
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (lambda w: w.add("x"), r"obstacles\[2\]: expected an obstacle of a World, got 'x'"),
+        (lambda w: World(obstacles=["x"]), r"obstacles\[0\]: expected an obstacle of a World"),
+        (lambda w: World(obstacles=(w["ball"], w["ball"])), "two obstacles are called 'ball'"),
+        (lambda w: w.switch(tools="off"), "groups.tools: expected True or False, got 'off'"),
+        (lambda w: w.move("ball", np.diag([1, 1, 1, 5.0])), "T_world_obstacle: expected the last row 0 0 0 1"),
+        (lambda w: w.move("ball", SimpleNamespace(as_matrix=lambda: 1 / 0)), "T_world_obstacle: .*ZeroDivisionError"),
+    ],
+)
+def test_what_a_world_refuses(world, wrong, said):
+    with pytest.raises(InputError, match=said):
+        wrong(world)
+
+
+def test_an_obstacle_moves_to_a_pose_of_another_library(world):
+    assert world.move("box", SimpleNamespace(homogeneous=place(1))) == world.move("box", place(1))

@@ -111,3 +111,18 @@ def test_without_trimesh_the_extra_is_named(tmp_path, monkeypatch: pytest.Monkey
     with pytest.raises(InputError) as caught:
         read_mesh(write_stl(tmp_path / "box.stl", box(1, 1, 1)))
     assert caught.value.message == MISSING == "meshes need trimesh: pip install 'ikde[meshes]'"
+
+
+@needs_trimesh
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "is no STL that can be read: it is empty"),
+        (b"x" * 83, "is no STL that can be read: 83 bytes are less than its header of 84"),
+        (bytes(80) + b"\x02\0\0\0" + bytes(50), "its header tells of 2 triangles, 184 bytes, but it has 134"),
+    ],
+)
+def test_what_is_wrong_with_a_broken_stl_is_said(tmp_path, content, said):
+    (tmp_path / "a.stl").write_bytes(content)
+    with pytest.raises(FileError, match=rf"a\.stl: .*{said}$"):
+        read_mesh(tmp_path / "a.stl")

@@ -10,6 +10,7 @@ from ikde.errors import FileError, quoted, shorten
 PACKAGE = ("package://", "model://")
 LOCAL = "file://"
 MAX_SHOWN = 50  # characters of a mesh's name, the last ones
+MAX_FOLDER = 120  # characters of a folder that is advised
 
 
 def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | None = None) -> Path:
@@ -54,11 +55,15 @@ def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
 
 
 def _suggest_folder(urdf: Path, name: str) -> str:
-    """The folder above the URDF that holds the package or a part of it, going by names alone, written shortly."""
-    parts, above = _split_package(name), urdf.absolute().parents
-    holders = [str(folder.parent) for folder in above if folder.name in parts[:1]]
-    holders += [str(folder) for folder in above if _find_all(folder.name, parts[1:])]
-    return min(holders[0], os.path.relpath(holders[0]), key=len) if holders else "FOLDER"
+    """The folder above the URDF in which the mesh is found, written shortly."""
+    above = urdf.absolute().parents if _split_package(name) else ()
+    candidates = [(folder, _list_candidates(name, [folder])) for folder in above]
+    whole = [(folder, paths[0]) for folder, paths in candidates]
+    for folder, path in [*whole, *((folder, path) for folder, paths in candidates for path in paths[1:])]:
+        if path.is_file() and path.resolve().is_relative_to(folder.resolve()):
+            shown = min(str(folder), os.path.relpath(folder), key=len)
+            return shown if len(shown) <= MAX_FOLDER else "FOLDER"
+    return "FOLDER"
 
 
 def _split_package(name: str) -> list[str]:

@@ -16,12 +16,15 @@ from typing import Literal
 
 import numpy as np
 
+from ikde.errors import InputError, quoted
 from ikde.kernels import cache_folder
 from ikde.kernels.cache_files import discard, read_file, read_sealed, write_file, write_sealed
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.proofs import proof_margin
 from ikde.model.pack import pack_robot
+
+KERNELS = "IKDE_KERNELS"
 
 
 @lru_cache(maxsize=256)
@@ -47,8 +50,15 @@ def describe_kernels() -> dict[str, str]:
 
 
 def kernel_kind() -> Literal["written", "tables"]:
-    """`written` for a robot, or `tables` if `$IKDE_KERNELS` says so; they add up in another order, so bits differ."""
-    return "tables" if os.environ.get("IKDE_KERNELS") == "tables" else "written"
+    """`written` for a robot, or `tables` if `$IKDE_KERNELS` says so; they add up in another order, so bits differ.
+
+    Raises:
+        InputError: for another word there.
+    """
+    given = os.environ.get(KERNELS) or "written"
+    if given not in ("written", "tables"):
+        raise InputError(f"expected written or tables, got {quoted(given)}", (f"${KERNELS}",))
+    return "tables" if given == "tables" else "written"
 
 
 def digest_inputs(collision: CollisionModel, kind: str) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.errors import CacheWarning
+from ikde.errors import CacheWarning, InputError
 from ikde.formats.entries import UnitsEntry
 from ikde.formats.robot_entries import with_ranges
 from ikde.kernels import cache_files, cache_folder
@@ -328,6 +328,12 @@ def test_the_kind_of_kernels_that_runs_is_told(monkeypatch, told, kind):
         monkeypatch.setenv("IKDE_KERNELS", told)
     monkeypatch.setattr(cache_folder, "CACHE_IS_WRITABLE", False)  # they have no file then, and are the same
     assert module.describe_kernels()["kind"] == kind
+
+
+def test_another_word_for_the_kind_of_kernels_is_refused(monkeypatch):
+    monkeypatch.setenv("IKDE_KERNELS", "junk")
+    with pytest.raises(InputError, match=r"^\$IKDE_KERNELS: expected written or tables, got 'junk'$"):
+        module.kernel_kind()
 
 
 SCRIPT = """
