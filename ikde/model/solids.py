@@ -13,6 +13,7 @@ from ikde.model.hull import make_hull
 from ikde.model.numbers import is_number, read_numbers
 from ikde.model.robot import MAX_MAGNITUDE
 from ikde.model.rotation import is_rotation
+from ikde.model.value import ByFields
 
 SolidKind = Literal["sphere", "box", "cylinder", "capsule", "cone", "half_space", "hull", "cloud"]
 KINDS: tuple[SolidKind, ...] = get_args(SolidKind)
@@ -35,7 +36,7 @@ IDENTITY.setflags(write=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Solid:
+class Solid(ByFields):
     """One convex solid, or a cloud of equal balls, in the frame of its obstacle."""
 
     kind: SolidKind

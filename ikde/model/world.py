@@ -15,13 +15,14 @@ from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE, WORLD
 from ikde.model.solids import Solid, read_pose
+from ikde.model.value import ByFields
 
 MAX_OBSTACLES = MAX_SOLIDS = 100_000
 Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Obstacle:
+class Obstacle(ByFields):
     """Solids that stand together under one name."""
 
     name: str
@@ -39,7 +40,7 @@ class Obstacle:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class World:
+class World(ByFields):
     """Obstacles by name, in their order. It stays as it is: `add`, `move`, `remove` and `switch` give another one."""
 
     obstacles: tuple[Obstacle, ...] = ()
