@@ -114,9 +114,10 @@ class _Helpful:
         return parameters
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Write it, in colours where results have them."""
+        """Write it as wide as the terminal, also a dumb one, in colours where results have them."""
         from typer import rich_utils
 
+        rich_utils.MAX_WIDTH = get_terminal_size().columns
         rich_utils.COLOR_SYSTEM = "standard" if use_color() else None
         super().format_help(ctx, formatter)  # type: ignore[misc]
 
