@@ -49,6 +49,11 @@ class Solid(ByFields):
     triangles: Ints | None = None
     """[F, 3] of a hull, into `points`, counter-clockwise from outside; read-only."""
 
+    def __repr__(self) -> str:
+        size = " x ".join(f"{value:g}" for value in self.size_m)
+        points = "" if self.points is None else f" of {len(self.points):,} points"
+        return f"<Solid: {self.kind}{points}{f', {size} m' if size else ''}>"
+
 
 def make_solid(
     kind: SolidKind, size_m: ArrayLike = (), T_obstacle_solid: ArrayLike | None = None, points: ArrayLike | None = None

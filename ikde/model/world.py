@@ -38,6 +38,11 @@ class Obstacle(ByFields):
     group: str | None = None
     """What it is switched with."""
 
+    def __repr__(self) -> str:
+        kinds = list(dict.fromkeys(solid.kind for solid in self.solids))
+        place = ", ".join(f"{value:g}" for value in self.T_world_obstacle[:, 3])
+        return f"<Obstacle {self.name}: {len(self.solids)} solids ({', '.join(kinds)}) at {place} m in {self.frame}>"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class World(ByFields):
