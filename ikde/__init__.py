@@ -1,4 +1,7 @@
-"""Collision-aware inverse kinematics for mobile manipulators.
+"""Inverse kinematics for arms and mobile manipulators, clear of themselves and of obstacles, on a CPU.
+
+A target is reached if it is met, inside the joint limits, and neither the robot nor a world is in the way. Robots ship
+with ikde, or come from a URDF or a file of yours.
 
 Names are imported when they are first used, so `import ikde` costs nothing.
 """

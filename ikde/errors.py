@@ -4,12 +4,16 @@ A target that cannot be reached is not an error: it is a `SolveResult` with a `S
 most `MAX_LENGTH` characters: files and names may hold anything, also what a terminal would obey.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
+from types import TracebackType
+from typing import Self, TypeVar
 
 MAX_LENGTH = 300  # characters of an error; file, line and key are kept, the message is cut
 MAX_FILE_LENGTH, MAX_KEYS_LENGTH, MAX_QUOTE_LENGTH = 140, 100, 60
 MAX_COMPARED = 1000  # names that a misspelt one is compared with
+
+_T = TypeVar("_T")
 
 
 class IkdeError(Exception):
@@ -25,6 +29,7 @@ class InputError(IkdeError):
     def __init__(self, message: str, where: tuple[str | int, ...] = ()) -> None:
         self.message = shorten(printable(message), MAX_LENGTH)
         self.where = where
+        self.others: tuple[InputError, ...] = ()  # of other places, found together with this one
         super().__init__(_write_line(format_path(where), self.message))
 
 
@@ -36,6 +41,37 @@ class FileError(InputError):
         file = shorten(printable(str(path)), MAX_FILE_LENGTH, keep_end=True)
         place = f"{file}:{line}" if line else file
         self.args = (_write_line(f"{place} → {format_path(where)}" if where else place, self.message),)
+
+
+class ErrorList:
+    """Errors of entries side by side: each `with` block keeps what is wrong in it; then all are raised as one."""
+
+    def __init__(self) -> None:
+        self._found: list[InputError] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> bool:
+        if not isinstance(error, InputError):
+            return False
+        self._found.append(error)
+        return True
+
+    def collect(self, makers: Iterable[Callable[[], _T]]) -> tuple[_T, ...]:
+        """What they make, without those that find something wrong."""
+        made: list[_T] = []
+        for make in makers:
+            with self:
+                made.append(make())
+        return tuple(made)
+
+    def raise_all(self) -> None:
+        """Raise the first, which holds the others; nothing if there is none."""
+        if self._found:
+            first, *others = self._found
+            first.others = tuple(others)
+            raise first
 
 
 class CacheWarning(RuntimeWarning):

@@ -6,11 +6,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import ikde
+from ikde.track.certify import certify
+from ikde.track.verify_track import verify_track
 
 SOURCE = ast.parse(Path(ikde.__file__).read_text(encoding="utf-8"))
+CONFIGS = Path(__file__).parent.parent / "configs"
 FUNCTIONS = sorted(name for name in ikde._HOME if inspect.isfunction(getattr(ikde, name)))
 every_name = pytest.mark.parametrize("name", sorted(ikde._HOME))
 
@@ -73,3 +77,34 @@ def test_a_function_is_typed(name):
     signature = inspect.signature(getattr(ikde, name))
     assert signature.return_annotation is not inspect.Signature.empty
     assert all(p.annotation is not inspect.Parameter.empty for p in signature.parameters.values())
+
+
+def test_what_calls_give_is_shown_in_a_line(tmp_path):
+    robot, world = ikde.load_robot("qiao2021"), ikde.load_world(CONFIGS / "worlds" / "kitchen.yaml")
+    (tmp_path / "ur5.urdf").write_text(ikde.format_urdf(ikde.load_robot("ur5")))
+    plan = ikde.load_track(CONFIGS / "tracks" / "qiao2022_task1.yaml")
+    q = [robot.home] * 300
+    grade = verify_track(plan.collision, plan.path, np.array(q), drive=plan.drive, limits=plan.limits)
+    shown = [
+        robot,
+        world,
+        *world.obstacles,
+        *(solid for obstacle in world.obstacles for solid in obstacle.solids),
+        ikde.CollisionModel.of(robot),
+        ikde.check(robot, robot.home),
+        ikde.check(robot, q),
+        ikde.forward(robot, q),
+        ikde.read_urdf(tmp_path / "ur5.urdf"),
+        ikde.load_batch(CONFIGS / "runs" / "first_run.yaml"),
+        plan,
+        plan.path,
+        grade,
+        certify(plan.collision, np.array(q)),
+        ikde.Target.from_rpy((1, 2, 3), (0.1, 0.2, 0.3)),
+        ikde.Targets([(1, 2, 3)] * 300),
+        ikde.SolveSettings.for_method("de"),
+        ikde.ContinuationSettings(),
+    ]
+    assert {repr(each): len(repr(each)) for each in shown if len(repr(each)) > 400} == {}
+    assert repr(world["shelf"]) == "<Obstacle shelf: 3 solids (box) at 0.899049, 0.0217889, 0.9 m in world>"
+    assert repr(plan.path) == "<ToolPath Qiao 2022, task 1: 500 samples of 0.02 s, orientation free>"

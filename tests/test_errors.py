@@ -2,7 +2,7 @@
 
 import pytest
 
-from ikde.errors import FileError, InputError, nearest, printable, quoted, shorten
+from ikde.errors import ErrorList, FileError, InputError, nearest, printable, quoted, shorten
 
 ORDERS = "\x1b[2J\x1b]0;title\x07\x9b31m\r\n\t\0\x7f\u202e\u2028\u2029\u200b\ud800\ue000"
 
@@ -70,3 +70,18 @@ def test_names_are_compared_with_few_and_short_ones():
 @pytest.mark.parametrize(("name", "expected"), [("improvd", " (did you mean 'improved'?)"), ("xyz", "")])
 def test_nearest_names_only_what_is_near(name, expected):
     assert nearest(name, ["improved", "typical"]) == expected
+
+
+def test_a_list_of_errors_is_raised_as_one():
+    errors = ErrorList()
+    errors.raise_all()
+    assert errors.collect([lambda: 1, lambda: fail("a"), lambda: 2, lambda: fail("b")]) == (1, 2)
+    with pytest.raises(InputError, match="a: wrong") as caught:
+        errors.raise_all()
+    assert [str(other) for other in caught.value.others] == ["b: wrong"]
+    with pytest.raises(ZeroDivisionError), errors:
+        _ = 1 / 0
+
+
+def fail(key):
+    raise InputError("wrong", (key,))

@@ -45,6 +45,8 @@ for solution in ikde.solve_distinct("ur5", (0.4, 0.2, 0.3), 3, rank="clearance")
 
 detector = ikde.Detector(name="wide", spheres="default", pairs="non_adjacent", safe_distance_m=0.02)
 checked: ikde.CheckResult = ikde.check(robot, robot.home, detector)
+rows_checked: ikde.CheckResults = ikde.check(robot, [robot.home] * 2)
+by_name: ikde.CheckResult = ikde.check(robot, dict(zip(robot.joint_names, robot.home.tolist(), strict=True)))
 many_checked: ikde.CheckResults = ikde.check_many(robot, [robot.home] * 2)
 grade: ikde.Grade = ikde.verify(robot, (0.4, 0.2, 0.3), result.q, settings={"position_tolerance_m": 1e-3})
 branch: str | None = ikde.family("ur5", robot.home)

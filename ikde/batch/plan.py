@@ -45,6 +45,10 @@ class Batch:
     file: str | None
     """The file it was read from, for the record only."""
 
+    def __repr__(self) -> str:
+        arms = ", ".join(arm.name for arm in self.arms[:3]) + (", ..." if len(self.arms) > 3 else "")
+        return f"<Batch {self.name}: {self.robot.name}, {self.source.count:,} targets, {len(self.arms)} arms: {arms}>"
+
     @property
     def solves(self) -> int:
         """Solves of one arm."""

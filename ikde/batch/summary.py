@@ -27,6 +27,11 @@ class RunSummary:
     parts: int
     arms: tuple[ArmSummary, ...]
 
+    def __repr__(self) -> str:
+        solves = sum(arm.reached.total for arm in self.arms)
+        done = "" if self.finished else f", {self.parts_done} of {self.parts} parts"
+        return f"<RunSummary of {self.name}: {self.robot}, {solves - self.unreached:,} of {solves:,} reached{done}>"
+
     @property
     def finished(self) -> bool:
         """True if no part is missing."""

@@ -61,7 +61,9 @@ def root(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    """Collision-aware inverse kinematics for mobile manipulators and arms, in microseconds on one CPU core.
+    """Inverse kinematics for arms and mobile manipulators, clear of themselves and of obstacles, on a CPU.
+
+    Robots: those of `ikde robots list`, a URDF or a file of your own.
 
     Exit codes: 0 all reached, 1 some not reached or a collision found, 2 bad usage or file, 3 a bug, 130 interrupted.
     """

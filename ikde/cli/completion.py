@@ -17,15 +17,23 @@ SHELLS = ("bash", "zsh", "fish")
 
 def completion(
     shell: Annotated[
-        str | None, typer.Argument(metavar="|".join(SHELLS), show_default=False, autocompletion=offer(*SHELLS))
+        str | None,
+        typer.Argument(
+            metavar="|".join(SHELLS), show_default=False, autocompletion=offer(*SHELLS), help="The shell to answer."
+        ),
     ] = None,
 ) -> None:
     """Print what makes a shell complete commands, options, and names of robots, joints and detectors.
 
-    bash, in ~/.bashrc: eval "$(ikde completion bash)". zsh, in ~/.zshrc after compinit: eval "$(ikde completion zsh)".
-    fish: ikde completion fish > ~/.config/fish/completions/ikde.fish
+    One line in what the shell reads when it starts switches it on.
 
-    Example: ikde completion bash >> ~/.bashrc
+    bash, in ~/.bashrc: eval "$(ikde completion bash)"
+
+    zsh, in ~/.zshrc, below compinit: eval "$(ikde completion zsh)"
+
+    fish, in ~/.config/fish/config.fish: ikde completion fish | source
+
+    Example: eval "$(ikde completion bash)"
     """
     from ikde.errors import InputError, nearest, quoted
 

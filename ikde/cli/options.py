@@ -101,7 +101,7 @@ PlotOption = Annotated[Path | None, of_output(metavar="FILE", help="Draw robot a
 
 
 class _Helpful:
-    """What a command and a group have in common: the look of their `--help`, where a flag has no type."""
+    """What a command and a group have in common: the look of their `--help`, where flags and arguments have no type."""
 
     def get_params(self, ctx: Any) -> Any:
         """The parameters, `--help` among them."""
@@ -109,12 +109,15 @@ class _Helpful:
         for parameter in parameters:
             if getattr(parameter, "is_flag", False):
                 parameter.metavar = ""
+            elif parameter.param_type_name == "argument":  # its name says what it is
+                parameter.display_type_rich = lambda ctx: None
         return parameters
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Write it, in colours where results have them."""
+        """Write it as wide as the terminal, also a dumb one, in colours where results have them."""
         from typer import rich_utils
 
+        rich_utils.MAX_WIDTH = get_terminal_size().columns
         rich_utils.COLOR_SYSTEM = "standard" if use_color() else None
         super().format_help(ctx, formatter)  # type: ignore[misc]
 

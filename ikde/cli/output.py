@@ -40,6 +40,14 @@ def print_written(*files: Path, as_json: bool = False) -> None:
         (print_note if as_json else print_line)(f"wrote {file}")
 
 
+def say_written(out: Path | None, *, as_json: bool = False) -> None:
+    """The same of a command that writes one file, if it is named."""
+    if out is None:
+        print_note("ikde: nothing is written without -o FILE")
+    else:
+        print_written(out, as_json=as_json)
+
+
 def is_live(stream: TextIO) -> bool:
     """True for a terminal in which a line can be written over: bars and spinners may move there."""
     return stream.isatty() and os.environ.get("TERM", "").lower() not in ("dumb", "unknown")

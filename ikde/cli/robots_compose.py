@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
-from ikde.cli.output import page_width, print_json, print_note, print_result, use_color
+from ikde.cli.output import page_width, print_json, print_result, say_written, use_color
 
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
@@ -47,7 +47,7 @@ def compose_robot(
         print_json(robot_json(collision))
     else:
         print_result(format_robot(collision, Units(unit, angles), color=use_color(), width=page_width()))
-    print_note(f"ikde: {'nothing is written without -o FILE' if out is None else f'wrote {out}'}")
+    say_written(out, as_json=as_json)
 
 
 def _read_mount(text: str) -> "Floats":

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
-from ikde.cli.output import page_width, print_json, print_note, print_result, use_color
+from ikde.cli.output import page_width, print_json, print_result, say_written, use_color
 
 
 class BaseChoice(StrEnum):
@@ -108,4 +108,4 @@ def import_robot(
         print_json(import_json(imported))
     else:
         print_result(format_import(imported, Units(unit, angles), color=use_color(), width=page_width()))
-    print_note(f"ikde: {'nothing is written without -o FILE' if out is None else f'wrote {out}'}")
+    say_written(out, as_json=as_json)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import JsonOption, LengthUnit, RobotArgument, UnitOption
-from ikde.cli.output import page_width, print_json, print_note, print_result, use_color
+from ikde.cli.output import page_width, print_json, print_note, print_result, print_written, use_color
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -83,9 +83,7 @@ def exchange_robot_spheres(
     _show(
         robot.name, [spheres.report for spheres in own.values()] or [each.cover for each in drawn], notes, unit, as_json
     )
-    for written in (out, report):
-        if written is not None:
-            print_note(f"ikde: wrote {written}")
+    print_written(*filter(None, (out, report)), as_json=as_json)
     if out is None and own:
         print_note("ikde: the robot is not written without -o FILE")
 
@@ -170,4 +168,6 @@ def _show(name: str, links: "list[CoveredLink]", notes: list[str], unit: LengthU
         print_json({"robot": name, "spheres": [asdict(link) for link in links], "warnings": notes})
         return
     lines = [f"[bold]warning:[/] {plain(note)}" for note in notes]
-    print_result(render(sphere_table(links, Units(unit)), *lines, color=use_color(), width=page_width()))
+    print_result(
+        render(f"robot {plain(name)}", sphere_table(links, Units(unit)), *lines, color=use_color(), width=page_width())
+    )

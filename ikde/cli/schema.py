@@ -18,7 +18,10 @@ MODELS = {
 
 def schema(
     name: Annotated[
-        str | None, typer.Argument(metavar="|".join(MODELS), show_default=False, autocompletion=offer(*MODELS))
+        str | None,
+        typer.Argument(
+            metavar="|".join(MODELS), show_default=False, autocompletion=offer(*MODELS), help="The kind of file."
+        ),
     ] = None,
 ) -> None:
     """Print the JSON schema of a kind of file: editors complete its keys and explain them.

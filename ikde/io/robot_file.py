@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
@@ -9,11 +10,11 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, Validat
 from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
-from ikde.errors import InputError, nearest
+from ikde.errors import ErrorList, InputError, nearest
 from ikde.formats.entries import DetectorPartsEntry, Entry, Number, UnitsEntry, Vector
 from ikde.formats.names import MAX_TEXT_LENGTH, Name, Text
 from ikde.formats.robot_entries import make_detector
-from ikde.io.schema import as_file_error
+from ikde.io.schema import as_file_error, place_errors
 from ikde.io.sphere_entries import SourcedEntry, SphereRowEntry, to_spheres
 from ikde.io.yaml_file import Document, Where
 from ikde.model.collision_model import MAX_PAIRS
@@ -183,7 +184,7 @@ def _parse(document: Document, check: Callable[[Robot], Robot]) -> Robot:
     try:
         return check(_to_robot(file))
     except InputError as error:
-        raise document.error(error.message, error.where) from None
+        raise place_errors(document, error) from None
 
 
 def _check_part(draft: Robot) -> Robot:
@@ -202,18 +203,22 @@ def _to_robot(file: RobotFile) -> Robot:
     if sum(len(entry.spheres or ()) or entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
         raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
-    wheels = file.wheels
+    wheels, errors = file.wheels, ErrorList()
+    joints = errors.collect(partial(_to_joint, name, entry, unit[entry.kind]) for name, entry in file.joints.items())
+    frames = errors.collect(partial(_to_frame, name, entry, length, angle) for name, entry in file.frames.items())
+    approximations = {
+        name: errors.collect(partial(to_spheres, e, length, ("spheres", name, k)) for k, e in enumerate(rows))
+        for name, rows in file.spheres.items()
+    }
+    errors.raise_all()
     return Robot(
         name=file.name,
         title=file.title,
-        joints=tuple(_to_joint(name, entry, unit[entry.kind]) for name, entry in file.joints.items()),
-        frames=tuple(_to_frame(name, entry, length, angle) for name, entry in file.frames.items()),
+        joints=joints,
+        frames=frames,
         tool=_choose_tool(file),
         tools=file.tools,
-        approximations={
-            name: tuple(to_spheres(e, length, ("spheres", name, k)) for k, e in enumerate(rows))
-            for name, rows in file.spheres.items()
-        },
+        approximations=approximations,
         pair_lists={name: _to_pairs(file, name, (), lists) for name in file.pairs},
         adjacent=_to_adjacent(file.adjacent.pairs) if file.adjacent else (),
         compared=tuple((a, b) for a, others in file.compare.items() for b in others),

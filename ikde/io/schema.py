@@ -60,11 +60,22 @@ def as_file_error(document: Document | Given, error: ValidationError, model: typ
     complaints = [_place(document.data, complaint) for complaint in error.errors()]
     listed = [complaint for complaint in complaints if not _is_misspelt(complaint, complaints, model)]
     listed.sort(key=lambda it: (document.line(it.where) or 0, it.kind != UNKNOWN))
-    first, *others = (document.error(_describe(complaint, model), complaint.where) for complaint in listed[:MAX_LISTED])
+    return _join([document.error(_describe(it, model), it.where) for it in listed[:MAX_LISTED]], len(listed))
+
+
+def place_errors(document: Document | Given, error: InputError) -> InputError:
+    """What is wrong with values, placed and listed likewise."""
+    found = sorted((error, *error.others), key=lambda it: document.line(it.where) or 0)
+    return _join([document.error(it.message, it.where) for it in found[:MAX_LISTED]], len(found))
+
+
+def _join(listed: Sequence[InputError], count: int) -> InputError:
+    """The first of `count`, with the others that are listed as its notes."""
+    first, *others = listed
     for other in others:
         first.add_note(str(other))
-    if len(listed) > MAX_LISTED:
-        first.add_note(f"and {len(listed) - MAX_LISTED} more")
+    if count > MAX_LISTED:
+        first.add_note(f"and {count - MAX_LISTED} more")
     return first
 
 

@@ -24,9 +24,12 @@ _WHOLE = re.compile(r"^[-+]?[0-9][0-9_]*$")
 _BOOLEAN = re.compile(r"^(true|True|TRUE|false|False|FALSE)$")
 _NULL = re.compile(r"^(~|null|Null|NULL|)$")
 
+SRDF = "this is an SRDF; expected YAML (`ikde robots import FILE.urdf --srdf FILE.srdf` reads it beside its URDF)"
 XML_KINDS = {
     "<mujoco": "this is MJCF; expected YAML (convert it to URDF, which `ikde robots import FILE.urdf` reads)",
     "xmlns:xacro": "this is xacro; expected YAML (`xacro FILE > robot.urdf`, then `ikde robots import robot.urdf`)",
+    "<group_state": SRDF,
+    "<disable_collisions": SRDF,
     "<robot": "this is a URDF; expected YAML (`ikde robots import FILE.urdf` makes a robot file of it)",
 }
 

@@ -33,7 +33,7 @@ def rotation_from_quat_wxyz(quat_wxyz: Floats) -> Floats:
     w, x, y, z = np.moveaxis(np.asarray(quat_wxyz, dtype=float), -1, 0)
     norm = np.sqrt(w * w + x * x + y * y + z * z)
     if not np.all(norm > 1e-12):
-        raise InputError("a quaternion of length 0 is no rotation; expected w x y z with a non-zero length")
+        raise InputError("a quaternion of length 0 is no rotation; expected one of another length")
     w, x, y, z = w / norm, x / norm, y / norm, z / norm
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

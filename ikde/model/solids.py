@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats, Ints, read_only
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.hull import make_hull
 from ikde.model.numbers import is_number, read_numbers
 from ikde.model.robot import MAX_MAGNITUDE
 from ikde.model.rotation import TOLERANCE, is_rotation
-from ikde.model.value import MadeAnew
+from ikde.model.value import ByFields
 
 SolidKind = Literal["sphere", "box", "cylinder", "capsule", "cone", "half_space", "hull", "cloud"]
 KINDS: tuple[SolidKind, ...] = get_args(SolidKind)
@@ -36,7 +36,7 @@ IDENTITY.setflags(write=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Solid(MadeAnew):
+class Solid(ByFields):
     """One convex solid, or a cloud of equal balls, in the frame of its obstacle."""
 
     kind: SolidKind
@@ -49,30 +49,10 @@ class Solid(MadeAnew):
     triangles: Ints | None = None
     """[F, 3] of a hull, into `points`, counter-clockwise from outside; read-only."""
 
-    def __post_init__(self) -> None:
-        for array in (self.T_obstacle_solid, self.points, self.triangles):
-            if array is not None:
-                read_only(array)
-
     def __repr__(self) -> str:
-        """In a line, whatever it holds."""
-        points = "" if self.points is None else f" of {len(self.points)} points"
-        return f"<Solid {self.kind}{points}{''.join(f' {size:g}' for size in self.size_m)}>"
-
-    def __eq__(self, other: object) -> bool:
-        if self is other or not isinstance(other, Solid):
-            return True if self is other else NotImplemented
-        return self._key == other._key and all(
-            a is b or (a is not None and b is not None and a.shape == b.shape and a.tobytes() == b.tobytes())
-            for a, b in ((self.points, other.points), (self.triangles, other.triangles))
-        )
-
-    def __hash__(self) -> int:
-        return hash((self._key, None if self.points is None else self.points[:8].tobytes()))
-
-    @property
-    def _key(self) -> tuple[object, ...]:
-        return self.kind, self.size_m, self.T_obstacle_solid.tobytes()
+        size = " x ".join(f"{value:g}" for value in self.size_m)
+        points = "" if self.points is None else f" of {len(self.points):,} points"
+        return f"<Solid: {self.kind}{points}{f', {size} m' if size else ''}>"
 
 
 def make_solid(

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ikde.errors import InputError, nearest
+from ikde.errors import ErrorList, InputError, nearest
 from ikde.model.base_motion import find_planar_base
 from ikde.model.collision_model import check_detector
 from ikde.model.names import check_printable
@@ -34,7 +34,7 @@ def check_robot(draft: Robot) -> Robot:
     """Return the robot with its frames in the tree's order and its list of non-adjacent pairs added.
 
     Raises:
-        InputError: with the path of the first value that makes no sense.
+        InputError: with the path of the first value that makes no sense; `others` holds those of entries beside it.
     """
     _check_names(draft)
     _check_joints(draft)
@@ -100,20 +100,27 @@ def _check_unique(names: Sequence[str], section: str) -> None:
 def _check_joints(robot: Robot) -> None:
     _require(bool(robot.joints), "expected at least one joint", "joints")
     _check_unique(robot.joint_names, "joints")
+    errors = ErrorList()
     for joint in robot.joints:
-        where = ("joints", joint.name)
-        for key, none in (("lower", -np.inf), ("upper", np.inf)):
-            endless = getattr(joint, key) == none or joint.kind != "continuous"
-            _require(endless, "a continuous joint has no limits; one with limits is revolute", *where, key)
-        for key in ("home",) if joint.kind == "continuous" else ("lower", "upper", "home"):
-            _require(bool(abs(getattr(joint, key)) <= MAX_MAGNITUDE), _too_far(joint, getattr(joint, key)), *where, key)
-        _require(joint.lower <= joint.upper, "the upper limit is below the lower one", *where, "upper")
-        inside = joint.lower <= joint.home <= joint.upper
-        _require(inside, "home is outside the limits", *where, "home")
-        for key in ("max_speed", "max_acceleration", "max_effort"):
-            value = getattr(joint, key)
-            is_good = value is None or bool(0.0 < value < np.inf)
-            _require(is_good, f"expected a finite number above 0, got {value}", *where, key)
+        with errors:
+            _check_joint(joint)
+    errors.raise_all()
+
+
+def _check_joint(joint: Joint) -> None:
+    where = ("joints", joint.name)
+    for key, none in (("lower", -np.inf), ("upper", np.inf)):
+        endless = getattr(joint, key) == none or joint.kind != "continuous"
+        _require(endless, "a continuous joint has no limits; one with limits is revolute", *where, key)
+    for key in ("home",) if joint.kind == "continuous" else ("lower", "upper", "home"):
+        _require(bool(abs(getattr(joint, key)) <= MAX_MAGNITUDE), _too_far(joint, getattr(joint, key)), *where, key)
+    _require(joint.lower <= joint.upper, "the upper limit is below the lower one", *where, "upper")
+    inside = joint.lower <= joint.home <= joint.upper
+    _require(inside, "home is outside the limits", *where, "home")
+    for key in ("max_speed", "max_acceleration", "max_effort"):
+        value = getattr(joint, key)
+        is_good = value is None or bool(0.0 < value < np.inf)
+        _require(is_good, f"expected a finite number above 0, got {value}", *where, key)
 
 
 def _too_far(joint: Joint, value: float) -> str:
@@ -125,16 +132,17 @@ def _sort_frames(robot: Robot) -> tuple[Frame, ...]:
     """Parents before children; otherwise in the order they were written."""
     frames = {frame.name: frame for frame in robot.frames}
     _check_unique([frame.name for frame in robot.frames], "frames")
+    errors = ErrorList()
     for frame in robot.frames:
-        _check_frame(robot, frame, frames)
+        with errors:
+            _check_frame(robot, frame, frames)
+    errors.raise_all()
     moved = [frame.joint for frame in robot.frames if frame.joint is not None]
     for joint in robot.joint_names:
-        _require(
-            moved.count(joint) == 1,
-            f"expected one frame that this joint moves, found {moved.count(joint)}",
-            "joints",
-            joint,
-        )
+        with errors:
+            found = f"expected one frame that this joint moves, found {moved.count(joint)}"
+            _require(moved.count(joint) == 1, found, "joints", joint)
+    errors.raise_all()
     placed: dict[str, Frame] = {}
     while len(placed) < len(frames):
         ready = {n: f for n, f in frames.items() if n not in placed and (f.parent == WORLD or f.parent in placed)}
@@ -187,19 +195,22 @@ def _check_tool(robot: Robot) -> None:
 
 def _check_rows(rows: tuple[Spheres, ...], tree: Tree, where: tuple[str | int, ...]) -> None:
     body_of: dict[str, int] = {}
+    errors = ErrorList()
     for index, row in enumerate(rows):
         here = (*where, index)
-        if isinstance(row, FreeSpheres):
-            _check_free(row, tree, here)
-        else:
-            _check_row(row, tree, here)
-        body = tree.frame_body[row.start]
-        _require(
-            body_of.setdefault(row.component, body) == body,
-            f"the rows of {row.component!r} lie on different bodies; a component is rigid",
-            *here,
-            "component",
-        )
+        with errors:
+            if isinstance(row, FreeSpheres):
+                _check_free(row, tree, here)
+            else:
+                _check_row(row, tree, here)
+            body = tree.frame_body[row.start]
+            _require(
+                body_of.setdefault(row.component, body) == body,
+                f"the rows of {row.component!r} lie on different bodies; a component is rigid",
+                *here,
+                "component",
+            )
+    errors.raise_all()
 
 
 def _check_free(free: FreeSpheres, tree: Tree, here: tuple[str | int, ...]) -> None:
@@ -252,12 +263,15 @@ def _check_pairs(robot: Robot, components: Mapping[str, int]) -> None:
 
 def _check_list(pairs: Pairs, components: Mapping[str, int], where: tuple[str | int, ...]) -> None:
     seen: set[frozenset[str]] = set()
+    errors = ErrorList()
     for a, b in pairs:
-        _check_name(a, components, (*where, a), "component")
-        _check_name(b, components, (*where, a), "component")
-        _require(a != b, f"{a!r} is paired with itself", *where, a)
-        _require(frozenset((a, b)) not in seen, f"{a!r} and {b!r} are paired twice", *where, a)
-        seen.add(frozenset((a, b)))
+        with errors:
+            _check_name(a, components, (*where, a), "component")
+            _check_name(b, components, (*where, a), "component")
+            _require(a != b, f"{a!r} is paired with itself", *where, a)
+            _require(frozenset((a, b)) not in seen, f"{a!r} and {b!r} are paired twice", *where, a)
+            seen.add(frozenset((a, b)))
+    errors.raise_all()
 
 
 def _check_detectors(robot: Robot) -> None:

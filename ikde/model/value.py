@@ -12,6 +12,8 @@ import numpy as np
 from ikde.kernels.arrays import read_only
 from ikde.model.plain_data import encode
 
+FEW = 64  # numbers of an array that a hash takes
+
 
 class Value:
     """Equal are two of one class whose fields are equal to the bit (0.0 is not -0.0), also after pickling or copying.
@@ -60,6 +62,53 @@ class ReadOnlyValue(MadeAnew, Value):
     def __post_init__(self) -> None:
         for field in fields(self):  # type: ignore[arg-type]
             object.__setattr__(self, field.name, _keep(getattr(self, field.name)))
+
+
+class ByFields(MadeAnew):
+    """Equal are two of one class whose fields are, arrays to the bit; arrays are read-only, also after they travelled.
+
+    Nothing is written down for it, since a cloud of points may be large: a hash takes of an array its shape, and its
+    numbers if they are few.
+    """
+
+    __slots__ = ("_hash",)
+
+    def __post_init__(self) -> None:
+        for field in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                read_only(value)
+
+    def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
+        if type(other) is not type(self):
+            return NotImplemented
+        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        return hash(self) == hash(other) and all(_is_same(getattr(self, name), getattr(other, name)) for name in names)
+
+    def __hash__(self) -> int:
+        try:
+            return self._hash
+        except AttributeError:
+            known = tuple(_key(getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
+            object.__setattr__(self, "_hash", hash(known))
+            return self._hash
+
+
+def _is_same(a: Any, b: Any) -> bool:
+    if a is b:
+        return True
+    if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+        return a.shape == b.shape and a.tobytes() == b.tobytes()
+    return a == b
+
+
+def _key(value: Any) -> Any:
+    """What of a field a hash is of."""
+    if not isinstance(value, np.ndarray):
+        return value
+    return value.tobytes() if value.size <= FEW else value.shape
 
 
 def _keep(value: Any) -> Any:

@@ -10,20 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError, nearest, quoted
-from ikde.kernels.arrays import Floats, read_only
+from ikde.kernels.arrays import Floats
 from ikde.model.arguments import Pose, find_matrix
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE, WORLD
 from ikde.model.solids import Solid, read_pose
-from ikde.model.value import MadeAnew
+from ikde.model.value import ByFields
 
 MAX_OBSTACLES = MAX_SOLIDS = 100_000
 Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Obstacle(MadeAnew):
+class Obstacle(ByFields):
     """Solids that stand together under one name."""
 
     name: str
@@ -39,29 +39,14 @@ class Obstacle(MadeAnew):
     group: str | None = None
     """What it is switched with."""
 
-    def __post_init__(self) -> None:
-        read_only(self.T_world_obstacle)
-
     def __repr__(self) -> str:
-        """In a line, whatever it holds."""
-        return f"<Obstacle {self.name} of {len(self.solids)} solids>"
-
-    def __eq__(self, other: object) -> bool:
-        if self is other:
-            return True
-        return self._key == other._key if isinstance(other, Obstacle) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key)
-
-    @property
-    def _key(self) -> tuple[object, ...]:
-        known = (self.name, self.frame, self.margin_m, self.ignore, self.group)
-        return (*known, self.T_world_obstacle.tobytes(), self.solids)
+        kinds = list(dict.fromkeys(solid.kind for solid in self.solids))
+        place = ", ".join(f"{value:g}" for value in self.T_world_obstacle[:, 3])
+        return f"<Obstacle {self.name}: {len(self.solids)} solids ({', '.join(kinds)}) at {place} m in {self.frame}>"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class World(MadeAnew):
+class World(ByFields):
     """Obstacles by name, in their order. It stays as it is: `add`, `move`, `remove` and `switch` give another one.
 
     Equal are two of the same numbers and names, to the bit, also after pickling or copying.
@@ -83,18 +68,6 @@ class World(MadeAnew):
                 raise InputError(f"two obstacles are called {obstacle.name!r}", ("obstacles", obstacle.name))
         object.__setattr__(self, "obstacles", tuple(self.obstacles))
         object.__setattr__(self, "switched_off", frozenset(self.switched_off))
-
-    def __eq__(self, other: object) -> bool:
-        if self is other or not isinstance(other, World):
-            return True if self is other else NotImplemented
-        return (self.switched_off, self.obstacles) == (other.switched_off, other.obstacles)
-
-    def __hash__(self) -> int:
-        return self._hash
-
-    @cached_property
-    def _hash(self) -> int:
-        return hash((self.switched_off, self.obstacles))
 
     @cached_property
     def active(self) -> tuple[Obstacle, ...]:

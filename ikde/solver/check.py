@@ -1,6 +1,8 @@
 """Whether a configuration is free of itself and of a world, and by how much, pair by pair."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,9 +11,9 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.robot import Pairs
+from ikde.model.robot import Pairs, Robot
 from ikde.model.value import MadeAnew
-from ikde.solver.joints import JointValues, joints_outside, read_configuration, read_joints
+from ikde.solver.joints import JointValues, joints_outside, read_joints
 from ikde.solver.plain import compute_gaps
 from ikde.solver.standing import find_model
 from ikde.solver.verify import Bools, MaskedBools
@@ -105,9 +107,31 @@ class CheckResults(MadeAnew):
         return f"<CheckResults: {len(self)} configurations, {int(self.collision.sum() or 0)} in collision>"
 
 
+One = Mapping[str, float] | Sequence[float] | np.ndarray[tuple[int], np.dtype[Any]]
+Many = Sequence[Sequence[float]] | Sequence[Floats] | np.ndarray[tuple[int, int], np.dtype[Any]]
+
+
+@overload
+def check(
+    robot: RobotLike, q: One, collision: CollisionChoice = None, convention: str | None = None
+) -> CheckResult: ...
+
+
+@overload
+def check(
+    robot: RobotLike, q: Many, collision: CollisionChoice = None, convention: str | None = None
+) -> CheckResults: ...
+
+
+@overload
 def check(
     robot: RobotLike, q: JointValues, collision: CollisionChoice = None, convention: str | None = None
-) -> CheckResult:
+) -> CheckResult | CheckResults: ...
+
+
+def check(
+    robot: RobotLike, q: JointValues, collision: CollisionChoice = None, convention: str | None = None
+) -> CheckResult | CheckResults:
     """Clearance of every pair of components; collision means clearance <= safe distance [Qiao2021, eq. 21].
 
     In a world also that of every obstacle; collision then means as well that a margin is not kept.
@@ -115,6 +139,7 @@ def check(
     Args:
         robot: the robot, its name or the path of its file.
         q: joint values [N] or a mapping by joint name; m and rad. Values outside the limits are accepted and named.
+            Of many, [K, N], the answer is that of `check_many`: `CheckResults`.
         collision: a detector's name, a `Detector`, a `World`, a `CollisionModel`, `"none"`, or None for the robot's
             default.
         convention: how `q` is counted; None for the robot's own.
@@ -123,7 +148,12 @@ def check(
         InputError: for a wrong count, an unknown joint, detector or convention, NaN or infinity.
     """
     robot = read_robot(robot)
-    values = read_configuration(robot, q, convention)
+    values = read_joints(robot, q, convention)
+    if values.ndim == 2:
+        return _check_rows(robot, values, collision)
+    if values.ndim != 1:
+        count = len(robot.joints)
+        raise InputError(f"expected a configuration [{count}] or many [K, {count}], got shape {values.shape}", ("q",))
     model = find_model(robot, collision)
     gaps_m = compute_gaps(model, values)
     closest = int(gaps_m.argmin()) if model.pairs else None
@@ -158,6 +188,11 @@ def check_many(
     values = read_joints(robot, q, convention)
     if values.ndim != 2:
         raise InputError(f"expected configurations [K, {len(robot.joints)}], got shape {values.shape}", ("q",))
+    return _check_rows(robot, values, collision)
+
+
+def _check_rows(robot: Robot, values: Floats, collision: CollisionChoice) -> CheckResults:
+    """Of `values` [K, N] in the robot's own convention."""
     model = find_model(robot, collision)
     gaps_m = np.concatenate([compute_gaps(model, values[k : k + AT_ONCE]) for k in range(0, len(values) or 1, AT_ONCE)])
     least = gaps_m.min(axis=1, initial=np.inf)

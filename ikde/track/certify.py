@@ -32,6 +32,9 @@ class Certificate:
     segment_m: Floats
     """[M] the same, of each segment."""
 
+    def __repr__(self) -> str:
+        return f"<Certificate: at least {1e3 * self.clearance_m:.6g} mm in {len(self.segment_m)} segments>"
+
     @property
     def is_free(self) -> bool:
         """True if nothing can touch between samples."""

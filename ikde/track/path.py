@@ -58,6 +58,9 @@ class ToolPath:
         for key, array in own.items():
             object.__setattr__(self, key, read_only(array))
 
+    def __repr__(self) -> str:
+        return f"<ToolPath {self.name}: {self.samples} samples of {self.dt_s:g} s, orientation {self.orientation}>"
+
     @classmethod
     def through(
         cls,

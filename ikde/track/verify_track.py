@@ -73,6 +73,11 @@ class TrackGrade:
     """[M + 1] of the tool from the platform's centre (18); NaN if none is named."""
     violations: Violations
 
+    def __repr__(self) -> str:
+        broken = self.violations.total
+        said = "accepted" if self.accepted else f"{broken} violation{'s' if broken > 1 else ''} of limits"
+        return f"<TrackGrade of {len(self.error_m)} samples: {said}>"
+
     @cached_property
     def largest_axis_error_m(self) -> float:
         """Largest error of any axis at any sample."""

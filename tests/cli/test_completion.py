@@ -1,6 +1,7 @@
 """`ikde completion`, and what the process answers to a shell."""
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -56,3 +57,33 @@ def test_another_shell_is_refused(refuse, words):
 )
 def test_a_shell_is_answered_without_anything_heavy(line, words):
     assert complete(line) == words
+
+
+ASK = """
+eval "$(ikde completion bash)"
+complete -p ikde
+COMP_WORDS=({line}) COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
+_ikde_completion ikde
+printf '%s\n' "${{COMPREPLY[@]}}"
+"""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.parametrize(("line", "words"), [("ikde robots sh", ["show"]), ("ikde check --robot ur", ["ur5"])])
+def test_bash_completes(tmp_path, line, words):
+    command = tmp_path / "ikde"
+    command.write_text(f'#!/bin/sh\nexec {sys.executable} -m ikde "$@"\n')
+    command.chmod(0o755)
+    env = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    told = {"env": env, "capture_output": True, "text": True, "timeout": 60}
+    done = subprocess.run(["bash", "--norc", "-c", ASK.format(line=line)], check=False, **told)
+    assert done.stderr == ""
+    assert done.stdout.splitlines() == ["complete -o default -F _ikde_completion ikde", *words]
+
+
+def test_help_says_what_to_write_for_each_shell_once(cli):
+    text = " ".join(cli("completion", "--help").out.split())
+    assert "<str>" not in text
+    for line in ('eval "$(ikde completion zsh)"', "ikde completion fish | source"):
+        assert text.count(line) == 1
+    assert ">>" not in text

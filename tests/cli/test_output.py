@@ -77,6 +77,15 @@ def test_a_command_has_colours_only_where_they_are_wanted(cli, given, monkeypatc
     assert ("\x1b[" in cli(*command).out) is coloured
 
 
+@pytest.mark.parametrize("command", [("--help",), ("robots", "--help")])
+@pytest.mark.parametrize("columns", [60, 75, 120])
+def test_help_fits_a_dumb_terminal(cli, given, monkeypatch, substitute, command, columns):
+    given(TERM="dumb")
+    monkeypatch.setattr("typer.rich_utils.FORCE_TERMINAL", True)
+    substitute(get_terminal_size, lambda: os.terminal_size((columns, 24)))
+    assert max(len(line) for line in cli(*command).out.splitlines()) == columns
+
+
 @pytest.mark.parametrize(("columns", "width"), [("20", 60), ("80", 80), ("300", 160)])
 def test_a_width_that_is_given_counts_outside_a_terminal(given, substitute, columns, width):
     given(COLUMNS=columns)

@@ -29,7 +29,8 @@ def test_parts_become_a_robot_file(cli, parts, tmp_path):
     out = tmp_path / "robot.yaml"
     asked = ("robots", "compose", "--base", platform, "--arm", "ur5", "--mount", "0.3 0 0.4 0 0 1.5", "--tool", tool)
     outcome = cli(*asked, "-o", out)
-    assert (outcome.code, outcome.err) == (0, f"ikde: wrote {out}\n")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.endswith(f"wrote {out}\n")
     robot = ikde.load_robot(out)
     assert robot.joint_names[:3] == ("slide", "turn", "shoulder_pan_joint")
     assert (robot.tool, robot.name) == ("tool", "two_ur5_gripper")

@@ -7,7 +7,8 @@ from tests.urdf_texts import ARM, FINGERS, change, extend, write
 def test_a_urdf_becomes_a_robot_file(cli, tmp_path):
     path, out = write(tmp_path, extend(FINGERS)), tmp_path / "arm.yaml"
     outcome = cli("robots", "import", path, "--tool", "tip", "--base", "omni", "--hold", "grip=0.02", "-o", out)
-    assert (outcome.code, outcome.err) == (0, f"ikde: wrote {out}\n")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.endswith(f"wrote {out}\n")
     assert "joints that move the tool" in outcome.out
     robot = ikde.load_robot(out)
     same = ikde.import_urdf(path, tool="tip", base="omni", hold={"grip": 0.02})

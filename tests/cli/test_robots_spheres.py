@@ -22,7 +22,9 @@ def test_one_link_is_covered_anew_and_its_note_with_it(cli, tmp_path):
     before, page = count(out), tmp_path / "page.html"
     asked = ("--urdf", path, "--link", "upper", "--protrusion", "8")
     outcome = cli("robots", "spheres", out, *asked, "-o", out, "--report", page)
-    assert (outcome.code, outcome.err) == (0, f"ikde: wrote {out}\nikde: wrote {page}\n")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.startswith("robot ")
+    assert outcome.out.endswith(f"wrote {out}\nwrote {page}\n")
     assert "1 box" in outcome.out
     after = count(out)
     assert after["upper"] > before["upper"]

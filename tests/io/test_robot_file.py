@@ -362,3 +362,29 @@ MANY = {
 def test_a_robot_has_an_end(tmp_path, section):
     before, lines, words = MANY[section]
     assert words in complaint(before, lines + before, tmp_path)
+
+
+def test_wrong_entries_side_by_side_are_told_together(tmp_path):
+    for old, new, count in (
+        ("lower: -180, ", "", 1),
+        ("lower: -", "lower: 1", 3),
+        ("parent: ", "parent: not_", 4),
+        ("axis: [0, 0, 1]", "axis: [0, 0, 0]", 1),
+        ("prismatic, lower: -5000, upper: 5000", "prismatic, upper: 5000", 2),
+    ):
+        with pytest.raises(FileError) as caught:
+            parse(DRIVEN.replace(old, new), tmp_path)
+        lines = [str(caught.value), *getattr(caught.value, "__notes__", ())]
+        assert len(lines) == count, lines
+        assert [int(line.split(":")[1].split()[0]) for line in lines] == sorted(
+            number for number, line in enumerate(DRIVEN.splitlines(), 1) if old in line
+        )
+
+
+def test_at_most_ten_wrong_entries_are_listed(tmp_path):
+    mast = "  mast:     {parent: platform, xyz: [0, 0, 900]}\n"
+    more = "".join(f"  mast{k}: {{parent: nowhere}}\n" for k in range(13))
+    with pytest.raises(FileError) as caught:
+        parse(DRIVEN.replace(mast, mast + more), tmp_path)
+    assert len(caught.value.__notes__) == 10
+    assert caught.value.__notes__[-1] == "and 3 more"

@@ -86,6 +86,10 @@ def test_bad_yaml_is_one_line_with_its_place(text, line, words, tmp_path):
             "a.yaml: this is a URDF; expected YAML (`ikde robots import FILE.urdf`",
         ),
         ('\n<robot xmlns:xacro="http://ros.org/wiki/xacro"/>', "a.yaml: this is xacro; expected YAML (`xacro FILE > "),
+        (
+            '<robot name="a"><group_state name="home"/></robot>',
+            "a.yaml: this is an SRDF; expected YAML (`ikde robots import",
+        ),
         ("<mujoco model='a'/>", "a.yaml: this is MJCF; expected YAML"),
         ("<html/>", "a.yaml: this is XML; expected YAML"),
     ],

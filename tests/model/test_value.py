@@ -1,4 +1,4 @@
-"""Robots and targets are equal by value, through pickle and copies, and are hashed once."""
+"""Robots, targets and worlds are equal by value, through pickle and copies, and are hashed once."""
 
 import copy
 import pickle
@@ -8,12 +8,35 @@ import numpy as np
 import pytest
 
 from ikde.io.robots import load_robot
+from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.robot import Frame
+from ikde.model.solids import make_solid
 from ikde.model.target import Target, Targets
+from ikde.model.value import FEW
+from ikde.model.world import make_obstacle, make_world
 
 THROUGH = [lambda value: pickle.loads(pickle.dumps(value)), copy.copy, copy.deepcopy]
-VALUES = [load_robot("ur5"), load_robot("ur5").frames[0], Target((1.0, 2.0, 3.0)), Targets([(1.0, 2.0, 3.0)])]
+POINTS = np.random.default_rng(3).uniform(1.0, 2.0, (FEW, 3))
+
+
+def cloud(points=POINTS, off=()):
+    """A world of a box and a cloud of points."""
+    solids = [make_solid("box", [0.1, 0.2, 0.3]), make_solid("cloud", [0.01], points=points)]
+    return make_world([make_obstacle("crumbs", solids, group="guests"), make_obstacle("box", solids[:1])], off)
+
+
+WORLD = cloud()
+VALUES = [
+    load_robot("ur5"),
+    load_robot("ur5").frames[0],
+    Target((1.0, 2.0, 3.0)),
+    Targets([(1.0, 2.0, 3.0)]),
+    WORLD,
+    WORLD["crumbs"],
+    WORLD["crumbs"].solids[1],
+    CollisionModel.of(load_robot("ur5")).in_world(WORLD, 0.01, {"base": 0.0}),
+]
 
 
 @pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
@@ -79,3 +102,26 @@ def test_a_hash_is_computed_once(monkeypatch):
     first = hash(target)
     monkeypatch.setattr("ikde.model.value.encode", None)
     assert hash(target) == first
+
+
+@pytest.mark.parametrize("travel", [lambda value: value, *THROUGH], ids=["same", "pickle", "copy", "deepcopy"])
+def test_nothing_writes_to_a_world(travel):
+    crumbs = travel(WORLD)["crumbs"]
+    for array in (crumbs.T_world_obstacle, crumbs.solids[1].points, crumbs.solids[0].T_obstacle_solid):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+
+
+def test_worlds_are_equal_if_all_of_them_is():
+    moved = POINTS.copy()
+    moved[FEW // 2, 1] += 1e-15
+    others = [
+        cloud(moved),
+        cloud(POINTS[1:]),
+        cloud(off=["guests"]),
+        WORLD.remove("box"),
+        WORLD.move("box", np.eye(4)[:, [1, 2, 0, 3]]),
+    ]
+    assert cloud(POINTS.copy()) == WORLD != "crumbs"
+    assert all(other != WORLD for other in others)
+    assert WORLD.remove("box").add(WORLD["box"]) == WORLD

@@ -129,6 +129,21 @@ def test_many_are_checked_as_one_is(name, detector, rng):
     assert not many.inside_limits[0]
 
 
+def test_check_of_many_is_what_check_many_finds(qiao, rng):
+    Q = random_q(qiao, rng, 3)
+    for given in (Q, Q.tolist(), list(Q)):
+        one, other = ikde.check(qiao, given), ikde.check_many(qiao, given)
+        assert isinstance(one, ikde.CheckResults)
+        assert one.gaps_m.tobytes() == other.gaps_m.tobytes()
+        assert one.q.tobytes() == other.q.tobytes()
+    assert len(ikde.check(qiao, Q[:1])) == 1
+    assert len(ikde.check(qiao, Q[:0], "none")) == 0
+    counted = ikde.check(qiao, Q, convention="classical").q
+    assert counted.tobytes() == ikde.check_many(qiao, Q, convention="classical").q.tobytes()
+    with pytest.raises(InputError, match=r"q: expected a configuration \[9\] or many \[K, 9\], got shape \(1, 3, 9\)"):
+        ikde.check(qiao, Q[None])
+
+
 def test_of_many_nothing_is_said_that_was_not_checked(qiao):
     many = ikde.check_many(qiao, [qiao.home] * 3, "none")
     assert many.collision.tolist() == [None] * 3

@@ -51,6 +51,10 @@ class ImportedUrdf:
     """Compared pairs of components that are proved never to touch within the joints' limits."""
     warnings: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        said = f"{len(self.held)} frozen joints, {len(self.links)} links with spheres, {len(self.warnings)} warnings"
+        return f"<ImportedUrdf {self.robot!r} from {self.file!r}: {said}>"
+
 
 def list_notes(imported: ImportedUrdf) -> list[str]:
     """Lines for the top of the robot's file: what a reader of it cannot see in it."""
