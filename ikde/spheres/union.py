@@ -1,5 +1,7 @@
 """The surface of overlapping parts as one body: what lies inside another part is left out."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
@@ -42,7 +44,7 @@ def _outside_one(pieces: Floats, source: Ints, other: Triangles) -> tuple[Floats
     """The pieces that are not inside another part, whose they are, and which sources have lost some."""
     kept, sources, lost = [pieces[:0]], [source[:0]], [source[:0]]
     planes = _planes(other)
-    convex = bool((_heights(other.corners, planes) <= FLAT).all())
+    convex = _is_convex(other, planes)
     while len(pieces):
         middles = pieces.mean(axis=1)
         radius = np.sqrt(((pieces - middles[:, None]) ** 2).sum(axis=2).max(axis=1))
@@ -81,12 +83,26 @@ def _ask_ball(middles: Floats, radius: Floats, other: Triangles) -> tuple[Bools,
     return clear, inside
 
 
+def _is_convex(part: Triangles, planes: tuple[Floats, Floats]) -> bool:
+    """Whether no corner of a part lies in front of one of its faces; a part that is not is told after some corners."""
+    return all((heights <= FLAT).all() for heights in _blocks_of_heights(part.corners, planes))
+
+
 def _ask_planes(pieces: Floats, planes: tuple[Floats, Floats]) -> tuple[Bools, Bools]:
     """[P] of triangles: whether all corners lie inside a convex part or in front of one face; and whether inside."""
-    heights = _heights(pieces, planes)
-    inside = np.asarray((heights < -FLAT).all(axis=(1, 2)))
-    outside = (heights >= 0.0).all(axis=1).any(axis=-1)
-    return np.logical_or(inside, outside), inside
+    inside, outside = [], []
+    for heights in _blocks_of_heights(pieces, planes):
+        inside.append((heights < -FLAT).all(axis=(1, 2)))
+        outside.append((heights >= 0.0).all(axis=1).any(axis=-1))
+    is_inside = np.concatenate(inside)
+    return np.logical_or(is_inside, np.concatenate(outside)), is_inside
+
+
+def _blocks_of_heights(triangles: Floats, planes: tuple[Floats, Floats]) -> Iterator[Floats]:
+    """`_heights` of some triangles after others: all at once are as many as the square of a mesh's triangles."""
+    step = max(1, BLOCK // (3 * len(planes[1])))
+    for start in range(0, len(triangles), step):
+        yield _heights(triangles[start : start + step], planes)
 
 
 def _planes(part: Triangles) -> tuple[Floats, Floats]:
