@@ -46,12 +46,16 @@ class ArmSummary:
     name: str
     method: str
     detector: str
+    world: str | None
+    """The world that it solved in, if the run has any."""
     reached: Rate
     collision_checked: int
     """Solves whose self-collision was checked: all, or none without a detector."""
     verified: Rate
     """Of the solves that plain numpy graded as well, those that it agrees with."""
     stop_reasons: Mapping[str, int]
+    blockers: Mapping[str, int]
+    """Solves that were not reached by what blocked most often: an obstacle, or two components; in worlds alone."""
     attempts: Spread | None
     """Of all solves; None if the run keeps no cost."""
     milliseconds: Spread | None
@@ -69,8 +73,9 @@ class ArmSummary:
 class ArmTally:
     """The counts of one arm, so far."""
 
-    def __init__(self, facts: ArmFacts, graders: Sequence[str]) -> None:
-        self._facts = facts
+    def __init__(self, facts: ArmFacts, graders: Sequence[str], robot: str) -> None:
+        self._facts, self._robot = facts, robot
+        self._blockers: Counter[str] = Counter()
         self._all = Counts(collisions=dict.fromkeys(graders, Rate(0, 0)))
         self._of_target: dict[int, Counts] = {}
         self._collision_checked = 0
@@ -87,6 +92,8 @@ class ArmTally:
         self._collision_checked += tally.collision_checked
         self._verified += tally.verified
         self._stop_reasons.update(tally.stop_reasons)
+        for pair, count in tally.blockers.items():
+            self._blockers[name_blocker(pair, self._robot)] += count
         if tally.attempts is not None:
             self._attempts.append(tally.attempts)
         self._seconds.append(tally.seconds)
@@ -101,10 +108,12 @@ class ArmTally:
             name=self._facts.name,
             method=self._facts.method,
             detector=self._facts.detector,
+            world=self._facts.world,
             reached=self._all.reached,
             collision_checked=self._collision_checked,
             verified=self._verified,
             stop_reasons=dict(self._stop_reasons.most_common()),
+            blockers=dict(self._blockers.most_common()),
             attempts=compute_spread(_join(self._attempts)),
             milliseconds=compute_spread(_join(self._seconds) * 1e3),
             collisions=self._all.collisions,
@@ -134,6 +143,11 @@ class ArmTally:
                 stop_reason=row["stop_reason"],
                 reason=row.get("reason"),
             )
+
+
+def name_blocker(pair: tuple[str, str], robot: str) -> str:
+    """An obstacle, where the robot stands for what touched it; else two components."""
+    return pair[1] if pair[0] == robot else " - ".join(pair)
 
 
 def _join(pieces: Sequence[np.ndarray]) -> np.ndarray:

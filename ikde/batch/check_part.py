@@ -15,7 +15,10 @@ ALWAYS = {
     SOLUTIONS: ("arm", "target", "repeat", "reached", "collision", "verified", "stop_reason"),
     TIMING: ("arm", "target", "repeat", "solve_seconds", "host"),
 }
-WORDY = ("arm", "target_name", "stop_reason", "pair_a", "pair_b", "reason", "hint", "target_kind", "host")
+WORDY = (
+    *("arm", "world", "target_name", "stop_reason", "pair_a", "pair_b", "blocker_a", "blocker_b"),
+    *("reason", "hint", "target_kind", "host"),
+)
 VERDICTS = ("collision", "verified")  # and `<grader>_collides`: null where nothing was checked
 MAX_WORD_LENGTH = 5000  # characters
 MAX_NUMBER = 1e12  # of a number
@@ -56,7 +59,8 @@ def verdict_columns(graders: Sequence[str]) -> list[str]:
 
 def _required(manifest: Manifest, kind: str) -> list[str]:
     graded = [f"{grader}_collides" for grader in manifest.graders] if kind == SOLUTIONS else []
-    return [*ALWAYS[kind], *graded]
+    placed = ["world"] if kind == SOLUTIONS and manifest.has_worlds else []
+    return [*ALWAYS[kind], *placed, *graded]
 
 
 def _is_verdict(name: str) -> bool:
@@ -69,7 +73,7 @@ def _is_of_kind(name: str, kind: pa.DataType) -> bool:
         return pa.types.is_dictionary(kind) and pa.types.is_string(kind.value_type)
     if name == "reached" or _is_verdict(name):
         return pa.types.is_boolean(kind)
-    if name in ("target", "repeat", "attempts"):
+    if name in ("target", "repeat", "attempts", "blocked"):
         return pa.types.is_integer(kind)
     return pa.types.is_integer(kind) or pa.types.is_float64(kind)
 
@@ -79,7 +83,7 @@ def _find_wrong_values(name: str, column: pa.ChunkedArray, manifest: Manifest, p
         words = {word for chunk in column.chunks for word in chunk.dictionary.to_pylist()}
         if max((len(word or "") for word in words), default=0) > MAX_WORD_LENGTH:
             yield f"{name} holds words of more than {MAX_WORD_LENGTH:,} characters"
-        known = {"arm": [part.arm], "stop_reason": WORDS}.get(name)
+        known = {"arm": [part.arm], "world": [manifest.world_of(part.arm)], "stop_reason": WORDS}.get(name)
         if known and not words <= set(known):
             yield f"{name} holds words that are not among its own"
         return

@@ -11,6 +11,7 @@ from ikde.model.robot import Detector
 from ikde.solver.columns import (
     GROUPS,
     Columns,
+    make_blockers,
     make_closest,
     make_integers,
     make_verdict,
@@ -32,16 +33,22 @@ def make_solutions(
     names: pa.Array | Sequence[str] | None,
     groups: Sequence[str],
     graders: Sequence[Detector],
+    world: str | None = None,
 ) -> pa.Table:
     """The solutions of a part: what depends on recipe and seed only, the same bits in every run.
 
     Solve i of `numbers` [T] is target i // repeats, repeat i % repeats; `names` has a name a row, `groups` those of
-    `GROUPS` that are there beside the columns that always are; of each grader there are four columns.
+    `GROUPS` that are there beside the columns that always are; of each grader there are four columns. Where the run is
+    in a `world`, or in several, rows say in which, and what of it blocked.
     """
     columns = _identity(arm, numbers, repeats, names) | make_verdict(rows)
+    if world is not None:
+        columns["world"] = make_word(world, len(rows))
     for group, make in GROUPS.items():
         if group in groups:
             columns |= make(rows)
+    if world is not None and "reason" in groups:
+        columns |= make_blockers(rows)
     for grader in graders:
         columns |= _graded(rows, grader)
     return pa.table(columns)
@@ -73,8 +80,17 @@ def _identity(arm: str, numbers: Ints, repeats: int, names: pa.Array | Sequence[
 
 
 def _graded(rows: SolveResults, grader: Detector) -> Columns:
-    collision = CollisionModel(robot=rows.problem.robot, detector=grader)
+    collision = place_grader(rows.problem.collision, grader)
     seen = compute_clearances(collision, rows.q)
     columns = make_closest(seen, collision)
     columns["collides"] = make_verdicts(seen.collides)
     return {f"{grader.name}_{name}": columns[name] for name in ("clearance_m", "collides", "pair_a", "pair_b")}
+
+
+def place_grader(collision: CollisionModel, grader: Detector) -> CollisionModel:
+    """A grader in the world of an arm, with its margins; raises `InputError` for what the grader's spheres lack."""
+    own = CollisionModel(robot=collision.robot, detector=grader)
+    if not collision.obstacles:
+        return own
+    margins_m = {name: margin_m for name, margin_m in collision.margins_m if name in own.components}
+    return own.in_world(collision.world, collision.margin_m, margins_m)

@@ -47,6 +47,9 @@ class ArmFacts:
     method: str
     detector: str
     settings: Mapping[str, Any]
+    world: str | None = None
+    """The name of the world that it solves in, if the run has any."""
+    world_file: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,6 +78,15 @@ class Manifest:
     """UTC, ISO 8601."""
     versions: Mapping[str, str]
     machine: Mapping[str, Any]
+
+    @property
+    def has_worlds(self) -> bool:
+        """Whether answers say in which world they are."""
+        return any(arm.world is not None for arm in self.arms)
+
+    def world_of(self, name: str) -> str | None:
+        """The world of an arm."""
+        return next(arm.world for arm in self.arms if arm.name == name)
 
     def list_parts(self) -> Iterator[Part]:
         """All parts, finished or not, in the order of the answers."""
@@ -107,7 +119,8 @@ def make_manifest(batch: Batch) -> Manifest:
 
 def _describe_arm(arm: Arm) -> ArmFacts:
     detector, settings = arm.problem.collision.name, asdict(arm.problem.settings)
-    return ArmFacts(name=arm.name, method=arm.method, detector=detector, settings=settings)
+    place = {"world": arm.world, "world_file": arm.world_file}
+    return ArmFacts(name=arm.name, method=arm.method, detector=detector, settings=settings, **place)
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:

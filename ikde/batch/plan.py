@@ -17,6 +17,10 @@ class Arm:
     name: str
     method: str
     problem: Problem
+    world: str | None = None
+    """The name of the world that it solves in, if the run has any."""
+    world_file: str | None = None
+    """Where that was read, for the record only; None also of a world whose obstacles were moved."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -4,11 +4,13 @@ from pathlib import Path
 from typing import Any
 
 from ikde.batch.arms import describe_arm, make_arm, make_arms
+from ikde.batch.columns import place_grader
 from ikde.batch.parts import MAX_PARTS, PLAIN_NAME
-from ikde.batch.plan import Batch
+from ikde.batch.plan import Arm, Batch
 from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
+from ikde.batch.worlds import Read, make_worlds
 from ikde.errors import InputError
 from ikde.formats.error_path import prefix_errors
 from ikde.formats.robot_entries import read_collision
@@ -19,16 +21,23 @@ MAX_SOLVES = 10**9  # of an arm
 MIN_CHUNK, MAX_CHUNK = 1000, 10_000
 
 
-def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None) -> Batch:
+def make_batch(
+    spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None, read_world: Read | None = None
+) -> Batch:
     """Resolve a run file whose paths start at `folder`; its own name is for the record.
+
+    `read_world` reads the world files that it names.
 
     Raises:
         InputError: with the path of the key inside the run file.
-        FileError: for what is wrong inside a table.
+        FileError: for what is wrong inside a table, or a world file.
     """
-    arms, graders = make_arms(spec, robot), _make_graders(spec, robot)
+    worlds = () if read_world is None else make_worlds(spec, read_world)
+    arms, graders = make_arms(spec, robot, worlds), _make_graders(spec, robot)
+    for arm in arms:
+        _check_graders(arm, graders)
     with prefix_errors("solve"):
-        shared = make_arm("solve", robot, spec.solve, spec.units)
+        shared = make_arm("solve", robot, spec.solve.model_copy(update={"margin": None}), spec.units)
     source, targets = make_source(spec, shared.problem, folder)
     if source.count * spec.repeats > MAX_SOLVES:
         raise InputError(f"{source.count:,} targets make more than {MAX_SOLVES:,} solves an arm", ("repeats",))
@@ -61,6 +70,13 @@ def make_batch(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None 
 def choose_chunk(solves: int) -> int:
     """Solves a part: a hundredth of an arm's; a part costs 10 ms beside its solves, and a kill costs some parts."""
     return min(max(solves // 100, MIN_CHUNK), MAX_CHUNK)
+
+
+def _check_graders(arm: Arm, graders: tuple[Detector, ...]) -> None:
+    """Raise `InputError` for a grader that an arm's world does not fit: it has other components."""
+    for index, grader in enumerate(graders):
+        with prefix_errors("grade", index):
+            place_grader(arm.problem.collision, grader)
 
 
 def _make_graders(spec: BatchSpec, robot: Robot) -> tuple[Detector, ...]:

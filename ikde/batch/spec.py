@@ -6,6 +6,8 @@ from pydantic import ConfigDict, Field
 
 from ikde.formats.entries import (
     AnyTarget,
+    AsEntry,
+    AsText,
     Count,
     DetectorChoice,
     Entry,
@@ -13,6 +15,7 @@ from ikde.formats.entries import (
     Interval,
     Number,
     OrientationEntry,
+    TextOrEntry,
     UnitsEntry,
     Vector,
 )
@@ -137,6 +140,9 @@ class SettingsEntry(Entry):
     """What belongs to the method `de`."""
 
 
+MarginChoice = Annotated[Annotated[Text, AsText] | Annotated[Number, Field(ge=0.0), AsEntry], TextOrEntry]
+
+
 class SolveEntry(Entry):
     """How to solve."""
 
@@ -144,6 +150,8 @@ class SolveEntry(Entry):
     """The engine: `auto` is ikde's choice, `de` the search of the paper."""
     detector: DetectorChoice | None = None
     """What counts as self-collision: a name, `none`, or a detector of your own (default: the robot's)."""
+    margin: MarginChoice | None = None
+    """Distance to keep from the world; `10,gripper=0`: that of a component in its place."""
     settings: SettingsEntry = SettingsEntry()
     """How to search."""
     ranges: dict[Name, Interval] = {}
@@ -154,6 +162,31 @@ class SolveEntry(Entry):
     """Weights of joints in the motion from `near`, per m or rad; joints left out have the robot's own."""
     freeze: dict[Name, Number | None] = {}
     """Joints that must not move, with their value (null: from `near`, else home)."""
+
+
+class MoveEntry(Entry):
+    """How far an obstacle is moved at random, uniformly."""
+
+    by: Vector = [0.0, 0.0, 0.0]
+    """At most so far along x, y and z, either way."""
+    turn: Annotated[Number, Field(ge=0.0)] = 0.0
+    """At most so far about z through its own origin, either way."""
+
+
+class WorldEntry(Entry):
+    """A world, or several that differ by where some obstacles stand."""
+
+    path: Text
+    """A world file, a cuRobo scene or a MoveIt planning scene, relative to the run file; `none` for no world."""
+    name: Name | None = None
+    """What to call it in the results (default: the file's name)."""
+    move: dict[Name, MoveEntry] = {}
+    """Obstacles that stand elsewhere, by name."""
+    count: Annotated[int, Field(strict=True, ge=1, le=MAX_ARMS)] = 1
+    """How many such worlds."""
+
+
+WorldChoice = Annotated[Annotated[Text, AsText] | Annotated[WorldEntry, AsEntry], TextOrEntry]
 
 
 class OutputEntry(Entry):
@@ -178,6 +211,10 @@ class BatchSpec(Entry):
     """What to reach."""
     solve: SolveEntry = SolveEntry()
     """How to solve."""
+    world: WorldChoice | None = None
+    """What stands around the robot: a file, or one with obstacles moved."""
+    worlds: Annotated[list[WorldChoice], Field(min_length=1, max_length=MAX_ARMS)] | None = None
+    """Several worlds, in each of which every arm solves every target."""
     arms: Annotated[dict[Name, SolveEntry], Field(max_length=MAX_ARMS)] = {}
     """Several ways to solve, compared over the same targets and random streams; each is laid over `solve`."""
     grade: Annotated[list[DetectorChoice], Field(max_length=MAX_GRADERS)] = []

@@ -9,7 +9,7 @@ from ikde.batch.check_part import check_part, verdict_columns
 from ikde.batch.manifest import Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part, read_finished
 from ikde.batch.read import list_finished, read_part
-from ikde.batch.tally import Counting, PartTally
+from ikde.batch.tally import BLOCKERS, Counting, PartTally
 from ikde.errors import FileError
 
 
@@ -80,7 +80,7 @@ class RunTally:
     def summary(self) -> RunSummary:
         """The counts as figures."""
         manifest = self._manifest
-        tallies = {arm.name: ArmTally(arm, manifest.graders) for arm in manifest.arms}
+        tallies = {arm.name: ArmTally(arm, manifest.graders, manifest.robot) for arm in manifest.arms}
         for part in manifest.list_parts():
             if part in self._parts:
                 tallies[part.arm].add(self._parts[part])
@@ -106,4 +106,4 @@ def summarise(folder: str | PathLike[str]) -> RunSummary:
 
 def _columns(manifest: Manifest) -> list[str]:
     identity = ["arm", "target", "target_name", "repeat", "stop_reason", "reason", "attempts"]
-    return [*identity, "reached", *verdict_columns(manifest.graders)]
+    return [*identity, *BLOCKERS, "reached", *verdict_columns(manifest.graders)]

@@ -14,6 +14,7 @@ from ikde.solver.verify import Bools
 
 MAX_LISTED = 1000  # unreached targets of an arm that are kept with name and reason
 NONE = Rate(0, 0)
+BLOCKERS = A, B = "blocker_a", "blocker_b"
 MAX_COMPARED = 10  # targets that are few enough to be counted one by one
 
 
@@ -44,6 +45,8 @@ class PartTally:
     collision_checked: int
     verified: Rate
     stop_reasons: Mapping[str, int]
+    blockers: Mapping[tuple[str, str], int]
+    """Rows that were not reached, by the pair that blocked most often; none where a run is in no world."""
     attempts: Ints | None
     """[n] of all solves; None if the run keeps no cost."""
     seconds: Floats
@@ -80,6 +83,7 @@ class Counting:
             collision_checked=len(solutions) - solutions["collision"].null_count,
             verified=Rate.of(read_verdicts(solutions["verified"])),
             stop_reasons={row["values"]: row["counts"] for row in solutions["stop_reason"].value_counts().to_pylist()},
+            blockers=count_blockers(solutions),
             attempts=solutions["attempts"].to_numpy() if "attempts" in solutions.column_names else None,
             seconds=seconds,
             missed=missed,
@@ -99,6 +103,14 @@ class Counting:
             name = mine["target_name"][0].as_py() if "target_name" in mine.column_names else None
             counts[target] = self._count_solves(mine, reached[targets == target], name)
         return counts
+
+
+def count_blockers(solutions: pa.Table) -> dict[tuple[str, str], int]:
+    """Rows by the pair that blocked them most often: two components, or the robot and an obstacle."""
+    if not set(BLOCKERS) <= set(solutions.column_names):
+        return {}
+    counted = solutions.group_by(BLOCKERS).aggregate([([], "count_all")]).to_pylist()
+    return {(row[A], row[B]): row["count_all"] for row in counted if row[A] is not None}
 
 
 def _find_missed(solutions: pa.Table, reached: Bools) -> tuple[Ints, Ints, Ints]:

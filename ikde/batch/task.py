@@ -93,6 +93,7 @@ def tabulate(task: Task, rows: SolveResults) -> Answer:
         names=pa.array(task.names, pa.string()).take(pa.array(_places(task))) if task.names else None,
         groups=task.groups,
         graders=task.graders,
+        world=task.arm.world,
     )
     timing = make_timing(task.arm.name, rows, numbers=numbers, repeats=task.repeats)
     return Answer(part=task.part, solutions=solutions, timing=timing)

@@ -34,13 +34,16 @@ def place_in_world(
         if margin is not None:
             raise InputError("a margin needs a --world to be kept from", ("margin",))
         return collision
+    from ikde.formats.margins import read_margins
+    from ikde.formats.units import LENGTHS_M
     from ikde.io.world_file import read_world
     from ikde.solver.standing import find_standing_obstacles, refuse_touching
 
-    margin_m, margins_m = read_margins(margin, unit)
+    margin_m, margins_m = read_margins(margin, LENGTHS_M[unit])
     found = read_world(world)
-    model = collision.in_world(found.world, margin_m, margins_m)
-    refuse_touching(model)
+    with found.errors():
+        model = collision.in_world(found.world, margin_m, margins_m)
+        refuse_touching(model)
     for note in found.notes:
         print_note(f"ikde: {note}")
     near = [pair for pair in find_standing_obstacles(model) if pair.clearance_m <= NEAR_M]
@@ -50,20 +53,3 @@ def place_in_world(
         more = f" and {len(near) - NAMED} more" if len(near) > NAMED else ""
         print_note(f"ikde: as near in every configuration: {named}{more}")
     return model
-
-
-def read_margins(text: str | None, unit: LengthUnit) -> tuple[float, dict[str, float]]:
-    """The distance for all, m, and those of components by name, from `10,gripper=0`."""
-    from ikde.errors import InputError, quoted
-    from ikde.formats.units import LENGTHS_M
-
-    margins: dict[str, float] = {}
-    for word in filter(None, (text or "").split(",")):
-        name, _, value = word.rpartition("=")
-        if name in margins:
-            raise InputError("this margin is given twice", ("margin", *([name] if name else [])))
-        try:
-            margins[name] = float(value) * LENGTHS_M[unit]
-        except ValueError:
-            raise InputError(f"expected a distance or component=distance, got {quoted(word)}", ("margin",)) from None
-    return margins.pop("", 0.0), margins

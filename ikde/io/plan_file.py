@@ -1,6 +1,7 @@
 """Files that name a robot and say what to do with it, run files and track files: how they become plans."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -20,6 +21,8 @@ from ikde.track.spec import TrackSpec
 
 if TYPE_CHECKING:
     from ikde.batch.plan import Batch
+    from ikde.batch.worlds import Errors
+    from ikde.model.world import World
     from ikde.track.plan import TrackPlan
 
 Spec = TypeVar("Spec", BatchSpec, TrackSpec)
@@ -39,7 +42,17 @@ def load_batch(source: str | Path | Mapping[str, Any]) -> "Batch":
     """
     from ikde.batch.resolve import make_batch  # here: what the other kind of file needs takes 0.06 s to import
 
-    return _load_plan(source, "run", BatchSpec, make_batch)
+    def make(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None) -> "Batch":
+        return make_batch(spec, robot, folder=folder, file=file, read_world=partial(_read_world, folder))
+
+    return _load_plan(source, "run", BatchSpec, make)
+
+
+def _read_world(folder: Path, name: str) -> "tuple[World, Errors]":
+    from ikde.io.world_file import read_world
+
+    found = read_world(folder / name)
+    return found.world, found.errors
 
 
 def load_track(source: str | Path | Mapping[str, Any]) -> "TrackPlan":

@@ -1,6 +1,7 @@
 """World files: a document of ikde's own, a cuRobo scene or a MoveIt planning scene, to a checked `World`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,8 +15,10 @@ from ikde.io.moveit_scene import is_moveit_scene, read_moveit_scene
 from ikde.io.scene_values import Reading
 from ikde.io.schema import Given, as_file_error
 from ikde.io.world_objects import make_file_world
-from ikde.io.yaml_file import Document, read_yaml
+from ikde.io.yaml_file import Document, Where, read_yaml
 from ikde.model.world import World
+
+OF_WORLD = ("obstacles", "world")  # where errors begin that a robot has with an obstacle
 
 
 class ReadWorld(NamedTuple):
@@ -26,6 +29,23 @@ class ReadWorld(NamedTuple):
     """Of the file: `ikde`, `cuRobo` or `MoveIt`."""
     notes: tuple[str, ...]
     """Meshes that became hulls, planes that became half-spaces, and the like; a line each."""
+    document: Document | Given
+
+    @contextmanager
+    def errors(self) -> Iterator[None]:
+        """What of the world does not fit a robot is said with the line of this file that it stands on."""
+        try:
+            yield
+        except FileError:
+            raise
+        except InputError as error:
+            if len(error.where) < 2 or error.where[0] not in OF_WORLD or error.where[1] not in self.world.names:
+                raise
+            raise self.error(error.message, str(error.where[1]), *error.where[2:]) from None
+
+    def error(self, message: str, name: str, *inside: str | int) -> InputError:
+        """An error about an obstacle, at its place in the file."""
+        return self.document.error(message, _locate(self.document.data, name, inside))
 
 
 def load_world(source: str | PathLike[str] | Mapping[str, Any]) -> World:
@@ -62,7 +82,7 @@ def _parse(document: Document | Given, folder: Path) -> ReadWorld:
         raise
     except InputError as error:
         raise document.error(error.message, error.where) from None
-    return ReadWorld(world, name, tuple(reading.notes))
+    return ReadWorld(world, name, tuple(reading.notes), document)
 
 
 def _find_reader(data: Any) -> tuple[str, Callable[[Any, Reading], World]]:
@@ -72,3 +92,15 @@ def _find_reader(data: Any) -> tuple[str, Callable[[Any, Reading], World]]:
         if is_curobo_scene(data):
             return "cuRobo", read_curobo_scene
     return "ikde", lambda given, reading: make_file_world(WorldFile.model_validate(given), reading)
+
+
+def _locate(data: Any, name: str, inside: Where) -> Where:
+    """The path of an obstacle, or of what is inside it; of scenes of others of the obstacle, and of its frame."""
+    if "obstacles" in data:
+        return ("obstacles", name, *inside)
+    if not is_moveit_scene(data):
+        return next(((kind, name) for kind, entries in data.items() if name in (entries or ())), ())
+    objects, above = (data["world"], ("world",)) if "world" in data else (data, ())
+    place = [str(entry["id"]) for entry in objects["collision_objects"]].index(name)
+    frame = ("header", "frame_id") if inside[:1] == ("frame",) else ()
+    return (*above, "collision_objects", place, *frame)

@@ -14,6 +14,7 @@ from ikde.report.render import make_table, plain, render
 
 WIDTH = 160
 MAX_NAMED = 20  # unreached targets of an arm
+MAX_BLOCKERS = 5  # of an arm that are named
 MAX_TARGETS = 5  # that have rows of their own
 MAX_ARMS = 10  # that are named in a line
 TIMES = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
@@ -127,12 +128,14 @@ def _name_arms(names: Sequence[str]) -> str:
     return f"arm{'s' if len(names) > 1 else ''} {', '.join(names[:MAX_ARMS])}{more}"
 
 
-def _arm_table(arms: Iterable[ArmSummary]) -> Any:
+def _arm_table(arms: Sequence[ArmSummary]) -> Any:
     spreads = (">attempts median / p95 / max", ">ms median / p95 / max")
-    table = make_table("arm", "?method", "?detector", ">reached", ">rate (95 %)", ">plain numpy agrees", *spreads)
+    placed = any(arm.world is not None for arm in arms)
+    heads = ("arm", "?method", "?detector", *(("?world",) if placed else ()))
+    table = make_table(*heads, ">reached", ">rate (95 %)", ">plain numpy agrees", *spreads)
     for arm in arms:
         table.add_row(
-            *map(plain, (arm.name, arm.method, arm.detector)),
+            *map(plain, (arm.name, arm.method, arm.detector, *((arm.world or "",) if placed else ()))),
             _format_count(arm.reached),
             format_rate(arm.reached),
             _format_count(arm.verified) if arm.verified.total else "not checked",
@@ -173,12 +176,23 @@ def _list_unreached(summary: RunSummary) -> list[str]:
         if reason != "reached"
     ]
     lines = [f"[bold]not reached[/]: {', '.join(reasons)}"]
+    lines += [
+        f"blocked most often by: {plain(_tell_blockers(arm))} (arm {plain(arm.name)})"
+        for arm in summary.arms
+        if arm.blockers
+    ]
     for arm in summary.arms:
         named = arm.listed[:MAX_NAMED]
         more = arm.unreached_targets - len(named)
         lines += (f"  {plain(_format_unreached(row, summary.repeats))}" for row in named)
         lines += [f"  {plain(arm.name)}, and {count_of(more, 'more target')}"] if more else []
     return [*lines, ""]
+
+
+def _tell_blockers(arm: ArmSummary) -> str:
+    named = list(arm.blockers.items())[:MAX_BLOCKERS]
+    more = len(arm.blockers) - len(named)
+    return ", ".join(f"{name} {count:,}" for name, count in named) + (f" and {more} more" if more else "")
 
 
 def _format_unreached(row: Unreached, repeats: int) -> str:

@@ -120,6 +120,26 @@ def _reason(rows: Rows) -> Columns:
     return {"reason": make_coded(codes, reasons), "hint": make_coded(hinted, hints)}
 
 
+def make_blockers(rows: Rows) -> Columns:
+    """The pair that was to blame most often, and how often, of rows that were not reached; the robot stands for what
+    of it touched an obstacle. Null where nothing blocked."""
+    pairs, worst = rows.problem.collision.counted, np.full((len(rows), 2), -1)
+    for row in np.flatnonzero(~rows.outcomes.reached).tolist():
+        story = rows.outcomes.explanations.get(row)
+        counts = rows.found.pair_counts.row(row)[: len(pairs)]
+        if story is not None and story.blocking_pairs:
+            worst[row] = pairs.index(next(iter(story.blocking_pairs))), max(story.blocking_pairs.values())
+        elif counts.any():
+            worst[row] = counts.argmax(), counts.max()
+    names = {name: place for place, name in enumerate(dict.fromkeys(name for pair in pairs for name in pair))}
+    sides = np.array([*([names[a], names[b]] for a, b in pairs), [-1, -1]])  # -1: nothing
+    return {
+        "blocker_a": make_coded(sides[worst[:, 0], 0], list(names)),
+        "blocker_b": make_coded(sides[worst[:, 0], 1], list(names)),
+        "blocked": pa.array(np.maximum(worst[:, 1], 0).astype(np.int32)),
+    }
+
+
 def _reasons(rows: Rows, missed: Ints) -> tuple[Ints, list[str]]:
     """The reasons of rows that were missed, as codes and words: one is put into words for all that tell the same."""
     stories, found = rows.outcomes.explanations, rows.found

@@ -126,3 +126,38 @@ def test_a_scene_of_others_has_lines_too(tmp_path):
     (tmp_path / "a.yaml").write_text("cuboid:\n  a:\n    pose: [0, 0, 0, 1, 0, 0, 0]\n    dims: [1, 0, 1]\n")
     with pytest.raises(FileError, match=r"a.yaml:4 → cuboid.a.dims.y: expected a size"):
         load_world(tmp_path / "a.yaml")
+
+
+SCENES = {
+    "ikde": "obstacles:\n  a: {box: [1, 1, 1]}\n  b: {box: [1, 1, 1]}\n",
+    "MoveIt": """world:
+  collision_objects:
+    - {id: a, primitives: [{type: box, dimensions: [1, 1, 1]}], primitive_poses: [{position: [0, 0, 0]}]}
+    - id: b
+      header: {frame_id: shelf}
+      primitives: [{type: box, dimensions: [1, 1, 1]}]
+      primitive_poses: [{position: [0, 0, 0]}]
+""",
+    "cuRobo": """cuboid:
+  a: {dims: [1, 1, 1], pose: [0, 0, 0, 1, 0, 0, 0]}
+  b: {dims: [1, 1, 1], pose: [0, 0, 0, 1, 0, 0, 0]}
+""",
+}
+PLACES = {
+    "ikde": "3 → obstacles.b",
+    "MoveIt": "5 → world.collision_objects[1].header.frame_id",
+    "cuRobo": "3 → cuboid.b",
+}
+
+
+@pytest.mark.parametrize("kind", SCENES)
+def test_what_a_robot_does_not_fit_has_its_line(tmp_path, kind):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENES[kind], encoding="utf-8")
+    found = read_world(path)
+    assert found.format == kind
+    message = re.escape(f"scene.yaml:{PLACES[kind]}")
+    with pytest.raises(FileError, match=rf"{message}(\.frame)?: no such frame$"), found.errors():
+        raise InputError("no such frame", ("obstacles", "b", "frame"))
+    with pytest.raises(InputError, match=r"^margin: elsewhere$"), found.errors():
+        raise InputError("elsewhere", ("margin",))

@@ -26,10 +26,12 @@ ARM = ArmSummary(
     name="plain [de]",
     method="de",
     detector="none",
+    world=None,
     reached=Rate(1999, 2000),
     collision_checked=2000,
     verified=Rate(31, 32),
     stop_reasons={"reached": 1999, "out_of_reach": 1},
+    blockers={},
     attempts=Spread(1.0, 3.0, 12.0),
     milliseconds=Spread(20.0, 30.5, 1234.5),
     collisions={"typical": Rate(30, 1999)},
@@ -205,3 +207,11 @@ def test_times_read_well(seconds, words):
 def test_a_rate_comes_with_its_interval():
     assert format_rate(Rate(73, 100)) == "73.0 % (63.6 to 80.7)"
     assert format_rate(Rate(0, 0)) == ""
+
+
+def test_worlds_and_what_blocked_are_named():
+    arm = replace(ARM, world="kitchen [a]", blockers={f"pan {k}": 9 - k for k in range(7)})
+    text = format_run(replace(SUMMARY, arms=(arm,)))
+    assert "kitchen [a]" in text
+    assert "blocked most often by: pan 0 9, pan 1 8, pan 2 7, pan 3 6, pan 4 5 and 2 more (arm plain [de])" in text
+    assert "kitchen" not in format_run(SUMMARY)

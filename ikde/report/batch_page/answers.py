@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from ikde.batch.arm_summary import name_blocker
 from ikde.batch.check_part import verdict_columns
 from ikde.batch.manifest import ArmFacts, Manifest, read_manifest
 from ikde.batch.parts import SOLUTIONS, TIMING, Part
 from ikde.batch.read import list_finished, read_part, read_verdicts
 from ikde.batch.statistics import Rate
+from ikde.batch.tally import BLOCKERS, count_blockers
 from ikde.errors import FileError
 from ikde.solver.verify import MaskedBools
 
@@ -48,6 +50,8 @@ class ArmAnswers:
     stop_reasons: Mapping[str, int]
     closest_pairs: Mapping[tuple[str, str], int]
     """Of the reached solutions."""
+    blockers: Mapping[str, int]
+    """Solves that were not reached, by what blocked most often; in worlds alone."""
     missed: Mapping[int, Mapping[str, Any]]
     """The first row that was not reached, by target, of the first `MAX_MISSED` of them."""
 
@@ -149,13 +153,14 @@ class _Pile:
     verdicts: dict[str, list[MaskedBools]] = field(default_factory=dict)
     stop_reasons: Counter[str] = field(default_factory=Counter)
     closest_pairs: Counter[tuple[str, str]] = field(default_factory=Counter)
+    blockers: Counter[str] = field(default_factory=Counter)
     missed: dict[int, dict[str, Any]] = field(default_factory=dict)
 
     def add(self, folder: Path, part: Part, manifest: Manifest) -> pa.Table:
         """Put one part on the pile; returns what was read of its solutions."""
         graders = manifest.graders
         listing = MISSED if len(self.missed) < MAX_MISSED else ()
-        wanted = [*NUMBERS, *verdict_columns(graders), *WORDS, "target_name", *PLACE, *listing]
+        wanted = [*NUMBERS, *verdict_columns(graders), *WORDS, *BLOCKERS, "target_name", *PLACE, *listing]
         solutions = read_part(folder, manifest, part, SOLUTIONS, wanted)
         timing = read_part(folder, manifest, part, TIMING, ["solve_seconds"])
         for table, names in ((solutions, NUMBERS), (timing, ("solve_seconds",))):
@@ -165,6 +170,8 @@ class _Pile:
         for name in verdict_columns(graders):
             self.verdicts.setdefault(name, []).append(read_verdicts(solutions[name]))
         self._count_words(solutions)
+        for pair, count in count_blockers(solutions).items():
+            self.blockers[name_blocker(pair, manifest.robot)] += count
         if listing:
             self._list_missed(solutions)
         return solutions
@@ -196,6 +203,7 @@ class _Pile:
             verdicts=verdicts,
             stop_reasons=dict(self.stop_reasons.most_common()),
             closest_pairs=dict(self.closest_pairs.most_common()),
+            blockers=dict(self.blockers.most_common()),
             missed=self.missed,
         )
 

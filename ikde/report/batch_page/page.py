@@ -13,6 +13,7 @@ from ikde.report.batch_page.missed import make_missed
 from ikde.report.batch_page.places import make_places
 from ikde.report.batch_page.recipe import make_again, make_recipe, run_command
 from ikde.report.batch_page.success import make_success
+from ikde.report.batch_page.worlds import make_worlds
 from ikde.report.batch_page.worst import make_worst
 from ikde.report.markup import code, verbatim
 from ikde.report.numbers import count_of, fixed, length, seconds
@@ -26,6 +27,7 @@ def make_batch_page(run: RunAnswers) -> Page:
     manifest = run.manifest
     sections = [
         make_success(run),
+        make_worlds(run),
         make_places(run),
         make_worst(run),
         make_cost(run),

@@ -62,9 +62,13 @@ def _make_table(run: RunAnswers) -> Table:
             for arm in run.arms
         ),
         caption="How many solves reached their target",
-        note="Reached: within tolerance, inside the limits and, where that was checked, free of self-collision by the "
-        f"arm's detector. {say_who_graded(run)} Rates with Wilson's 95 % interval.",
+        note="Reached: within tolerance, inside the limits and, where that was checked, free of self-collision"
+        f"{_of_world(run)} by the arm's detector. {say_who_graded(run)} Rates with Wilson's 95 % interval.",
     )
+
+
+def _of_world(run: RunAnswers) -> str:
+    return ", and of its world," if run.manifest.has_worlds else ""
 
 
 def say_who_graded(run: RunAnswers) -> str:

@@ -15,6 +15,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.plot.animation import make_animation
 from ikde.report.batch_page.answers import PLACE, ArmAnswers, RunAnswers
+from ikde.report.batch_page.in_world import check_command, draw_in_world, find_file, place_arm
 from ikde.report.batch_page.recipe import run_command
 from ikde.report.markup import code, verbatim
 from ikde.report.numbers import angle, length
@@ -102,8 +103,8 @@ def _make_details(run: RunAnswers, worst: Worst, robot: Robot | None) -> Details
     blocks: list[Block] = [Facts(tuple(_list_facts(data)))]
     if run.manifest.file:
         blocks.append(Code(repeat_command(run, row), caption="This row alone, and whether the run holds the same bits"))
-    picture = None if robot is None else _draw(run, row, data, robot)
-    return Details(f"{worst.what}: target {row.target}{name}{repeat}{arm}", (*blocks, *([picture] if picture else [])))
+    blocks += [] if robot is None else _show(run, row, data, robot)
+    return Details(f"{worst.what}: target {row.target}{name}{repeat}{arm}", tuple(blocks))
 
 
 def repeat_command(run: RunAnswers, row: Row) -> str:
@@ -123,6 +124,8 @@ def _list_facts(data: dict[str, Any]) -> Iterator[tuple[str, str]]:
     ):
         if data.get(column) is not None:
             yield name, write(data[column])
+    if data.get("world") is not None:
+        yield "world", verbatim(data["world"])
     if data.get("pair_a") is not None:
         yield "closest pair", verbatim(f"{data['pair_a']} – {data['pair_b']}")
     place = [data[f"target_{axis}_m"] for axis in "xyz"] if "target_x_m" in data else []
@@ -142,17 +145,25 @@ def _find_robot(run: RunAnswers) -> Robot | None:
     return robot if known.get("digest") == robot_digest(robot) else None
 
 
-def _draw(run: RunAnswers, row: Row, data: dict[str, Any], robot: Robot) -> Animation | None:
-    """The robot in the row's configuration; None if the run does not keep it, or has spheres of its own."""
+def _show(run: RunAnswers, row: Row, data: dict[str, Any], robot: Robot) -> list[Block]:
+    """The robot in the row's configuration; nothing if the run does not keep it, or has spheres of its own."""
     collision = _find_collision(run, row.arm, robot)
     q = np.array([data.get(f"q_{name}", np.nan) for name in robot.joint_names], dtype=float)
     if collision is None or not (np.abs(q) < MAX_DRAWN).all():
-        return None
+        return []
     target = [data[name] for name in PLACE] if all(name in data for name in PLACE) else []
+    placed, alt = place_arm(run, row.arm, collision), f"the robot in row {row}"
+    if placed is None:
+        return [Text("There is no picture of it: its world is no file any more, or another one than the run's.")]
+    if placed.obstacles:
+        file = find_file(run, row.arm)
+        command = [] if file is None else [check_command(placed, file, robot.name, q)]
+        again = [Code(text, caption="What is near this configuration, and a picture of it") for text in command]
+        return [*again, draw_in_world(placed, q, target, alt)]
     still = json.dumps(make_animation(draw_still(collision, q, target)), separators=(",", ":"), allow_nan=False)
     caption = "Its configuration, and the target as a ring." if target else "Its configuration."
     caption += " What collides is black, white on a dark page." if collision.pairs else ""
-    return Animation(data=still, alt=f"the robot in row {row}", caption=caption)
+    return [Animation(data=still, alt=alt, caption=caption)]
 
 
 def _find_collision(run: RunAnswers, arm: str, robot: Robot) -> CollisionModel | None:

@@ -8,6 +8,7 @@ import ikde
 from ikde.batch.sources import ListSource
 from ikde.report.batch_page.answers import gather_answers
 from tests.batch.small import BLINK, FAR, ROBOT, make_arm, make_batch
+from tests.batch.test_worlds import KEYS, KITCHEN
 
 LOOSE = {"position_tolerance_m": 0.02, "restarts": 3, "generations": 60, "population": 20}
 ARMS = (make_arm("free", detector="none", **LOOSE), make_arm("careful", method="de", **LOOSE))
@@ -52,3 +53,21 @@ def unfinished(folder, tmp_path):
     for path in (copy / "solutions").glob("careful-*"):
         path.unlink()
     return gather_answers(copy)
+
+
+@pytest.fixture(scope="package")
+def in_worlds(tmp_path_factory):
+    """A run of one arm in no world and in one, whose page is made where it ran."""
+    folder = tmp_path_factory.mktemp("worlds")
+    (folder / "kitchen.yaml").write_text(KITCHEN, encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        ikde.run_batch(ikde.load_batch(KEYS | {"worlds": ["none", "kitchen.yaml"]}), "run")
+    return folder
+
+
+@pytest.fixture
+def placed(in_worlds, monkeypatch):
+    """Answers in two worlds, and the current folder where it ran."""
+    monkeypatch.chdir(in_worlds)
+    return gather_answers("run")
