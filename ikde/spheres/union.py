@@ -84,7 +84,7 @@ def _ask_ball(middles: Floats, radius: Floats, other: Triangles) -> tuple[Bools,
 
 
 def _is_convex(part: Triangles, planes: tuple[Floats, Floats]) -> bool:
-    """Whether no corner of a part lies in front of one of its faces; a part that is not is told after some corners."""
+    """Whether no corner of a part lies in front of one of its faces; where one does, others are not measured."""
     return all((heights <= FLAT).all() for heights in _blocks_of_heights(part.corners, planes))
 
 
