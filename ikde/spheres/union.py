@@ -84,7 +84,7 @@ def _ask_ball(middles: Floats, radius: Floats, other: Triangles) -> tuple[Bools,
 
 
 def _is_convex(part: Triangles, planes: tuple[Floats, Floats]) -> bool:
-    """Whether no corner of a part lies in front of one of its faces; of other parts a few corners show it."""
+    """Whether no corner of a part lies in front of one of its faces; where one does, others are not measured."""
     return all((heights <= FLAT).all() for heights in _blocks_of_heights(part.corners, planes))
 
 
