@@ -55,7 +55,7 @@ class Judged:
         return np.where((self.missing | self.outside | collides).all(axis=-1), why, -1)
 
 
-def rule_out(problem: Problem, targets: Targets) -> Ints:
+def rule_out_by_branches(problem: Problem, targets: Targets) -> Ints:
     """Why poses are ruled out [T], as `Judged.ruled_out`; -1 for what is no pose, or no arm that alone may move."""
     ruled_out = np.full(len(targets), -1)
     if find_still_arm(problem.robot, problem.lower, problem.upper) is not None:
@@ -109,8 +109,9 @@ def _place_carrier(problem: Problem) -> Floats:
     """T_carrier_world [4, 4]."""
     arm = find_still_arm(problem.robot, problem.lower, problem.upper)
     assert arm is not None
-    T_world_tool = compute_frames(problem.robot, problem.lower)[problem.robot.tool]
-    return np.linalg.inv(T_world_tool @ np.linalg.inv(arm.tool_pose(arm.angles(problem.lower))))
+    T_world_carrier = compute_frames(problem.robot, problem.lower)[problem.robot.tool]
+    T_world_carrier = T_world_carrier @ np.linalg.inv(arm.tool_pose(arm.angles(problem.lower)))
+    return np.asarray(np.linalg.inv(T_world_carrier), dtype=float)
 
 
 class Motions:

@@ -113,10 +113,11 @@ def _list_parts(collision: CollisionModel) -> dict[str, tuple[list[SphereRow | t
     parts: dict[str, list[SphereRow | tuple[str, Floats]]] = {}
     radii: dict[str, list[float]] = {}
     for row in collision.rows:
-        own = row.spheres if isinstance(row, FreeSpheres) else ()
-        entry = (row.frame, np.array(own)[:, :3]) if isinstance(row, FreeSpheres) else row
-        parts.setdefault(row.component, []).append(entry)
-        radii.setdefault(row.component, []).extend([sphere[3] for sphere in own] or [row.radius_m] * row.count)
+        parts.setdefault(row.component, []).append(
+            (row.frame, np.array(row.spheres)[:, :3]) if isinstance(row, FreeSpheres) else row
+        )
+        own = [sphere[3] for sphere in row.spheres] if isinstance(row, FreeSpheres) else [row.radius_m] * row.count
+        radii.setdefault(row.component, []).extend(own)
     return {name: (parts[name], read_only(np.array(radii[name]))) for name in parts}
 
 
@@ -170,7 +171,7 @@ def compute_world_gaps(collision: CollisionModel, q: Floats, Ts_world: Mapping[s
 
 
 def _compute_world_gaps(collision: CollisionModel, q: Floats, components: Mapping[str, Spheres]) -> Floats:
-    groups, less_m = _list_world(collision)
+    groups, less_m = list_world(collision)
     several, count = q.shape[:-1], len(collision.obstacles)
     if not (components and q.size):
         return np.empty((*several, len(components) * count))
@@ -189,7 +190,7 @@ def _compute_world_gaps(collision: CollisionModel, q: Floats, components: Mappin
 
 
 @lru_cache(maxsize=64)
-def _list_world(collision: CollisionModel) -> tuple[tuple[Alike, ...], Floats]:
+def list_world(collision: CollisionModel) -> tuple[tuple[Alike, ...], Floats]:
     """Solids in their groups; and what each component and obstacle [C, O] are asked for beyond the safe distance, m:
     -inf where they are not compared.
     """
