@@ -16,13 +16,12 @@ from ikde.model.closed_form import find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Target, Targets
 from ikde.solver.background import NEAR, ONE, Question
-from ikde.solver.branches import rule_out
 from ikde.solver.choice import choose_engines
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.pool import load_kernels
 from ikde.solver.problem import Problem
-from ikde.solver.proof import prove
+from ikde.solver.proof import prove, rule_out
 from ikde.solver.settings import SolveSettings
 from ikde.solver.way import Answer, Way, WithDescent
 
@@ -75,7 +74,7 @@ class Settled(NamedTuple):
     excess: tuple[float, float] = (0.0, 0.0)
     """By how much bounds prove that it is missed, m and rad."""
     why: int = -1
-    """The reason for which the closed form rules it out: index into `STOP_REASONS`."""
+    """The reason for which it is ruled out: index into `STOP_REASONS`."""
 
 
 def make_plan(collision: CollisionModel, settings: SolveSettings, kind: str, free: set[int]) -> Plan | None:
@@ -132,6 +131,9 @@ class Ask:
         plan, excess = self.plan, prove(self._problem, target)
         if excess != (0.0, 0.0):
             return Settled(row, LM, excess)
+        why = int(rule_out(self._problem, Targets.of([target]))[0])
+        if why >= 0:
+            return Settled(row, LM, why=why)
         if plan.all > plan.few and self.answer(target.T_world_tool, word, stream, plan.few, plan.all, row):
             return Settled(row, LM)
         return None

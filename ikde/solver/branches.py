@@ -55,7 +55,7 @@ class Judged:
         return np.where((self.missing | self.outside | collides).all(axis=-1), why, -1)
 
 
-def rule_out(problem: Problem, targets: Targets) -> Ints:
+def rule_out_by_branches(problem: Problem, targets: Targets) -> Ints:
     """Why poses are ruled out [T], as `Judged.ruled_out`; -1 for what is no pose, or no arm that alone may move."""
     ruled_out = np.full(len(targets), -1)
     if find_still_arm(problem.robot, problem.lower, problem.upper) is not None:
@@ -71,7 +71,7 @@ def judge_branches(problem: Problem, targets: Targets) -> Judged:
     arm = find_still_arm(robot, problem.lower, problem.upper)
     assert arm is not None
     tolerances = settings.position_tolerance_m + ROUNDING, settings.orientation_tolerance_rad + ROUNDING
-    found = find_branches(arm, _find_carried(problem, arm, targets), *tolerances)
+    found = find_branches(arm, _find_carried(problem, targets), *tolerances)
     q = np.broadcast_to(problem.lower, (*found.missing.shape, len(robot.joints))).copy()
     slack = np.zeros(q.shape)
     joints, middle = list(arm.coordinates), 0.5 * (problem.lower + problem.upper)[list(arm.coordinates)]
@@ -97,13 +97,21 @@ def _measure_excess(problem: Problem, q: Floats) -> Floats:
     return np.maximum(np.maximum(problem.lower - q, q - problem.upper), 0.0)
 
 
-def _find_carried(problem: Problem, arm: URArm, targets: Targets) -> Floats:
+def _find_carried(problem: Problem, targets: Targets) -> Floats:
     """T_carrier_tool [T, 4, 4] of targets, the carrier being where the frozen joints put it."""
-    T_world_carrier = compute_frames(problem.robot, problem.lower)[problem.robot.tool]
-    T_world_carrier = T_world_carrier @ np.linalg.inv(arm.tool_pose(arm.angles(problem.lower)))
     T_world_tool = np.broadcast_to(np.eye(4), (len(targets), 4, 4)).copy()
     T_world_tool[:, :3] = targets.T_world_tool
-    return np.linalg.inv(T_world_carrier) @ T_world_tool
+    return _place_carrier(problem) @ T_world_tool
+
+
+@lru_cache(maxsize=64)
+def _place_carrier(problem: Problem) -> Floats:
+    """T_carrier_world [4, 4]."""
+    arm = find_still_arm(problem.robot, problem.lower, problem.upper)
+    assert arm is not None
+    T_world_carrier = compute_frames(problem.robot, problem.lower)[problem.robot.tool]
+    T_world_carrier = T_world_carrier @ np.linalg.inv(arm.tool_pose(arm.angles(problem.lower)))
+    return np.asarray(np.linalg.inv(T_world_carrier), dtype=float)
 
 
 class Motions:
@@ -132,13 +140,10 @@ class Motions:
         self, slack: Floats, position_m: float, orientation_rad: float, collision: CollisionModel
     ) -> Floats:
         """By how much each component can move in the world, at most, [K, C O] in m for slacks [K, 6]."""
-        columns = []
-        for name in collision.components:
-            moved, levers, tool = self._parts.get(name, ([False] * 6, np.zeros(6), np.inf))
-            by_joints = slack @ (np.array(moved) * levers)
-            by_tool = slack @ (~np.array(moved) * levers) + position_m + orientation_rad * tool
-            columns.append(np.minimum(by_joints, by_tool))
-        return np.repeat(np.stack(columns, axis=-1), len(collision.obstacles), axis=-1)
+        parts = [self._parts.get(name, ([False] * 6, np.zeros(6), np.inf)) for name in collision.components]
+        moved, levers, tool = (np.array(column) for column in zip(*parts, strict=True))
+        by_tool = slack @ (~moved * levers).T + position_m + orientation_rad * tool
+        return np.repeat(np.minimum(slack @ (moved * levers).T, by_tool), len(collision.obstacles), axis=-1)
 
     def bound_m(self, slack: Floats, position_m: float, orientation_rad: float) -> Floats:
         """By how much, at most, [K, P] in m for slacks [K, 6]: seen from either component, and from base and tool."""
@@ -200,13 +205,13 @@ def tell_branches(problem: Problem, target: Target) -> tuple[str, dict[tuple[str
 
 def _name_blockers(collision: CollisionModel, judged: Judged) -> list[str]:
     """The pair that is deepest in each branch that collides, and by how much it is too near, in mm."""
+    rows = np.flatnonzero(judged.colliding[0].any(axis=-1))
+    gaps_m = np.where(judged.colliding[0][rows], compute_gaps(collision, judged.q[0][rows]), np.inf)
     found = []
-    for q, hits in zip(judged.q[0], judged.colliding[0], strict=True):
-        if hits.any():
-            gaps_m = np.where(hits, compute_gaps(collision, q), np.inf)
-            worst = int(gaps_m.argmin())
-            a, b = collision.name_pair(worst)
-            found.append(f"{a} - {b} {1e3 * (gaps_m[worst] + collision.extra_m(worst)):.1f} mm")
+    for gaps in gaps_m:
+        worst = int(gaps.argmin())
+        a, b = collision.name_pair(worst)
+        found.append(f"{a} - {b} {1e3 * (gaps[worst] + collision.extra_m(worst)):.1f} mm")
     return found
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, SCORE
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Floats, Ints
 from ikde.model.collision_model import CollisionModel
-from ikde.model.target import Target
-from ikde.solver.branches import tell_branches
+from ikde.model.target import Target, Targets
+from ikde.solver.branches import rule_out_by_branches, tell_branches
 from ikde.solver.digits import at_least
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.search_state import SearchState, make_search_state
@@ -30,6 +30,7 @@ from ikde.solver.problem import Problem
 from ikde.solver.proof import prove
 from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
+from ikde.solver.tool_body import tell_tool_body
 from ikde.solver.touching import find_always_touching
 from ikde.solver.verify import Bools, Grade, verify
 
@@ -39,7 +40,7 @@ PROVED = {
     StopReason.OUT_OF_REACH: "no configuration of the arm, whatever its limits, has this pose",
     StopReason.LIMITS: "every configuration with this pose is outside the limits",
     StopReason.COLLISION: "every configuration with this pose collides or is outside the limits",
-    StopReason.WORLD: "every configuration with this pose collides or is outside the limits",
+    StopReason.WORLD: "every configuration that meets the target collides or is outside the limits",
 }
 
 COLLIDES = StopReason.COLLISION, StopReason.WORLD
@@ -198,11 +199,13 @@ def _never_free(problem: Problem, met: _Met, graded: Grade) -> Explanation | Non
 def _ruled_out(
     problem: Problem, target: Target, found: SearchState, graded: Grade, *, seed: int, stream: int
 ) -> Explanation:
-    """What the closed form proves; what would help without a search, but for what is frozen."""
-    reason, blocking = tell_branches(problem, target)
+    """What the closed form proves, or the tool's body; what would help."""
     probe = Probe(target, seed, stream, float(found.seconds[0]))
+    is_by_branches = rule_out_by_branches(problem, Targets.of([target]))[0] >= 0
+    reason, blocking = (tell_branches if is_by_branches else tell_tool_body)(problem, target)
     hint = try_removing(problem, probe, blocking) or try_freeing(problem, probe)
-    hint = hint or hint_at_branches(problem, target) or hint_at_tolerance(problem, target, found.q[0], graded)
+    hint = hint or (hint_at_branches(problem, target) if is_by_branches else None)
+    hint = hint or hint_at_tolerance(problem, target, found.q[0], graded)
     stop = STOP_REASONS[found.ruled_out[0]]
     return Explanation(stop_reason=stop, reason=reason, hint=hint, blocking_pairs=blocking)
 

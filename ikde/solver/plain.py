@@ -5,44 +5,69 @@ It answers `forward` and `check`, and it is what `verify` grades with. It is wri
 configurations: one, or as many as there are.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, FreeSpheres, Pairs, Robot, SphereRow
-from ikde.solver.plain_world import measure_obstacle
+from ikde.solver.plain_world import Alike, list_alike
 
 
 def joint_motion(kind: str, axis: Floats, value: Floats) -> Floats:
-    """T of a joint [..., 4, 4]: a rotation about `axis` [3] by `value` [...] rad, or a shift along it by `value` m."""
+    """T of joints [..., 4, 4]: rotations about `axis` [..., 3] by `value` [...] rad, or shifts along it, in m."""
     T = np.zeros((*value.shape, 4, 4))
     T[...] = np.eye(4)
     if kind == "prismatic":
         T[..., :3, 3] = value[..., None] * axis
         return T
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    outer = np.outer(axis, axis)
+    x, y, z = axis.T
+    K = np.zeros((*axis.shape[:-1], 3, 3))
+    K[..., 0, 1], K[..., 0, 2], K[..., 1, 2], K[..., 1, 0], K[..., 2, 0], K[..., 2, 1] = -z, y, -x, z, -y, x
+    outer = axis[..., :, None] * axis[..., None, :]
     s, c = np.sin(value)[..., None, None], np.cos(value)[..., None, None]
     T[..., :3, :3] = c * np.eye(3) + s * K + (1.0 - c) * outer
     return T
 
 
-def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
-    """T_world_frame [..., 4, 4] of every frame, for `q` [..., N] in the robot's own convention."""
+class Placing(NamedTuple):
+    """What of a robot's frames stays, parents first."""
+
+    frames: tuple[tuple[str, str, Floats, tuple[str, int] | None], ...]
+    """Name, parent, T_parent_frame [4, 4] at q = 0, and which joint of a kind moves it."""
+    moved: dict[str, tuple[list[int], Floats]]
+    """By kind of joint: places in q [M], and axes [M, 3]."""
+
+
+@lru_cache(maxsize=64)
+def _list_frames(robot: Robot) -> Placing:
     places = {name: place for place, name in enumerate(robot.joint_names)}
-    Ts_world: dict[str, Floats] = {WORLD: np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))}
+    frames, moved = [], {}
     for frame in robot.frames:
-        T = np.eye(4)
+        T, motion = np.eye(4), None
         T[:3, :3], T[:3, 3] = frame.R_parent_frame, frame.p_parent_frame
-        Ts_world[frame.name] = Ts_world[frame.parent] @ T
         if frame.joint is not None and frame.axis is not None:
             place = places[frame.joint]
-            motion = joint_motion(robot.joints[place].kind, frame.axis, q[..., place])
-            Ts_world[frame.name] = Ts_world[frame.name] @ motion
+            of_kind = moved.setdefault(robot.joints[place].kind, ([], []))
+            motion = robot.joints[place].kind, len(of_kind[0])
+            of_kind[0].append(place)
+            of_kind[1].append(frame.axis)
+        frames.append((frame.name, frame.parent, T, motion))
+    return Placing(tuple(frames), {kind: (places, np.array(axes)) for kind, (places, axes) in moved.items()})
+
+
+def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
+    """T_world_frame [..., 4, 4] of every frame, for `q` [..., N] in the robot's own convention."""
+    frames, moved = _list_frames(robot)
+    Ts_world: dict[str, Floats] = {WORLD: np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))}
+    motions = {kind: joint_motion(kind, axes, q[..., places]) for kind, (places, axes) in moved.items()}
+    for name, parent, T, motion in frames:
+        Ts_world[name] = Ts_world[parent] @ T
+        if motion is not None:
+            Ts_world[name] = Ts_world[name] @ motions[motion[0]][..., motion[1], :, :]
     return Ts_world
 
 
@@ -66,19 +91,34 @@ def compute_components(
 ) -> dict[str, Spheres]:
     """Spheres of every component, in the world, for `q` [..., N] or the frames there; none without a detector."""
     Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
-    centres: dict[str, list[Floats]] = {}
+    found = {}
+    for name, (parts, radii) in _list_parts(collision.own).items():
+        points = []
+        for part in parts:
+            if isinstance(part, SphereRow):
+                points.append(
+                    compute_row_centres(part, Ts_world[part.start][..., :3, 3], Ts_world[part.end][..., :3, 3])
+                )
+            else:
+                frame, own = part
+                T = Ts_world[frame]
+                points.append(np.einsum("...ij,nj->...ni", T[..., :3, :3], own) + T[..., None, :3, 3])
+        found[name] = points[0] if len(points) == 1 else np.concatenate(points, axis=-2), radii
+    return found
+
+
+@lru_cache(maxsize=64)
+def _list_parts(collision: CollisionModel) -> dict[str, tuple[list[SphereRow | tuple[str, Floats]], Floats]]:
+    """Of each component its rows, or a frame and centres [n, 3] in it, and the radii of all spheres, m."""
+    parts: dict[str, list[SphereRow | tuple[str, Floats]]] = {}
     radii: dict[str, list[float]] = {}
     for row in collision.rows:
-        if isinstance(row, FreeSpheres):
-            own, T = np.array(row.spheres), Ts_world[row.frame]
-            points = np.einsum("...ij,nj->...ni", T[..., :3, :3], own[:, :3]) + T[..., None, :3, 3]
-            centres.setdefault(row.component, []).append(points)
-            radii.setdefault(row.component, []).extend(own[:, 3])
-            continue
-        points = compute_row_centres(row, Ts_world[row.start][..., :3, 3], Ts_world[row.end][..., :3, 3])
-        centres.setdefault(row.component, []).append(points)
-        radii.setdefault(row.component, []).extend([row.radius_m] * row.count)
-    return {name: (np.concatenate(centres[name], axis=-2), np.array(radii[name])) for name in centres}
+        parts.setdefault(row.component, []).append(
+            (row.frame, np.array(row.spheres)[:, :3]) if isinstance(row, FreeSpheres) else row
+        )
+        own = [sphere[3] for sphere in row.spheres] if isinstance(row, FreeSpheres) else [row.radius_m] * row.count
+        radii.setdefault(row.component, []).extend(own)
+    return {name: (parts[name], read_only(np.array(radii[name]))) for name in parts}
 
 
 def compute_sphere_gaps(a: Spheres, b: Spheres) -> Floats:
@@ -95,22 +135,20 @@ def compute_gaps(
     Without `pairs` those of components and obstacles follow (`compute_world_gaps`). `Ts_world`: the frames at `q`, if
     they are known.
     """
-    if pairs is not None:
-        return _compute_own_gaps(collision, q, pairs, Ts_world)
     Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
-    own = _compute_own_gaps(collision, q, collision.pairs, Ts_world)
+    components = compute_components(collision, q, Ts_world) if collision.detector else {}
+    if pairs is not None:
+        return _compute_own_gaps(components, q, pairs)
+    own = _compute_own_gaps(components, q, collision.pairs)
     if not collision.obstacles:
         return own
-    return np.concatenate([own, compute_world_gaps(collision, q, Ts_world)], axis=-1)
+    return np.concatenate([own, _compute_world_gaps(collision, q, components)], axis=-1)
 
 
-def _compute_own_gaps(
-    collision: CollisionModel, q: Floats, pairs: Pairs, Ts_world: Mapping[str, Floats] | None
-) -> Floats:
+def _compute_own_gaps(components: Mapping[str, Spheres], q: Floats, pairs: Pairs) -> Floats:
     """Of pairs of components [..., P]."""
     if not pairs:
         return np.empty((*q.shape[:-1], 0))
-    components = compute_components(collision, q, Ts_world)
     radii = np.concatenate([own for _, own in components.values()])[:, None]
     centres = np.concatenate([own for own, _ in components.values()], axis=-2)
     x, y, z = np.ascontiguousarray(
@@ -125,36 +163,44 @@ def _compute_own_gaps(
     return np.ascontiguousarray(gaps.T).reshape(*q.shape[:-1], len(pairs))
 
 
-def compute_world_gaps(
-    collision: CollisionModel,
-    q: Floats,
-    Ts_world: Mapping[str, Floats] | None = None,
-    *,
-    some: Sequence[str] | None = None,
-) -> Floats:
+def compute_world_gaps(collision: CollisionModel, q: Floats, Ts_world: Mapping[str, Floats] | None = None) -> Floats:
     """Smallest distance - R of every component and obstacle [..., C O] in m, less what is asked for beyond the safe
-    distance: so all are compared with that. inf where they are not compared. `some`: of these components only, also
-    of those that no joint moves.
+    distance: so all are compared with that. inf where they are not compared.
     """
-    Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
-    placed, obstacles = compute_components(collision, q, Ts_world), collision.obstacles
-    components = {name: placed[name] for name in (placed if some is None else some)}
+    return _compute_world_gaps(collision, q, compute_components(collision, q, Ts_world))
+
+
+def _compute_world_gaps(collision: CollisionModel, q: Floats, components: Mapping[str, Spheres]) -> Floats:
+    groups, less_m = list_world(collision)
+    several, count = q.shape[:-1], len(collision.obstacles)
     if not (components and q.size):
-        return np.empty((*q.shape[:-1], len(components) * len(obstacles)))
+        return np.empty((*several, len(components) * count))
     centres = np.concatenate([own for own, _ in components.values()], axis=-2)
     radii = np.concatenate([own for _, own in components.values()])
     firsts = np.cumsum([0, *(len(own) for _, own in components.values())])[:-1]
-    extras_m = collision.extras_m[len(collision.pairs) :].reshape(-1, len(obstacles))
-    extras_m = extras_m[[collision.components.index(name) for name in components]]
-    is_fixed = np.array([some is None and name in collision.fixed_components for name in components])
-    gaps = np.empty((*q.shape[:-1], len(components), len(obstacles)))
-    for other, obstacle in enumerate(obstacles):
-        T = Ts_world[obstacle.frame].reshape(-1, 4, 4)[0]  # frames of obstacles stay in their place
-        distance = measure_obstacle(obstacle, (centres - T[:3, 3]) @ T[:3, :3]) - radii
-        is_left_out = is_fixed | np.array([name in obstacle.ignore for name in components])
-        nearest = np.minimum.reduceat(distance, firsts, axis=-1) - extras_m[:, other]
-        gaps[..., other] = np.where(is_left_out, np.inf, nearest)
-    return gaps.reshape(*q.shape[:-1], len(components) * len(obstacles))
+    P, nearest = centres.reshape(-1, 3), np.full((count, centres.size // (3 * len(radii)), len(components)), np.inf)
+    for group in groups:
+        for owners, distances in group.measure(P):
+            gaps = distances.reshape(len(owners), -1, len(radii)) - radii
+            gaps = np.minimum.reduceat(gaps, firsts, axis=-1)
+            starts = np.flatnonzero(np.diff(owners, prepend=-1))
+            each, gaps = owners[starts], np.minimum.reduceat(gaps, starts, axis=0)
+            nearest[each] = np.minimum(nearest[each], gaps)
+    return (nearest.transpose(1, 2, 0) - less_m).reshape(*several, len(components) * count)
+
+
+@lru_cache(maxsize=64)
+def list_world(collision: CollisionModel) -> tuple[tuple[Alike, ...], Floats]:
+    """Solids in their groups; and what each component and obstacle [C, O] are asked for beyond the safe distance, m:
+    -inf where they are not compared.
+    """
+    frames, obstacles = compute_frames(collision.robot, collision.robot.home), collision.obstacles
+    less_m = collision.extras_m[len(collision.pairs) :].reshape(-1, len(obstacles)).copy()
+    for component, name in enumerate(collision.components):
+        if name in collision.fixed_components:
+            less_m[component] = -np.inf
+        less_m[component, [name in obstacle.ignore for obstacle in obstacles]] = -np.inf
+    return list_alike(obstacles, frames), less_m
 
 
 AT_ONCE = 5_000  # distances: from 128 kB on what is freed goes back to the system, and comes again page by page

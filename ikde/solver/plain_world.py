@@ -5,12 +5,13 @@ minus the depth: how far it is to the nearest point of the surface. Of an obstac
 of theirs, so inside two that overlap the depth is that of one of them.
 """
 
-from collections.abc import Callable, Mapping
-from functools import lru_cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache, reduce
+from typing import NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.hull import measure_normals
 from ikde.model.solids import Solid, SolidKind
 from ikde.model.world import Obstacle
@@ -28,30 +29,91 @@ def measure_obstacle(obstacle: Obstacle, P: Floats) -> Floats:
 def measure_solid(solid: Solid, P: Floats) -> Floats:
     """Signed distances [...] in m of points `P` [..., 3] in the obstacle's frame from a solid."""
     R, p = solid.T_obstacle_solid[:, :3], solid.T_obstacle_solid[:, 3]
-    return _MEASURES[solid.kind](solid, (P - p) @ R)
+    if solid.kind in _ALIKE:
+        return _ALIKE[solid.kind](np.array(solid.size_m), (P - p) @ R)
+    return _SINGLE[solid.kind](solid, (P - p) @ R)
 
 
-def _sphere(solid: Solid, P: Floats) -> Floats:
-    return np.linalg.norm(P, axis=-1) - solid.size_m[0]
+class Alike(NamedTuple):
+    """Solids of one kind that are measured together, in the order of their obstacles."""
+
+    kind: SolidKind
+    owners: Ints
+    """[S] which obstacle each belongs to."""
+    R: Floats
+    """[S, 3, 3] its axes in the world."""
+    p: Floats
+    """[S, 1, 3] its place in the world, m."""
+    sizes: Floats
+    """[S, 1, k] m."""
+    solid: Solid | None
+    """If it is a kind that is measured one by one."""
+
+    def measure(self, P: Floats) -> Iterator[tuple[Ints, Floats]]:
+        """Owners [s] and distances [s, K] of points `P` [K, 3] in the world, m, so many at a time as a cache holds."""
+        several = max(1, CHUNK // len(P))
+        for first in range(0, len(self.owners), several):
+            some = slice(first, first + several)
+            own = (P - self.p[some]) @ self.R[some]
+            if self.solid is None:
+                yield self.owners[some], _ALIKE[self.kind](self.sizes[some], own)
+            else:
+                yield self.owners[some], _SINGLE[self.kind](self.solid, own)
 
 
-def _box(solid: Solid, P: Floats) -> Floats:
-    beyond = np.abs(P) - 0.5 * np.array(solid.size_m)
-    outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
-    return outside + np.minimum(beyond.max(axis=-1), 0.0)
+def list_alike(obstacles: Sequence[Obstacle], Ts_world_frame: Mapping[str, Floats]) -> tuple[Alike, ...]:
+    """All solids of obstacles in the frames [4, 4] that they stand in."""
+    found: dict[tuple[SolidKind, int], list[tuple[int, Floats, Solid]]] = {}
+    for owner, obstacle in enumerate(obstacles):
+        T = Ts_world_frame[obstacle.frame][:3]
+        T_world_obstacle = _compose(T, obstacle.T_world_obstacle)
+        for solid in obstacle.solids:
+            group = solid.kind, -1 if solid.kind in _ALIKE else id(solid)
+            found.setdefault(group, []).append((owner, _compose(T_world_obstacle, solid.T_obstacle_solid), solid))
+    groups = []
+    for (kind, single), rows in found.items():
+        owners, Ts, solids = zip(*rows, strict=True)
+        T, sizes = np.array(Ts), np.array([solid.size_m for solid in solids])[:, None]
+        own = None if single < 0 else solids[0]
+        groups.append(Alike(kind, np.array(owners), T[:, :, :3], T[:, None, :, 3], sizes, own))
+    return tuple(groups)
 
 
-def _cylinder(solid: Solid, P: Floats) -> Floats:
-    radius, height = solid.size_m
-    beyond = np.stack([np.hypot(P[..., 0], P[..., 1]) - radius, np.abs(P[..., 2]) - 0.5 * height], axis=-1)
-    return np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) + np.minimum(beyond.max(axis=-1), 0.0)
+def _compose(one: Floats, other: Floats) -> Floats:
+    """The product of two poses [3, 4]."""
+    T = one[:, :3] @ other
+    T[:, 3] += one[:, 3]
+    return T
 
 
-def _capsule(solid: Solid, P: Floats) -> Floats:
-    radius, height = solid.size_m
-    on_axis = np.zeros_like(P)
-    on_axis[..., 2] = np.clip(P[..., 2], -0.5 * height, 0.5 * height)
-    return np.linalg.norm(P - on_axis, axis=-1) - radius
+def _sphere(size: Floats, P: Floats) -> Floats:
+    return np.sqrt(np.einsum("...i,...i->...", P, P)) - size[..., 0]
+
+
+def _box(size: Floats, P: Floats) -> Floats:
+    beyond = np.abs(P) - 0.5 * size
+    return _combine(beyond[..., 0], beyond[..., 1], beyond[..., 2])
+
+
+def _cylinder(size: Floats, P: Floats) -> Floats:
+    across, along = np.hypot(P[..., 0], P[..., 1]) - size[..., 0], np.abs(P[..., 2]) - 0.5 * size[..., 1]
+    return _combine(across, along)
+
+
+def _combine(*beyond: Floats) -> Floats:
+    """From how far points are beyond each pair of faces, or a round one; inside all of them the nearest counts."""
+    outside = np.sqrt(sum(np.square(np.maximum(one, 0.0)) for one in beyond))
+    return outside + np.minimum(reduce(np.maximum, beyond), 0.0)
+
+
+def _capsule(size: Floats, P: Floats) -> Floats:
+    half = 0.5 * size[..., 1]
+    z = P[..., 2] - np.clip(P[..., 2], -half, half)
+    return np.sqrt(np.square(P[..., 0]) + np.square(P[..., 1]) + np.square(z)) - size[..., 0]
+
+
+def _half_space(size: Floats, P: Floats) -> Floats:
+    return P[..., 2].copy()
 
 
 def _cone(solid: Solid, P: Floats) -> Floats:
@@ -63,10 +125,6 @@ def _cone(solid: Solid, P: Floats) -> Floats:
     side = (tip - rim)[0] * (point - rim)[..., 1] - (tip - rim)[1] * (point - rim)[..., 0]  # > 0 inside
     inside = (point[..., 1] > -0.5 * height) & (side > 0.0)
     return np.where(inside, -distance, distance)
-
-
-def _half_space(solid: Solid, P: Floats) -> Floats:
-    return P[..., 2].copy()
 
 
 def _hull(solid: Solid, P: Floats) -> Floats:
@@ -88,16 +146,15 @@ def _cloud(solid: Solid, P: Floats) -> Floats:
     return nearest - solid.size_m[0]
 
 
-_MEASURES: Mapping[SolidKind, Callable[[Solid, Floats], Floats]] = {
+_ALIKE: Mapping[SolidKind, Callable[[Floats, Floats], Floats]] = {
     "sphere": _sphere,
     "box": _box,
     "cylinder": _cylinder,
     "capsule": _capsule,
-    "cone": _cone,
     "half_space": _half_space,
-    "hull": _hull,
-    "cloud": _cloud,
 }
+"""By sizes [..., k], of one solid or of many, and points [..., 3] in their own frames."""
+_SINGLE: Mapping[SolidKind, Callable[[Solid, Floats], Floats]] = {"cone": _cone, "hull": _hull, "cloud": _cloud}
 
 
 def _to_segment(point: Floats, a: Floats, b: Floats) -> Floats:

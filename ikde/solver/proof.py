@@ -1,11 +1,13 @@
-"""Which targets are proved to be out of reach, beyond the tolerances that were asked for."""
+"""Which targets are proved to have no solution within the tolerances: by bounds, by branches, by the tool's body."""
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.bounds import find_bounds
 from ikde.model.target import Target, Targets
+from ikde.solver.branches import rule_out_by_branches
 from ikde.solver.problem import Problem
+from ikde.solver.tool_body import rule_out_by_tool
 
 
 def prove(problem: Problem, target: Target) -> tuple[float, float]:
@@ -30,3 +32,11 @@ def prove_many(problem: Problem, targets: Targets) -> tuple[Floats, Floats]:
         np.where(far_m > settings.position_tolerance_m, far_m, 0.0),
         np.where(off_rad > settings.orientation_tolerance_rad, off_rad, 0.0),
     )
+
+
+def rule_out(problem: Problem, targets: Targets) -> Ints:
+    """Why targets that bounds leave open have no solution [T]: index into `STOP_REASONS`; -1: they may have one."""
+    ruled_out = rule_out_by_branches(problem, targets)
+    rows = np.flatnonzero(ruled_out < 0)
+    ruled_out[rows] = rule_out_by_tool(problem, targets.take(rows))
+    return ruled_out

@@ -11,7 +11,6 @@ import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, REACHED, Ints
 from ikde.model.target import KINDS, Target, Targets
-from ikde.solver.branches import rule_out
 from ikde.solver.cancellation import get_cancel_check
 from ikde.solver.choice import Budgets, choose_budgets
 from ikde.solver.engine_table import ENGINES, NAMES
@@ -20,7 +19,7 @@ from ikde.solver.engines.search_state import SearchState, make_search_state
 from ikde.solver.few import answer_few
 from ikde.solver.fixed import grade_fixed
 from ikde.solver.problem import Problem
-from ikde.solver.proof import prove_many
+from ikde.solver.proof import prove_many, rule_out
 from ikde.solver.referee import Referee
 
 REFUSALS = 16  # of one row by the grader, before the next engine takes over
@@ -124,7 +123,7 @@ def make_engine(name: str, inputs: SearchInputs) -> Engine:
 
 
 def _exclude(problem: Problem, targets: Targets, found: SearchState) -> None:
-    """Find out which of the unreached targets are out of reach, or reached by no branch of the closed form."""
+    """Find out which of the unreached targets are out of reach, or have no solution for another reason."""
     rows = np.flatnonzero(found.counts[:, REACHED] == 0)
     if len(rows):
         found.excess_m[rows], found.excess_rad[rows] = prove_many(problem, targets.take(rows))

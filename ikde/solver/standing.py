@@ -32,7 +32,7 @@ class StandingObstacle:
     """Nearer than is asked for, in every configuration."""
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def find_standing_obstacles(collision: CollisionModel) -> tuple[StandingObstacle, ...]:
     """Components and obstacles that are as far from each other in several random configurations.
 

@@ -9,7 +9,7 @@ from ikde.kernels.arrays import REACHED
 from ikde.model.closed_form import find_still_arm, find_ur_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Targets
-from ikde.solver.branches import find_beyond, find_motions, judge_branches, rule_out, tell_branches
+from ikde.solver.branches import find_beyond, find_motions, judge_branches, rule_out_by_branches, tell_branches
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.result import STOP_REASONS
 from ikde.solver.search import search
@@ -51,14 +51,14 @@ def others(rng, count):
 @each_question
 def test_what_a_configuration_reaches_within_the_tolerances_is_not_ruled_out(problem, rng):
     targets = beside(problem.robot, some_free(problem, rng, 400), rng)
-    assert (rule_out(problem, targets) == -1).all()
+    assert (rule_out_by_branches(problem, targets) == -1).all()
 
 
 def test_what_is_reached_from_the_very_limits_is_not_ruled_out(rng):
     """Each pose has one configuration inside, and a pose beside it may have none."""
     for q in free_rows(UR5, rng, 40):
         problem = problem_of(UR5).with_ranges(q - 1e-9, q)
-        assert (rule_out(problem, beside(UR5, np.repeat(q[None], 10, axis=0), rng)) == -1).all()
+        assert (rule_out_by_branches(problem, beside(UR5, np.repeat(q[None], 10, axis=0), rng)) == -1).all()
 
 
 def test_what_touches_almost_is_not_ruled_out(rng):
@@ -74,7 +74,7 @@ def test_what_touches_almost_is_not_ruled_out(rng):
         free, hit = np.where(is_hit, free, middle), np.where(is_hit, middle, hit)
     assert (compute_gaps(collision, free).min(axis=1) < collision.limit_m + 1e-6).all()
     for share in (0.0, 0.999):
-        assert (rule_out(problem, beside(UR5, free, rng, share)) == -1).all()
+        assert (rule_out_by_branches(problem, beside(UR5, free, rng, share)) == -1).all()
 
 
 @each_question
@@ -82,7 +82,7 @@ def test_what_touches_almost_is_not_ruled_out(rng):
 def test_nearly_all_that_no_engine_reaches_is_ruled_out(problem, rng, count, attempts):
     targets = others(rng, count)
     reached = search(problem, targets, seed=1, streams=range(count), attempts=attempts).counts[:, REACHED] == 1
-    ruled_out = rule_out(problem, targets) >= 0
+    ruled_out = rule_out_by_branches(problem, targets) >= 0
     assert not (reached & ruled_out).any()
     assert ruled_out[~reached].mean() > 0.95
     assert ruled_out.sum() > count / 6
@@ -91,7 +91,7 @@ def test_nearly_all_that_no_engine_reaches_is_ruled_out(problem, rng, count, att
 def test_all_collisions_are_named_and_counted_as_plain_numpy_sees_them(rng):
     problem = problem_of(UR5)
     targets = make_targets(UR5, random_q(UR5, rng, 400), "pose")
-    ruled_out, names = rule_out(problem, targets), [str(reason) for reason in STOP_REASONS]
+    ruled_out, names = rule_out_by_branches(problem, targets), [str(reason) for reason in STOP_REASONS]
     seen = np.flatnonzero(ruled_out == names.index("collision"))
     assert len(seen) > 5
     for row in seen.tolist():
@@ -116,7 +116,7 @@ def test_joints_that_stand_in_the_way_are_named(rng):
     Q = random_q(UR5, rng, 60)
     Q[:, 4] = rng.uniform(1.2, 1.9, 60)
     targets = make_targets(UR5, Q, "pose")
-    ruled_out = rule_out(narrow, targets)
+    ruled_out = rule_out_by_branches(narrow, targets)
     assert (ruled_out == [str(reason) for reason in STOP_REASONS].index("limits")).mean() > 0.8
     for row in np.flatnonzero(ruled_out >= 0)[:20].tolist():
         reason, blocking = tell_branches(narrow, targets[row])
@@ -130,7 +130,7 @@ def test_joints_that_stand_in_the_way_are_named(rng):
 
 def test_a_pose_beyond_reach_has_no_configuration():
     target = ikde.Target((0.0, 0.0, 3.0), R_world_tool=np.eye(3))
-    assert STOP_REASONS[rule_out(problem_of(UR5), Targets.of([target]))[0]] == "out_of_reach"
+    assert STOP_REASONS[rule_out_by_branches(problem_of(UR5), Targets.of([target]))[0]] == "out_of_reach"
     assert tell_branches(problem_of(UR5), target) == (
         "no solution, proved: no configuration of the arm, whatever its limits, has this pose",
         {},
@@ -141,12 +141,12 @@ def test_a_pose_beyond_reach_has_no_configuration():
 def test_nothing_is_ruled_out_but_poses_of_an_arm_that_alone_may_move():
     far = Targets([[0.0, 0.0, 9.0]]), Targets([[0.0, 0.0, 9.0]], axis_world_tool=[[0.0, 0.0, 1.0]])
     for targets in far:
-        assert rule_out(problem_of(UR5), targets).tolist() == [-1]
+        assert rule_out_by_branches(problem_of(UR5), targets).tolist() == [-1]
     pose = Targets([[0.0, 0.0, 9.0]], R_world_tool=np.eye(3)[None])
-    assert rule_out(problem_of(UR5), pose).tolist() != [-1]
+    assert rule_out_by_branches(problem_of(UR5), pose).tolist() != [-1]
     for problem in (problem_of(QIAO), problem_of(QIAO, freeze=["d_x", "d_y"]), problem_of(ikde.load_robot("panda"))):
         assert find_still_arm(problem.robot, problem.lower, problem.upper) is None
-        assert rule_out(problem, pose).tolist() == [-1]
+        assert rule_out_by_branches(problem, pose).tolist() == [-1]
 
 
 @pytest.mark.parametrize("problem", QUESTIONS[:2], ids=["ur5", "qiao2021"])

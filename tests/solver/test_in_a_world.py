@@ -146,11 +146,12 @@ def test_a_world_alone_comes_with_the_default_detector():
 
 def test_a_reason_names_the_obstacle_and_what_touches_it(rng):
     q = free_q(3)[2]
-    target, tool = meet(ROBOT, q, "position"), ikde.forward(ROBOT, q)[ROBOT.tool][:3, 3]
-    model = OWN.in_world(make_world([post(tool[0], tool[1], 0.02, "pole")]))
-    for method, who in (("memetic", "most often hand"), ("de", "the best by hand")):
+    target, arm = meet(ROBOT, q, "position"), compute_components(OWN, q)["arm"][0][-1]
+    knob = make_obstacle("knob", [make_solid("sphere", (0.06,))], np.c_[np.eye(3), arm])
+    model = OWN.in_world(make_world([knob]))
+    for method, who in (("memetic", "most often arm"), ("de", "the best by arm")):
         reason = ikde.solve(ROBOT, target, collision=model, method=method).reason
-        assert re.search(rf"blocked by (.*, )?pole \(\d+ of \d+, {who}\)", reason), reason
+        assert re.search(rf"blocked by (.*, )?knob \(\d+ of \d+, {who}\)", reason), reason
 
 
 def test_distinct_solutions_are_each_free(rng):
