@@ -24,7 +24,7 @@ class ImportOptions:
     x, y and a continuous yaw under the root."""
     base_reach_m: float = REACH_M
     """Limits of x and y of a base, either way."""
-    hold: Mapping[str, float] = field(default_factory=dict)
+    hold: Mapping[str, float] = field(default_factory=dict, hash=False)
     """Joints that stay where they are, at so many m or rad."""
     srdf: Path | None = None
     package_paths: tuple[Path, ...] = ()

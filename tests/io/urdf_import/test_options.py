@@ -31,3 +31,9 @@ def test_held_joints_are_names_with_values():
 def test_anything_else_is_refused(word):
     with pytest.raises(InputError, match="hold: expected JOINT=VALUE, in m or rad, got"):
         read_holds([word])
+
+
+def test_options_are_equal_by_value_and_may_be_keys():
+    one, other = ImportOptions(hold={"grip": 0.02}), ImportOptions(hold={"grip": 0.02})
+    assert {one: "found"}[other] == "found"
+    assert one != ImportOptions(hold={"grip": 0.03})
