@@ -118,6 +118,8 @@ class _Helpful:
         from typer import rich_utils
 
         rich_utils.MAX_WIDTH = get_terminal_size().columns
+        if os.environ.get("TERM", "").lower() in ("dumb", "unknown"):  # rich takes such a terminal for 80 columns
+            rich_utils.FORCE_TERMINAL = False
         rich_utils.COLOR_SYSTEM = "standard" if use_color() else None
         super().format_help(ctx, formatter)  # type: ignore[misc]
 
