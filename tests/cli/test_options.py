@@ -238,6 +238,9 @@ def test_a_robot_that_the_environment_names_wrongly_is_refused_by_its_name(refus
 def test_a_wrong_word_about_compiling_is_refused_by_every_command(refuse, monkeypatch, command):
     monkeypatch.setenv("IKDE_COMPILE", "foo")
     assert refuse(*command) == "ikde: $IKDE_COMPILE: expected background, wait, never, got 'foo'\n"
+    monkeypatch.setenv("IKDE_COMPILE", "")
+    monkeypatch.setenv("IKDE_KERNELS", "junk")
+    assert refuse(*command) == "ikde: $IKDE_KERNELS: expected written or tables, got 'junk'\n"
 
 
 def test_weights_of_a_joint_that_is_none_name_the_joints(refuse):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ikde.errors import FileError
+from ikde.errors import FileError, InputError
 from ikde.io.moveit_scene import read_moveit_scene
 from ikde.io.scene_values import Reading
 from ikde.io.world_file import load_world
@@ -87,3 +87,9 @@ def test_nothing_is_written_where_nothing_can_be(tmp_path):
         write_world(world, tmp_path / "b.yaml")
     with pytest.raises(FileError, match="expected the name of a file"):
         write_world(world, "")
+
+
+def test_what_is_no_world_is_refused(tmp_path):
+    with pytest.raises(InputError, match="world: expected a World, got 3"):
+        write_world(3, tmp_path / "a.yaml")
+    assert list(tmp_path.iterdir()) == []

@@ -12,7 +12,8 @@ from ikde.model import pack_world as module
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.pack_world import find_fixed_frames, pack_world
-from ikde.model.world import make_world
+from ikde.model.solids import make_solid
+from ikde.model.world import make_obstacle, make_world
 from ikde.solver.plain import compute_components
 from ikde.solver.plain_world import measure_obstacle
 from tests.solids import CONVEX, random_world
@@ -91,3 +92,22 @@ def test_without_an_obstacle_nothing_is_hit():
     arrays, (bounds, centres) = unpack_world.plain(pack(make_world([]))), place(ROBOT.home)
     assert find_hit.plain(arrays, COLLISION.arrays, bounds, centres) == -1
     assert measure_world.plain(arrays, COLLISION.arrays, centres, np.inf) == (np.inf, -1)
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.3], ids=["near", "far"])
+def test_small_solids_that_are_asked_for_at_a_distance_are_found(fewest, rng, kept):
+    """Where all that is asked for comes from one component's margin, cells and bounds still hold what is near."""
+    asked = np.where(np.arange(len(COMPONENTS)) == len(COMPONENTS) - 1, kept, 0.0)
+    solids = {f"s{k}": make_solid("sphere", [0.002]) for k in range(40)}
+    verdicts = []
+    for q in draw(rng, 25):
+        places = rng.uniform(-1.0, 1.0, (len(solids), 3))
+        posed = [np.column_stack([np.eye(3), p]) for p in places]
+        world = make_world(make_obstacle(name, [solids[name]], T) for name, T in zip(solids, posed, strict=True))
+        arrays, (bounds, centres) = unpack_world.plain(pack(world, asked)), place(q)
+        gaps = plain_gaps(world, q) + (KEPT - asked)[:, None]
+        with np.errstate(all="ignore"):
+            hit = find_hit.plain(arrays, COLLISION.arrays, bounds, centres)
+        assert (hit >= 0) == (gaps.min() <= 0.0)
+        verdicts.append(hit >= 0)
+    assert any(verdicts)

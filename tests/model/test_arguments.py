@@ -88,7 +88,7 @@ def test_a_path_is_followed_by_a_robot_of_that_name():
         (None, "got None"),
         (type("Pose", (), {"A": T}), "got <class"),
         ((1.0, 2.0), r"got shape \(2,\)"),
-        (T[:3], r"got shape \(3, 4\)"),
+        (T[:3], r"a pose \[4, 4\], got shape \(3, 4\)"),
         (T[:3, :3], r"got shape \(3, 3\); rotations have no position: Target\(p, R_world_tool=R\)"),
         (SimpleNamespace(as_matrix=lambda: T[:3, :3]), r"got shape \(3, 3\); rotations have no position"),
         ((1.0, np.nan, 2.0), "expected finite numbers"),

@@ -179,3 +179,17 @@ def test_an_unknown_default_detector():
 
 def test_no_detector_may_be_the_default():
     assert CollisionModel.of(check_robot(make_draft(default_detector="none"))).detector is None
+
+
+@pytest.mark.parametrize("given", [[1], 3, "x"])
+def test_distances_of_components_come_as_a_mapping(given):
+    world = ikde.load_world({"obstacles": {"ball": {"sphere": {"radius": 1.0}, "position": [5, 0, 0]}}})
+    with pytest.raises(InputError, match=r"^margins_m: expected distances by component, got "):
+        CollisionModel.of("ur5").in_world(world, 0.0, given)
+
+
+def test_models_in_equal_worlds_are_equal_also_pickled():
+    obstacles = {"obstacles": {"ball": {"sphere": {"radius": 1.0}, "position": [5, 0, 0]}}}
+    model, again = (CollisionModel.of("ur5").in_world(ikde.load_world(obstacles), 0.1) for _ in range(2))
+    assert model == again == pickle.loads(pickle.dumps(model))
+    assert hash(model) == hash(again)

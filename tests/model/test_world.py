@@ -118,7 +118,14 @@ def test_worlds_are_equal_by_value_also_those_that_travelled(world):
         assert not other["hull"].T_world_obstacle.flags.writeable
         assert not other["hull"].solids[0].points.flags.writeable
     bigger = make_obstacle("hull", [make_solid("hull", points=[[0, 0, 0], [2, 0, 0], [0, 1, 0], [0, 0, 1]])])
-    others = [world.remove("hull"), before.add(bigger), world.move("hull", place(1)), world.switch(tools=False)]
+    grouped = make_obstacle("hull", hull.solids, group="tools")
+    others = [
+        before.add(grouped),
+        world.remove("hull"),
+        before.add(bigger),
+        world.move("hull", place(1)),
+        world.switch(tools=False),
+    ]
     assert all(world != other for other in others)
     assert world != 3
 

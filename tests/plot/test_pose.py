@@ -118,3 +118,13 @@ def test_a_metre_is_a_metre_in_every_direction(frames):
 
 def test_axes_are_named_with_their_unit(frames):
     assert [frames.get_xlabel(), frames.get_ylabel(), frames.get_zlabel()] == ["x [m]", "y [m]", "z [m]"]
+
+
+def test_a_figure_is_written_through_a_link_and_never_in_part(tmp_path, qiao):
+    (tmp_path / "link.svg").symlink_to("aim.svg")
+    save_figure(plot_frames(draw_pose(CollisionModel.of(qiao, "none"), qiao.home)), tmp_path / "link.svg")
+    assert (tmp_path / "link.svg").is_symlink()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["aim.svg", "link.svg"]
+    (tmp_path / "folder.svg").mkdir()
+    with pytest.raises(FileError, match="no ordinary file"):
+        save_figure(plot_frames(draw_pose(CollisionModel.of(qiao, "none"), qiao.home)), tmp_path / "folder.svg")

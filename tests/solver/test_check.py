@@ -40,8 +40,10 @@ def test_a_pair_collides_exactly_from_the_safe_distance_on(name, detector, rng):
             (max(0.0, np.nextafter(pair.clearance_m, -np.inf)), False),
         ):
             judge = replace(robot.detectors[detector], safe_distance_m=float(distance))
-            found = {(other.a, other.b): other.collides for other in ikde.check(robot, q, judge).pairs}
+            result = ikde.check(robot, q, judge)
+            found = {(other.a, other.b): other.collides for other in result.pairs}
             assert found[pair.a, pair.b] is collides
+            assert result.collision is any(found.values())
 
 
 def test_collision_means_that_some_pair_collides(qiao, rng):
@@ -161,3 +163,49 @@ def test_what_was_checked_stays_what_it_is(qiao, travel):
     for column in (*columns, many.collision.data):
         with pytest.raises(ValueError, match="read-only"):
             column[0] = column[1]
+
+
+def test_a_check_in_a_world_reports_distances_and_compares_them_with_what_is_asked_for():
+    """By a safe distance above 0, a margin of the obstacle, one of all components, and one of a single component."""
+    robot = ikde.load_robot("ur5")
+    detector = replace(robot.detectors["default"], safe_distance_m=0.004)
+    world = ikde.load_world({"obstacles": {"wall": {"box": [1, 1, 1], "position": [2, 1, 1], "margin": 0.01}}})
+    q = np.array([0.0, -1.0, 1.0, 0.0, 0.5, 0.0])
+    alone = ikde.CollisionModel.of(robot, detector)
+    (wall,) = ikde.check(robot, q, alone.in_world(world)).obstacles
+    assert wall.margin_m == 0.01
+    for more, collides in ((-1e-9, False), (0.0, False), (1e-9, True)):
+        room = wall.clearance_m - 0.01 + more
+        ignored = {name: 0.0 for name in alone.components if name != wall.component}
+        models = [
+            alone.in_world(world, 0.0, {wall.component: room}),
+            alone.in_world(world, room, ignored),
+            alone.in_world(world, room, {**ignored, wall.component: room}),
+        ]
+        for model in models:
+            one, many = ikde.check(robot, q, model), ikde.check_many(robot, q[None], model)
+            place = many.pairs.index((wall.component, "wall"))
+            assert many.gaps_m[0, place] == pytest.approx(wall.clearance_m, abs=1e-12)
+            assert one.obstacles[0].margin_m == pytest.approx(room + 0.01)
+            if more:
+                assert (one.collision, bool(many.collision[0]), one.obstacles[0].collides) == (collides,) * 3
+            assert one.clearance_m == pytest.approx(many.clearance_m[0], abs=1e-12)
+            if collides:
+                assert one.closest_pair == (wall.component, "wall")
+                assert one.clearance_m == pytest.approx(wall.clearance_m, abs=1e-12)
+        kept_by_none = alone.in_world(world, room + 1.0, dict.fromkeys(alone.components, 0.0))
+        assert ikde.check(robot, q, kept_by_none).collision is False
+
+
+def test_what_stands_nearer_than_is_asked_for_is_refused_also_without_touching():
+    world = ikde.load_world({"obstacles": {"floor": {"half_space": {}, "position": [0, 0, -0.5]}}})
+    model = ikde.CollisionModel.of("ur5").in_world(world, 0.0)
+    assert ikde.check("ur5", [0, -1, 0, 0, 0, 0], model).collision is not None
+    with pytest.raises(InputError, match=r"base is .* mm from floor in every configuration"):
+        ikde.check("ur5", np.zeros(6), ikde.CollisionModel.of("ur5").in_world(world, 0.6))
+
+
+def test_surface_points_are_not_compared_with_a_world():
+    world = ikde.load_world({"obstacles": {"ball": {"sphere": {"radius": 1.0}, "position": [5, 0, 0]}}})
+    with pytest.raises(InputError, match="not compared with a world"):
+        ikde.check_surface("ur5", np.zeros(6), world)

@@ -1,6 +1,6 @@
 """What the solves cost: attempts and wall time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ikde.plot.charts import Sample, plot_cdf
 from ikde.plot.images import to_svg
 from ikde.plot.style import Axis
 from ikde.report.batch_page.answers import ArmAnswers, RunAnswers
-from ikde.report.numbers import fixed, significant
+from ikde.report.numbers import fixed, seconds
 from ikde.report.page import Column, Figure, Gallery, Section, Table
 
 MAX_CURVES = 6  # in one chart: there are six looks
@@ -48,10 +48,10 @@ def _make_table(run: RunAnswers) -> Table:
         columns=(
             Column("arm", align="left"),
             *(Column(title, group="attempts") for title in spreads if kept),
-            *(Column(title, "ms", group="time") for title in spreads),
+            *(Column(title, group="time") for title in spreads),
         ),
         rows=tuple(
-            (arm.name, *(_spread(arm, "attempts", 1.0, 0) if kept else ()), *_spread_time(arm)) for arm in run.arms
+            (arm.name, *(_spread(arm, "attempts", _count) if kept else ()), *_spread_time(arm)) for arm in run.arms
         ),
         caption="What a solve costs",
         note="Over all solves, also those that did not reach their target. The time is a solve's wall time while all "
@@ -59,17 +59,18 @@ def _make_table(run: RunAnswers) -> Table:
     )
 
 
+def _count(value: float) -> str:
+    return fixed(value, 0)
+
+
 def _spread_time(arm: ArmAnswers) -> tuple[str, ...]:
-    median, *others = _spread(arm, "solve_seconds", 1e3, None)
+    median, *others = _spread(arm, "solve_seconds", seconds)
     return median, *(others if arm.timed_alone else ["–"] * len(others))
 
 
-def _spread(arm: ArmAnswers, column: str, factor: float, digits: int | None) -> tuple[str, ...]:
+def _spread(arm: ArmAnswers, column: str, write: Callable[[float], str]) -> tuple[str, ...]:
     spread = compute_spread(arm.numbers.get(column, ()))
-    if spread is None:
-        return ("–",) * 3
-    values = [factor * value for value in (spread.median, spread.p95, spread.max)]
-    return tuple(significant(value) if digits is None else fixed(value, digits) for value in values)
+    return ("–",) * 3 if spread is None else tuple(map(write, (spread.median, spread.p95, spread.max)))
 
 
 def _draw(run: RunAnswers) -> list[Figure]:
