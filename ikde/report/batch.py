@@ -1,7 +1,8 @@
 """A batch for the terminal: what would run, and what came of it."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import pairwise
 from typing import Any
 
@@ -9,11 +10,11 @@ from ikde.batch.arm_summary import ArmSummary, TargetSummary, Unreached
 from ikde.batch.preview import Preview
 from ikde.batch.statistics import Rate, Spread
 from ikde.batch.summary import RunSummary
-from ikde.report.numbers import count_of, significant
+from ikde.report.numbers import count_of, seconds, significant
 from ikde.report.render import make_table, plain, render
 
 WIDTH = 160
-MAX_NAMED = 20  # unreached targets of an arm
+MAX_NAMED = 20  # unreached targets
 MAX_BLOCKERS = 5  # of an arm that are named
 MAX_TARGETS = 5  # that have rows of their own
 MAX_ARMS = 10  # that are named in a line
@@ -129,7 +130,7 @@ def _name_arms(names: Sequence[str]) -> str:
 
 
 def _arm_table(arms: Sequence[ArmSummary]) -> Any:
-    spreads = (">attempts median / p95 / max", ">ms median / p95 / max")
+    spreads = (">attempts median / p95 / max", ">time median / p95 / max")
     placed = any(arm.world is not None for arm in arms)
     heads = ("arm", "?method", "?detector", *(("?world",) if placed else ()))
     table = make_table(*heads, ">reached", ">rate (95 %)", ">plain numpy agrees", *spreads)
@@ -140,7 +141,7 @@ def _arm_table(arms: Sequence[ArmSummary]) -> Any:
             format_rate(arm.reached),
             _format_count(arm.verified) if arm.verified.total else "not checked",
             _format_spread(arm.attempts, "{:,.0f}".format),
-            _format_spread(arm.milliseconds, significant),
+            _format_spread(arm.milliseconds, lambda value_ms: seconds(1e-3 * value_ms)),
         )
     return table
 
@@ -166,27 +167,49 @@ def _target_table(arms: Sequence[ArmSummary]) -> Any:
     return table
 
 
-def _list_unreached(summary: RunSummary) -> list[str]:
+def _list_unreached(summary: RunSummary) -> list[Any]:
+    """Why, how often; and the first targets, each once for all arms that missed it for one reason."""
     if not summary.unreached:
         return []
-    reasons = [
-        f"{count:,} {reason.replace('_', ' ')} (arm {plain(arm.name)})"
-        for arm in summary.arms
-        for reason, count in arm.stop_reasons.items()
-        if reason != "reached"
-    ]
-    lines = [f"[bold]not reached[/]: {', '.join(reasons)}"]
-    lines += [
-        f"blocked most often by: {plain(_tell_blockers(arm))} (arm {plain(arm.name)})"
-        for arm in summary.arms
-        if arm.blockers
-    ]
-    for arm in summary.arms:
-        named = arm.listed[:MAX_NAMED]
-        more = arm.unreached_targets - len(named)
-        lines += (f"  {plain(_format_unreached(row, summary.repeats))}" for row in named)
-        lines += [f"  {plain(arm.name)}, and {count_of(more, 'more target')}"] if more else []
+    lines = [_reason_table(summary.arms)] if len(summary.arms) > 1 else _tell_reasons(summary.arms[0])
+    alike: dict[Unreached, list[str]] = {}
+    for row in sorted((row for arm in summary.arms for row in arm.listed), key=lambda row: row.target):
+        alike.setdefault(replace(row, arm=""), []).append(row.arm)
+    named = list(alike.items())[:MAX_NAMED]
+    lines += [f"  {plain(_format_unreached(row, arms, summary))}" for row, arms in named]
+    named_of = Counter(name for _, arms in named for name in arms)
+    left = [arm.unreached_targets - named_of[arm.name] for arm in summary.arms]
+    lines += [f"  and {_count_more(left)}"] if any(left) else []
     return [*lines, ""]
+
+
+def _count_more(left: Sequence[int]) -> str:
+    """How many more targets were not reached, by each arm."""
+    low, high = min(left), max(left)
+    if len(left) == 1:
+        return count_of(high, "more target")
+    return f"{low:,} to {high:,} more an arm" if low < high else f"{high:,} more an arm"
+
+
+def _tell_reasons(arm: ArmSummary) -> list[str]:
+    counts = [f"{count:,} {reason.replace('_', ' ')}" for reason, count in _reasons(arm).items()]
+    lines = [f"[bold]not reached[/]: {', '.join(counts)}"]
+    return [*lines, f"blocked most often by: {plain(_tell_blockers(arm))}"] if arm.blockers else lines
+
+
+def _reason_table(arms: Sequence[ArmSummary]) -> Any:
+    """How many solves of each arm were not reached for which reason, a column a reason."""
+    reasons = list(dict.fromkeys(reason for arm in arms for reason in _reasons(arm)))
+    blocked = ("blocked most often by",) if any(arm.blockers for arm in arms) else ()
+    table = make_table("arm", *(f">{reason.replace('_', ' ')}" for reason in reasons), *blocked, title="not reached")
+    for arm in arms:
+        counts = (f"{_reasons(arm).get(reason, 0):,}" for reason in reasons)
+        table.add_row(plain(arm.name), *counts, *(plain(_tell_blockers(arm)) for _ in blocked))
+    return table
+
+
+def _reasons(arm: ArmSummary) -> dict[str, int]:
+    return {reason: count for reason, count in arm.stop_reasons.items() if reason != "reached"}
 
 
 def _tell_blockers(arm: ArmSummary) -> str:
@@ -195,11 +218,12 @@ def _tell_blockers(arm: ArmSummary) -> str:
     return ", ".join(f"{name} {count:,}" for name, count in named) + (f" and {more} more" if more else "")
 
 
-def _format_unreached(row: Unreached, repeats: int) -> str:
-    number = f"target {row.target}"
+def _format_unreached(row: Unreached, arms: Sequence[str], summary: RunSummary) -> str:
+    number, repeats = f"target {row.target}", summary.repeats
     name = f" {row.name}" if row.name not in (None, number) else ""
     often = f", {row.missed:,} of {repeats:,} repeats, first repeat {row.repeat}" if repeats > 1 else ""
-    return f"{row.arm}, {number}{name}{often}: {row.reason or row.stop_reason}"
+    whose = f", {_name_arms(arms)}" if len(summary.arms) > len(arms) else ""
+    return f"{number}{name}{whose}{often}: {row.reason or row.stop_reason}"
 
 
 def _format_count(rate: Rate) -> str:

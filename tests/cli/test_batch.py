@@ -75,7 +75,7 @@ def test_a_target_that_is_not_reached_is_named_and_exits_with_1(cli, spec, tmp_p
     outcome = cli("batch", far(spec), "--out", tmp_path / "run")
     assert outcome.code == 1
     assert outcome.out.startswith("3 of 6 solves not reached by qiao2021\n")
-    assert outcome.out.count("  auto, target 1, 3 of 3 repeats, first repeat 0: out of reach: at least") == 1
+    assert outcome.out.count("  target 1, 3 of 3 repeats, first repeat 0: out of reach: at least") == 1
 
 
 def test_json_is_the_summary(cli, spec, tmp_path):

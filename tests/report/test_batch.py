@@ -86,7 +86,7 @@ def test_a_run_opens_with_the_verdict_and_ends_with_what_is_next():
 def test_each_arm_has_its_figures():
     text = format_run(SUMMARY)
     row = next(line for line in text.splitlines() if line.strip().startswith("plain [de]"))
-    for words in ("1,999 / 2,000", "100.0 % (99.7 to 100.0)", "1 / 3 / 12", "20.0 / 30.5 / 1,230"):
+    for words in ("1,999 / 2,000", "100.0 % (99.7 to 100.0)", "1 / 3 / 12", "20 ms / 30.5 ms / 1.23 s"):
         assert words in row
     assert "30 / 1,999" in text
     assert "31 / 32" in row
@@ -107,18 +107,35 @@ def test_what_was_not_checked_is_said():
 
 def test_unreached_targets_are_named_with_their_reason():
     text = format_run(SUMMARY)
-    assert "not reached: 1 out of reach (arm plain [de])" in text
-    assert "  plain [de], target 3 shelf [1], 1 of 4 repeats, first repeat 2: too far" in text
-    assert "more" not in text
-    assert "  plain [de], target 3 shelf [1]: too far" in format_run(replace(SUMMARY, repeats=1))
+    assert "not reached: 1 out of reach\n" in text
+    assert "  target 3 shelf [1], 1 of 4 repeats, first repeat 2: too far" in text
+    assert "  and " not in text
+    assert "  target 3 shelf [1]: too far" in format_run(replace(SUMMARY, repeats=1))
 
 
-def test_of_many_unreached_targets_twenty_an_arm_are_named():
+def test_of_many_unreached_targets_twenty_are_named():
     many = replace(ARM, unreached_targets=1234, listed=tuple(replace(LOST, target=k) for k in range(30)))
-    lines = format_run(replace(SUMMARY, arms=(many, replace(ARM, name="other")))).splitlines()
+    lines = format_run(
+        replace(SUMMARY, arms=(many, replace(ARM, name="other", listed=(replace(LOST, arm="other", target=0),))))
+    ).splitlines()
     named = [line for line in lines if "too far" in line]
-    assert len(named) == 21
-    assert "  plain [de], and 1,214 more targets" in lines
+    assert len(named) == 20
+    assert "  and 0 to 1,214 more an arm" in lines
+    assert "  and 1,214 more targets" in format_run(replace(SUMMARY, arms=(many,))).splitlines()
+    silent = replace(many, listed=())
+    assert "  and 1,234 more an arm" in format_run(replace(SUMMARY, arms=(silent, silent))).splitlines()
+
+
+def test_a_target_is_named_once_for_all_arms_that_missed_it_alike():
+    arms = [replace(ARM, name=name, listed=(replace(LOST, arm=name),)) for name in "abc"]
+    other = replace(ARM, name="d", stop_reasons={"world": 2}, listed=(replace(LOST, arm="d", reason="shelf"),))
+    text = format_run(replace(SUMMARY, repeats=1, arms=(*arms, other)))
+    assert "  target 3 shelf [1], arms a, b, c: too far\n  target 3 shelf [1], arm d: shelf\n" in text
+    table = [line.split() for line in text.splitlines()]
+    assert ["arm", "out", "of", "reach", "world"] in table
+    assert ["a", "1", "0"] in table
+    assert ["d", "0", "2"] in table
+    assert "  target 3 shelf [1]: too far" in format_run(replace(SUMMARY, repeats=1, arms=tuple(arms)))
 
 
 def test_a_few_targets_are_shown_one_by_one():
@@ -213,5 +230,5 @@ def test_worlds_and_what_blocked_are_named():
     arm = replace(ARM, world="kitchen [a]", blockers={f"pan {k}": 9 - k for k in range(7)})
     text = format_run(replace(SUMMARY, arms=(arm,)))
     assert "kitchen [a]" in text
-    assert "blocked most often by: pan 0 9, pan 1 8, pan 2 7, pan 3 6, pan 4 5 and 2 more (arm plain [de])" in text
+    assert "blocked most often by: pan 0 9, pan 1 8, pan 2 7, pan 3 6, pan 4 5 and 2 more\n" in text
     assert "kitchen" not in format_run(SUMMARY)

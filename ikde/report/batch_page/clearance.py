@@ -30,7 +30,8 @@ class Measure:
     """A value, in m or rad, with its unit."""
 
 
-CLEARANCE_NOTE = "Clearance: the smallest distance between two spheres that the arm's detector compares."
+CLEARANCE_NOTE = "Clearance: the smallest distance between two spheres that the arm's detector compares"
+IN_A_WORLD = ", or of a sphere from an obstacle"
 CLEARANCE = Measure("clearance_m", "clearance", "mm", 1e3, length)
 ERRORS = (
     Measure("position_error_m", "position error", "mm", 1e3, length),
@@ -65,7 +66,7 @@ def _make_table(run: RunAnswers, measures: Sequence[Measure]) -> Table:
             for arm in run.arms
         ),
         caption="The solutions that reached their target",
-        note=CLEARANCE_NOTE if CLEARANCE in measures else "",
+        note=f"{CLEARANCE_NOTE}{IN_A_WORLD if run.manifest.has_worlds else ''}." if CLEARANCE in measures else "",
     )
 
 
@@ -111,7 +112,7 @@ def _make_pairs(run: RunAnswers) -> Table:
             (" – ".join(pair), *(fixed(100 * shares.get(pair, 0.0), 1) if shares else "–" for shares in arms))
             for pair in shown
         ),
-        caption="Which two components come closest, in percent of the reached solutions",
+        caption="Which two come closest, in percent of the reached solutions",
         note=f"{left} more pairs are rarer." if left else "",
     )
 

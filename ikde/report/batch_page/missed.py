@@ -11,16 +11,20 @@ from ikde.report.page import Column, Section, Table
 
 
 def make_missed(run: RunAnswers) -> Section | None:
-    """The first targets that were not reached, each once an arm; None if all were."""
+    """The first targets that were not reached, each once for all arms that missed it alike; None if all were."""
     misses = [(target, arm) for arm in run.arms for target in arm.missed]
     if not misses:
         return None
-    shown = sorted(misses, key=lambda miss: miss[0])[:MAX_MISSED]
-    rows = [_make_row(run, arm, target) for target, arm in shown]
-    total = sum(np.unique(arm.numbers["target"][~arm.reached]).size for arm in run.arms)
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for target, arm in sorted(misses, key=lambda miss: miss[0]):
+        alike.setdefault(_make_row(run, arm, target), []).append(arm.name)
+    named = [(row, "all" if len(names) == len(run.arms) else ", ".join(names)) for row, names in alike.items()]
+    rows = [(*row[:3], names if len(run.arms) > 1 else "", *row[3:]) for row, names in named[:MAX_MISSED]]
+    total = np.unique(np.concatenate([arm.numbers["target"][~arm.reached] for arm in run.arms])).size
     columns = Column.of(">target", "name", ">x, y, z [m]", "arm", ">missed", "why", "what would help")
     kept = [k for k in range(len(columns)) if any(row[k] for row in rows)]
-    which = "Targets" if total <= len(rows) else f"The first {len(rows)} of {total:,} targets"
+    shown = len({row[0] for row in rows})
+    which = "Targets" if total <= shown else f"The first {shown} of {total:,} targets"
     table = Table(
         columns=tuple(columns[k] for k in kept),
         rows=tuple(tuple(row[k] for k in kept) for row in rows),
@@ -38,7 +42,6 @@ def _make_row(run: RunAnswers, arm: ArmAnswers, target: int) -> tuple[str, ...]:
         str(target),
         run.names.get(target, ""),
         _place(row),
-        arm.name if len(run.arms) > 1 else "",
         f"{missed:,} of {solves:,}" if run.manifest.repeats > 1 else "",
         row.get("reason") or row["stop_reason"].replace("_", " "),
         row.get("hint") or "",

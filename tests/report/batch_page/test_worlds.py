@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from ikde.batch.statistics import Rate
+from ikde.report.batch_page.clearance import make_clearance
 from ikde.report.batch_page.worlds import make_worlds
 from ikde.report.page import Table
 
@@ -22,3 +23,8 @@ def test_a_run_in_no_world_says_nothing_of_any(placed):
     bare = tuple(replace(arm, world=None) for arm in placed.manifest.arms)
     assert make_worlds(replace(placed, manifest=replace(placed.manifest, arms=bare))) is None
     assert sum((arm.rate for arm in placed.arms), Rate(0, 0)).total == 24
+
+
+def test_clearance_is_that_from_obstacles_too_in_a_world(placed, answers):
+    notes = [make_clearance(run).blocks[0].note for run in (placed, answers)]
+    assert ["from an obstacle" in note for note in notes] == [True, False]
