@@ -43,6 +43,7 @@ def format_mjcf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     """
     robot = read_robot(robot)
     model = CollisionModel.of(robot, collision)
+    robot = robot.whole
     root = ET.Element("mujoco", model=robot.name)
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")
     # MuJoCo would leave out every pair that shares a joint, whatever the detector says.

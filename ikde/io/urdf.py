@@ -46,6 +46,7 @@ def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
     """
     robot = read_robot(robot)
     model = CollisionModel.of(robot, collision)
+    robot = robot.whole
     root = ET.Element("robot", name=robot.name)
     links, joints = name_components(model), set(robot.joint_names)
     _add_link(root, WORLD)
@@ -61,7 +62,7 @@ def format_urdf(robot: RobotLike, *, collision: CollisionChoice = None) -> str:
         joint = ET.SubElement(root, "joint", name=reserve_name(f"fixed_{link.attrib['name']}", joints), type="fixed")
         ET.SubElement(joint, "parent", link=carriers[spheres[0].body])
         ET.SubElement(joint, "child", link=link.attrib["name"])
-    _add_marks(root, model, links)
+    _add_marks(root, robot, links, model.limit_m)
     tool = f"The tool is the link {robot.tool!r}."
     unheld = describe_unheld(list_unheld(model, "URDF"))
     return format_document(root, (describe_collision(model), tool, *_note_placeholders(robot), *unheld))
@@ -107,12 +108,11 @@ def _note_placeholders(robot: Robot) -> Iterator[str]:
             yield f"{what} of <placeholder>: not known."
 
 
-def _add_marks(root: ET.Element, model: CollisionModel, links: Mapping[str, str]) -> None:
+def _add_marks(root: ET.Element, robot: Robot, links: Mapping[str, str], limit_m: float) -> None:
     """What the elements of URDF cannot say, for an import."""
-    robot = model.robot
     own = ET.SubElement(root, "ikde", tool=robot.tool)
-    if model.limit_m:
-        own.attrib["safe_distance"] = format_numbers([model.limit_m])
+    if limit_m:
+        own.attrib["safe_distance"] = format_numbers([limit_m])
     for joint in robot.joints:
         limit = joint.max_acceleration
         known = {} if limit is None else {"acceleration": format_numbers([limit])}

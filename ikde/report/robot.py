@@ -57,6 +57,7 @@ def robot_json(collision: CollisionModel) -> dict[str, Any]:
         "convention": robot.convention,
         "conventions": [robot.convention, *robot.conventions],
         "tool": robot.tool,
+        "tools": dict(robot.tools),
         "joints": [_joint_json(joint) for joint in robot.joints],
         "frames": [
             {"name": f.name, "parent": f.parent, "p_parent_frame": f.p_parent_frame.tolist(), "joint": f.joint}
@@ -95,7 +96,13 @@ def format_robot(collision: CollisionModel, units: Units, *, color: bool = False
     parts = [_joint_table(robot, units), _frame_table(robot, units), *wheels, *detectors]
     pairs = describe_pairs(collision)
     above, below = render(head, "", *parts, color=color, width=width), render(_sources(robot), color=color, width=width)
-    return "\n\n".join([above, pairs, below])
+    return "\n\n".join([above, _describe_tools(robot), pairs, below])
+
+
+def _describe_tools(robot: Robot) -> str:
+    """The tool; of a robot with several all of them, by name."""
+    others = ", ".join(f"{name} ({frame})" for name, frame in robot.tools.items())
+    return f"tool: {robot.tool}{f'; tools by name: {others}' if others else ''}"
 
 
 def _joint_table(robot: Robot, units: Units) -> Any:

@@ -14,6 +14,9 @@ MAX_UNDECIDED = 1_500
 FLAT = 1e-9
 """m over a face within which a corner counts as in its plane."""
 BLOCK = 1_000_000  # distances at a time
+MANY = 2_000
+"""Triangles of a part from which on those that are near are chosen before distances are taken."""
+SLACK_M = 1e-9
 
 
 def outer_triangles(parts: list[Floats]) -> list[Floats]:
@@ -69,15 +72,30 @@ def _boxes_meet(a: Floats, b: Floats) -> bool:
     return bool((low <= np.minimum(a.max(axis=(0, 1)), b.max(axis=(0, 1)))).all())
 
 
-def _distances(points: Floats, other: Triangles) -> Floats:
+def _are_far(points: Floats, reach: Floats, other: Triangles) -> Bools:
+    """[P] of points: whether no triangle of another part comes as near as [P] m.
+
+    Of a part of many triangles only those are measured whose ball, about the mean of their corners, comes near.
+    """
     step = max(1, BLOCK // len(other.corners))
-    blocks = [other.distances(points[start : start + step]) for start in range(0, len(points), step)]
-    return np.concatenate(blocks)
+    blocks = [slice(start, start + step) for start in range(0, len(points), step)]
+    if len(other.corners) < MANY:
+        return np.concatenate([other.distances(points[block]) > reach[block] for block in blocks])
+    far = np.ones(len(points), dtype=np.bool_)
+    middles = other.corners.mean(axis=1)
+    own = np.sqrt(((other.corners - middles[:, None]) ** 2).sum(axis=2).max(axis=1)) + SLACK_M
+    for block in blocks:
+        away = sum((points[block, None, axis] - middles[:, axis]) ** 2 for axis in range(3))
+        near = away <= (reach[block, None] + own) ** 2
+        for row in np.flatnonzero(near.any(axis=1)):
+            place = block.start + row
+            far[place] = other.take(near[row]).distances(points[place][None])[0] > reach[place]
+    return far
 
 
 def _ask_ball(middles: Floats, radius: Floats, other: Triangles) -> tuple[Bools, Bools]:
     """[P] of balls: whether none of another part's triangles comes near; and whether they lie inside it then."""
-    clear = _distances(middles, other) > radius * (1.0 + 1e-9) + 1e-12
+    clear = _are_far(middles, radius * (1.0 + 1e-9) + 1e-12, other)
     inside = np.zeros(len(middles), dtype=np.bool_)
     inside[clear] = other.windings(middles[clear]) > 0.5
     return clear, inside

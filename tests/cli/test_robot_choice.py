@@ -2,6 +2,7 @@
 
 import pytest
 
+import ikde
 from tests.dual_arm import DUAL
 from tests.urdf_texts import write
 
@@ -56,7 +57,10 @@ def test_an_unknown_tool_is_refused_with_the_nearest(refuse, dual):
 
 
 def test_all_joints_are_shown_and_exported(cli, dual):
-    assert "right_elbow" in cli("robots", "show", dual).out
+    shown = cli("robots", "show", dual)
+    assert "tool: left_hand; tools by name: left (left_hand), right (right_hand)" in shown.out
+    assert cli("robots", "show", dual, "--json").data["tools"] == {"left": "left_hand", "right": "right_hand"}
     outcome = cli("robots", "export", dual, "--urdf")
     assert 'name="right_elbow" type="continuous"' in outcome.out
     assert "tools by name: left, right" in outcome.err
+    assert outcome.out == ikde.format_urdf(dual)

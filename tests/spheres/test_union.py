@@ -63,6 +63,15 @@ def test_many_faces_take_no_more_memory_than_some_at_a_time(outer: Floats, monke
         np.testing.assert_array_equal(left, same)
 
 
+@pytest.mark.parametrize("outer", [make_l(), make_l() + 0.013])
+def test_triangles_that_are_chosen_by_their_balls_give_the_same(outer: Floats, monkeypatch: pytest.MonkeyPatch) -> None:
+    parts = [outer, box(0.4, 0.03, 0.03) - (0.2, -0.03, -0.03)]
+    whole = outer_triangles(parts)
+    monkeypatch.setattr(union, "MANY", 1)
+    for left, same in zip(outer_triangles(parts), whole, strict=True):
+        np.testing.assert_array_equal(left, same)
+
+
 def test_a_mesh_of_many_triangles_fits_into_memory() -> None:
     """6,000 triangles: 0.9 GB, were all corners held against all faces at once."""
     fine = CUBE
