@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any, Union
 
@@ -52,6 +52,14 @@ class CollisionModel:
         """In a line, whatever the robot."""
         return f"<CollisionModel {self.robot.name}: detector {self.name}, {len(self.pairs)} pairs>"
 
+    def __hash__(self) -> int:
+        """Computed once: it is a key of all that is prepared for a model."""
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.robot, self.detector, self.world, self.margin_m, self.margins_m))
+
     @classmethod
     def of(cls, robot: RobotLike, choice: CollisionChoice = None) -> "CollisionModel":
         """Resolve a choice; raises `InputError` for an unknown name, or for what does not fit the robot."""
@@ -77,7 +85,7 @@ class CollisionModel:
         if name not in robot.detectors:
             known = ", ".join([*robot.detectors, NO_DETECTOR])
             raise InputError(f"{robot.name} has no detector {name!r}; it has {known}")
-        return cls(robot=robot, detector=robot.detectors[name])
+        return _with_detector(robot, name)
 
     @cached_property
     def is_checked(self) -> bool:
@@ -266,6 +274,12 @@ class CollisionModel:
         """The distance that each component keeps [C], m."""
         others = dict(self.margins_m)
         return np.array([others.get(name, self.margin_m) for name in self.components], dtype=float)
+
+
+@lru_cache(maxsize=64)
+def _with_detector(robot: Robot, name: str) -> CollisionModel:
+    """The same object whenever it is asked for: what is known of it is found once."""
+    return CollisionModel(robot=robot, detector=robot.detectors[name])
 
 
 def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
