@@ -78,15 +78,15 @@ def ask(question: Question, own: CollisionModel, world: World, margins: Margins)
     `new_s` is the first call in a world that was not seen before, with placing the robot in it; `again_s` the median
     of further calls, which give the same bits.
     """
-    robot, asked = question.robot, {"freeze": question.held or None}
+    robot, held = question.robot, question.held or None
     started = time.perf_counter()
     model = own.in_world(world, margins.all_m, margins.of_m)
-    result = solve(robot, question.target, collision=model, **asked)
+    result = solve(robot, question.target, collision=model, freeze=held)
     new_s = time.perf_counter() - started - result.compile_seconds
     again_s = []
     for _ in range(REPEATED):
         started = time.perf_counter()
-        solve(robot, question.target, collision=model, **asked)
+        solve(robot, question.target, collision=model, freeze=held)
         again_s.append(time.perf_counter() - started)
     result = confirm(robot, result)
     return {
@@ -136,7 +136,7 @@ def _is_row(row: Any) -> bool:
 def run_scenes(
     names: Iterable[tuple[str, str]],
     known: Mapping[str, Row],
-    ask_one: Callable[[str], dict[str, Any]],
+    ask_one: Callable[[str], Row],
     keep: Callable[[Mapping[str, Row]], None],
 ) -> dict[str, Row]:
     """Rows by name, in order: those that are `known`, by name and digest, and the others asked.
