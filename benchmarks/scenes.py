@@ -27,6 +27,8 @@ os.environ.setdefault("IKDE_COMPILE", "wait")
 
 import ikde
 from benchmarks.machine import describe
+from ikde.batch.scenes import make_question
+from ikde.io.scene_pairs import Request, ScenePair, find_pairs, read_request
 
 TOOLS = {"ur5": "ee_link", "panda": "panda_hand", "fetch": "gripper_link"}
 WARM, REPEATED, CHECKED, MOVED_M = 3, 5, 200, 1e-4
@@ -200,11 +202,9 @@ def read_yaml(path: Path) -> dict[str, Any]:
     return yaml.load(path.read_text(encoding="utf-8"), LOADER)
 
 
-def read_goal(request: dict[str, Any], names: tuple[str, ...]) -> np.ndarray:
-    """[N] a request's goal in the order of `names`, which is not the request's."""
-    (goal,) = request["goal_constraints"]
-    found = {row["joint_name"]: float(row["position"]) for row in goal["joint_constraints"]}
-    return np.array([found[name] for name in names])
+def read_goal(request: Request, robot: ikde.Robot) -> np.ndarray:
+    """[N] a request's goal in the robot's order."""
+    return np.array([request.goal[name] for name in robot.joint_names])
 
 
 def read_robot(folder: Path) -> tuple[str, ikde.Robot, Twin]:
@@ -216,11 +216,10 @@ def read_robot(folder: Path) -> tuple[str, ikde.Robot, Twin]:
     return name, robot, Twin(urdf, robot.tool)
 
 
-def run_problem(robot: ikde.Robot, twin: Twin, scene: Path, margin_m: float, tally: Tally) -> None:
+def run_problem(robot: ikde.Robot, twin: Twin, pair: ScenePair, margin_m: float, tally: Tally) -> None:
     """One scene and its request."""
-    q = read_goal(read_yaml(scene.with_name(scene.name.replace("scene", "request"))), robot.joint_names)
-    T = ikde.forward(robot, q)[robot.tool]
-    target = ikde.Target(T[:3, 3], R_world_tool=T[:3, :3])
+    request, scene = read_request(pair.request), pair.scene
+    q, target = read_goal(request, robot), make_question(robot, request.start, request.goal).target
     world, own = ikde.load_world(scene), ikde.CollisionModel.of(robot)
     started = time.perf_counter()
     model = own.in_world(world, margin_m=margin_m)
@@ -278,26 +277,18 @@ def judge(result: ikde.SolveResult, goal: np.ndarray, twin: Twin, scene: Path, t
         tally.wrong.append(f"{where}: {link} is {gap * 1e3:.6f} mm from {name}")
 
 
-def find_scenes(folder: Path, first: int | None) -> dict[str, list[Path]]:
-    """Family -> its scenes."""
-    families: dict[str, list[Path]] = {}
-    for path in sorted(folder.glob("problems/*/scene*.yaml")):
-        families.setdefault(path.parent.name, []).append(path)
-    return {name: paths[:first] for name, paths in families.items()}
-
-
 def run_robot(folder: Path, margin_mm: float, first: int | None) -> tuple[str, dict[str, Any]]:
     """Title and rows of one robot: a row a family, then all."""
     name, robot, twin = read_robot(folder)
-    scenes = find_scenes(folder, first)
+    scenes = {family: pairs[:first] for family, pairs in find_pairs(folder).items()}
     for paths in scenes.values():  # compiles, and fills caches that do not depend on a world
-        for path in paths[:WARM]:
-            run_problem(robot, twin, path, margin_mm * 1e-3, Tally())
+        for pair in paths[:WARM]:
+            run_problem(robot, twin, pair, margin_mm * 1e-3, Tally())
     everything, rows = Tally(), {}
     for family, paths in scenes.items():
         tally = Tally()
-        for path in paths:
-            run_problem(robot, twin, path, margin_mm * 1e-3, tally)
+        for pair in paths:
+            run_problem(robot, twin, pair, margin_mm * 1e-3, tally)
         rows[family] = tally.table()
         everything.join(tally)
         show(family, rows[family])

@@ -59,14 +59,14 @@ def problem(tmp_path, monkeypatch):
     for name, text in (("scene0001.yaml", SCENE), ("request0001.yaml", REQUEST)):
         (tmp_path / "problems" / "shelf_two" / name).write_text(text, encoding="utf-8")
     monkeypatch.setitem(module.TOOLS, "two", "tip")
-    ((family, (scene,)),) = module.find_scenes(tmp_path, 5).items()
+    ((family, (pair,)),) = module.find_pairs(tmp_path).items()
     assert family == "shelf_two"
-    return module, *module.read_robot(tmp_path)[1:], scene
+    return module, *module.read_robot(tmp_path)[1:], pair.scene
 
 
 def test_a_goal_is_read_by_name(problem):
     module, robot, _, scene = problem
-    goal = module.read_goal(module.read_yaml(scene.with_name("request0001.yaml")), robot.joint_names)
+    goal = module.read_goal(module.read_request(scene.with_name("request0001.yaml")), robot)
     assert dict(zip(robot.joint_names, goal.tolist(), strict=True)) == {"turn": -1.5, "slide": 0.25}
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ikde.cli.bench_scenes import bench_scenes
 from ikde.cli.bench_track import bench_track
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import Command, Group, JsonOption, read_choices
@@ -24,6 +25,7 @@ def default() -> None:
 
 
 bench.command("track", cls=Command)(bench_track)
+bench.command("scenes", cls=Command)(bench_scenes)
 
 
 @bench.command("paper", cls=Command)

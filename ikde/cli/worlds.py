@@ -1,13 +1,19 @@
 """`ikde worlds`: show, validate and convert files of obstacles."""
 
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import Command, Group, JsonOption, LengthUnit, UnitOption, check_drawable
+from ikde.cli.candidates import offer_robots
+from ikde.cli.options import Command, DetectorOption, Group, JsonOption, LengthUnit, UnitOption, check_drawable
 from ikde.cli.output import layout, print_json, print_line, print_note, print_result, print_written
+
+if TYPE_CHECKING:
+    from ikde.io.world_file import ReadWorld
+    from ikde.solver.standing import StandingObstacle
 
 worlds = typer.Typer(cls=Group, help="Files of obstacles: ikde's, cuRobo's and MoveIt's.", no_args_is_help=True)
 
@@ -53,22 +59,45 @@ def show(
 
 
 @worlds.command("validate", cls=Command)
-def validate(file: FileArgument, as_json: JsonOption = False) -> None:
+def validate(
+    file: FileArgument,
+    robot: Annotated[
+        str | None,
+        typer.Option(metavar="NAME|FILE", help="Check that it fits.", autocompletion=offer_robots),
+    ] = None,
+    detector: DetectorOption = None,
+    as_json: JsonOption = False,
+) -> None:
     """Check a world file. What is wrong is one line with file, line and key (exit code 2).
 
-    Example: ikde worlds validate scene.yaml
+    With a robot also: frames and components that it does not have, and what touches whatever its joints do.
+
+    Example: ikde worlds validate scene.yaml --robot ur5
     """
     from ikde.io.world_file import read_world
     from ikde.report.world import describe_world
 
     found = read_world(file)
+    near = [] if robot is None else _check_fit(found, robot, detector)
     if as_json:
         counts = {"obstacles": len(found.world), "digest": found.world.digest}
-        print_json({"valid": True, "format": found.format, **counts, "notes": list(found.notes)})
+        fit = {} if robot is None else {"robot": robot, "standing": [asdict(pair) for pair in near]}
+        print_json({"valid": True, "format": found.format, **counts, **fit, "notes": list(found.notes)})
         return
-    print_line(f"{file}: valid, {found.format}, {describe_world(found.world)}")
+    fits = "" if robot is None else f"; fits {robot}: nothing touches in every configuration"
+    print_line(f"{file}: valid, {found.format}, {describe_world(found.world)}{fits}")
+    for pair in near:
+        print_line(f"in every configuration: {pair.component} - {pair.obstacle} {1e3 * pair.clearance_m:.4g} mm")
     for note in found.notes:
         print_line(f"note: {note}")
+
+
+def _check_fit(found: "ReadWorld", robot: str, detector: str | None) -> "tuple[StandingObstacle, ...]":
+    from ikde.cli.robot_choice import read_robot
+    from ikde.io.world_fit import check_fit
+    from ikde.model.collision_model import CollisionModel
+
+    return check_fit(found, CollisionModel.of(read_robot(robot), detector))
 
 
 @worlds.command("convert", cls=Command)

@@ -17,6 +17,7 @@ from ikde.scene.drawn_pose import AXIS_COLORS, COLORS, DrawnPose, DrawnRobot, Ma
 
 MESH = 24  # facets around a sphere
 MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
+MARGINS_IN_WORLD = (0.0, 0.13, 0.95, 0.83)
 GRID_M = 0.5
 LINK_PT, BASE_ALPHA = 6.0, 0.05
 VIEWS = {
@@ -58,10 +59,15 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0), vie
     box_m = pose.compute_box()
     half_m = 0.51 * float(np.ptp(box_m, axis=0).max())
     box_m[0, 2] = min(box_m[0, 2], 0.0)
-    _set_box(axes, box_m, half_m, 2.0 * half_m)
+    _set_box(axes, box_m, half_m, 2.0 * half_m, 1.25 if pose.obstacles else 1.0)
     _draw_ground(axes)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
+        place: dict[str, Any] = {"loc": "upper left"}
+        if pose.obstacles:  # they fill the corner that is empty beside a robot alone
+            axes.set_position(MARGINS_IN_WORLD)
+            below = {"bbox_to_anchor": (0.5, 0.01), "bbox_transform": figure.transFigure}
+            place = {"loc": "lower center", "ncols": 2, **below}
+        axes.legend(fontsize=9, framealpha=0.9, **place)
     return show_as_text(figure)
 
 
@@ -157,7 +163,8 @@ def _draw_mark(axes: Any, mark: Mark) -> None:
         axes.plot(*mark.points_m.T, "o-", linewidth=2.5, markersize=4, zorder=10, **look)
 
 
-def _set_box(axes: Any, box_m: Floats, half_m: float, height_m: float) -> None:
+def _set_box(axes: Any, box_m: Floats, half_m: float, height_m: float, zoom: float = 1.0) -> None:
     """Show `half_m` to each side of the box's middle, and `height_m` from its floor."""
     (x, y, _), floor_m = box_m.mean(axis=0), box_m[0, 2]
-    set_box(axes, np.array([x - half_m, y - half_m, floor_m]), np.array([x + half_m, y + half_m, floor_m + height_m]))
+    low = np.array([x - half_m, y - half_m, floor_m])
+    set_box(axes, low, low + np.array([2.0 * half_m, 2.0 * half_m, height_m]), zoom=zoom)

@@ -15,7 +15,7 @@ from ikde.scene.drawn_world import DrawnObstacle, DrawnSolid, DrawnWorld
 MARGINS = (0.0, 0.03, 0.95, 0.9)  # left, bottom, width, height
 ALPHA, EDGE_ALPHA, OFF_ALPHA = 0.35, 0.55, 0.06
 MAX_LABELS = 24  # names in the legend
-MAX_NAMES = 12  # of obstacles beside a robot
+MAX_NAMES = 8  # of obstacles beside a robot
 VIEW = (24.0, -58.0)  # elevation and azimuth in deg
 
 

@@ -22,12 +22,12 @@ from ikde.solver.hints import (
     hint_at_tolerance,
     try_freeing,
     try_longer,
-    try_removing,
     try_widening,
 )
 from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
 from ikde.solver.proof import prove
+from ikde.solver.remedies import try_in_world
 from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.tool_body import tell_tool_body
@@ -169,7 +169,7 @@ def tell_out_of_reach(far_m: float, off_rad: float) -> str:
 def _explain_by_remedies(
     problem: Problem, target: Target, probe: Probe, met: _Met, found: SearchState, graded: Grade
 ) -> Explanation:
-    remedy = try_removing(problem, probe, met.blocking)
+    remedy = try_in_world(problem, probe, met.blocking)
     remedy = remedy or try_freeing(problem, probe) or try_widening(problem, probe)
     if met.colliding > 0:
         return _colliding(problem, met, graded, remedy)
@@ -203,7 +203,7 @@ def _ruled_out(
     probe = Probe(target, seed, stream, float(found.seconds[0]))
     is_by_branches = rule_out_by_branches(problem, Targets.of([target]))[0] >= 0
     reason, blocking = (tell_branches if is_by_branches else tell_tool_body)(problem, target)
-    hint = try_removing(problem, probe, blocking) or try_freeing(problem, probe)
+    hint = try_in_world(problem, probe, blocking) or try_freeing(problem, probe)
     hint = hint or (hint_at_branches(problem, target) if is_by_branches else None)
     hint = hint or hint_at_tolerance(problem, target, found.q[0], graded)
     stop = STOP_REASONS[found.ruled_out[0]]

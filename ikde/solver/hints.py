@@ -1,6 +1,6 @@
 """What would help where a target was not reached. Each hint is proved by a bound, or was found by trying it."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,6 @@ from ikde.solver.verify import Bools, Grade, verify_many
 WIDER = (
     4.0  # how much wider the ranges of prismatic joints get when a probe asks whether limits are what stands in the way
 )
-REMOVED = 3  # obstacles that are left out, one at a time
 GENEROUS = 100.0  # a best error within this many tolerances is worth a word about the tolerance
 
 TOOL_AXES = {(1.0, 0.0, 0.0): "x axis", (0.0, 1.0, 0.0): "y axis", (0.0, 0.0, 1.0): "z axis"}
@@ -137,16 +136,6 @@ def try_freeing(problem: Problem, probe: Probe) -> str | None:
     if not probe.confirms(free, probe.run(free)):
         return None
     return f"free {', '.join(problem.frozen)}: a solution was found without freezing"
-
-
-def try_removing(problem: Problem, probe: Probe, blocking: Iterable[tuple[str, str]]) -> str | None:
-    """The first of the obstacles that blocked, most often first, without which a short search finds a solution."""
-    names = {obstacle.name for obstacle in problem.collision.obstacles}
-    for _, name in [pair for pair in blocking if pair[1] in names][:REMOVED]:
-        less = problem.without_obstacle(name)
-        if probe.confirms(less, probe.run(less)):
-            return f"without {name}: a solution was found that touches nothing else"
-    return None
 
 
 def try_widening(problem: Problem, probe: Probe) -> str | None:

@@ -3,6 +3,7 @@
 import pytest
 
 from ikde.io.world_file import load_world
+from tests.three_joints import FILE
 from tests.world_files import GOOD, assert_same, write_good
 
 
@@ -70,3 +71,17 @@ def test_a_world_is_not_written_over_what_it_is_read_from(refuse, file):
     before = file.read_bytes()
     assert "is what is read; expected another file" in refuse("worlds", "convert", str(file), "--out", str(file))
     assert file.read_bytes() == before
+
+
+def test_a_world_is_checked_against_a_robot(cli, refuse, tmp_path):
+    path = tmp_path / "near.yaml"
+    path.write_text("obstacles: {d: {half_space: {}, position: [0, 0, -0.21]}}", encoding="utf-8")
+    outcome = cli("worlds", "validate", path, "--robot", FILE)
+    assert outcome.code == 0, outcome
+    assert f"; fits {FILE}: nothing touches in every configuration\n" in outcome.out
+    assert outcome.out.endswith("in every configuration: floor - d 10 mm\n")
+    data = cli("worlds", "validate", path, "--robot", FILE, "--json").data
+    assert [(pair["component"], pair["obstacle"]) for pair in data["standing"]] == [("floor", "d")]
+    path.write_text("obstacles:\n  d:\n    sphere: {radius: 1}\n    ignore: [hnad]\n", encoding="utf-8")
+    said = refuse("worlds", "validate", path, "--robot", FILE)
+    assert "near.yaml:4 → obstacles.d.ignore[0]: no component is called 'hnad' (did you mean 'hand'?)" in said
