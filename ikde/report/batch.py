@@ -171,7 +171,8 @@ def _list_unreached(summary: RunSummary) -> list[Any]:
     """Why, how often; and the first targets, each once for all arms that missed it for one reason."""
     if not summary.unreached:
         return []
-    lines = [_reason_table(summary.arms)] if len(summary.arms) > 1 else _tell_reasons(summary.arms[0])
+    first, *others = summary.arms
+    lines = [_reason_table(summary.arms)] if others else _tell_reasons(first)
     alike: dict[Unreached, list[str]] = {}
     for row in sorted((row for arm in summary.arms for row in arm.listed), key=lambda row: row.target):
         alike.setdefault(replace(row, arm=""), []).append(row.arm)
