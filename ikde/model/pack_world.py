@@ -148,7 +148,7 @@ def _join_obstacles(packed: list[PackedObstacle], asked: Floats, reach_m: float)
             points.append(sorted_points)
             count += len(sorted_points)
         first += len(obstacle.rows)
-    parts = [solids, _spheres(solids), asked, _stack(faces, 12), _stack(points, 3).T, _stack(clouds, GRID_COLUMNS)]
+    parts = [solids, _spheres(solids), asked, _stack(faces, 12), _join_points(points), _stack(clouds, GRID_COLUMNS)]
     parts += [np.concatenate([*starts, np.empty(0)]), np.concatenate([*far, np.empty(0)])]
     sizes = [len(solids), *asked.shape, len(parts[3]), count, len(clouds), len(parts[6])]
     return _join(sizes, parts, solids, reach_m)
@@ -163,17 +163,28 @@ def find_fixed_frames(robot: Robot) -> dict[str, Floats]:
 
 def sort_cloud(points: Floats, pitch: float) -> tuple[Cells, Floats]:
     """Points [K, 3] sorted by cell, and the cells."""
-    low, high = points.min(axis=0), points.max(axis=0)
+    P = np.ascontiguousarray(points.T)  # along each axis at once: the smallest of a column took 80 times as long
+    low, high = P.min(axis=1), P.max(axis=1)
     while np.prod(np.floor((high - low) / pitch) + 1.0) > MAX_CELLS:
         pitch *= 1.5
     dims = (np.floor((high - low) / pitch) + 1).astype(np.int64)
-    places = np.minimum(((points - low) / pitch).astype(np.int64), dims - 1)
-    cells = np.ravel_multi_index(tuple(places.T), tuple(dims))
-    order = np.argsort(cells, kind="stable")
+    cells = np.zeros(len(points), dtype=np.int32)
+    for k, count in enumerate(dims.tolist()):
+        place = ((P[k] - low[k]) / pitch).astype(np.int32)
+        cells *= count
+        cells += np.minimum(place, count - 1, out=place)
     counts = np.bincount(cells, minlength=int(dims.prod()))
     starts = np.concatenate([[0], np.cumsum(counts)])
     numbers = np.array([*low, pitch, *dims], dtype=float)
-    return Cells(numbers, starts, _measure_far(counts.reshape(dims) > 0, pitch)), points[order]
+    found = Cells(numbers, starts, _measure_far(counts.reshape(dims) > 0, pitch))
+    return found, P[:, _find_order(cells)].T
+
+
+def _find_order(cells: np.ndarray) -> np.ndarray:
+    """The order that sorts numbers below 2^32, equals as they come: numpy counts 16 bits, of more it compares."""
+    order = np.argsort(cells.astype(np.uint16), kind="stable")
+    high = (cells >> 16).astype(np.uint16)
+    return order[np.argsort(high[order], kind="stable")] if high.any() else order
 
 
 def _measure_far(occupied: np.ndarray, pitch: float) -> Floats:
@@ -288,6 +299,11 @@ def _make_grid(
 
 def _stack(rows: list[Floats], columns: int) -> Floats:
     return np.vstack(rows) if rows else np.empty((0, columns))
+
+
+def _join_points(points: list[Floats]) -> Floats:
+    """Points [3, K] of clouds [K, 3]; of one alone, which may be large, without a copy."""
+    return points[0].T if len(points) == 1 else _stack(points, 3).T
 
 
 def _whole(T: Floats) -> Floats:
