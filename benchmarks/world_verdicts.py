@@ -19,7 +19,8 @@ import coal
 import numpy as np
 
 import ikde
-from benchmarks.scenes import Twin, find_scenes, read_goal, read_pose, read_robot, read_yaml
+from benchmarks.scenes import Twin, read_goal, read_pose, read_robot, read_yaml
+from ikde.io.scene_pairs import find_pairs, read_request
 
 CONTACT_M, SPREAD = 1e-9, 0.05  # m; m or rad
 
@@ -66,24 +67,22 @@ def run_robot(folder: Path, count: int, first: int | None) -> int:
     own, rng, moved = ikde.CollisionModel.of(robot), np.random.default_rng(1), find_moved(twin, robot.joint_names)
     compared = hits = near = wrong = scenes = 0
     worst = 0.0
-    for paths in find_scenes(folder, first).values():
-        for path in paths:
-            scene, model = read_yaml(path), own.in_world(ikde.load_world(path))
-            Q = rng.uniform(*robot.drawn, (count, len(robot.joints)))
-            request = read_yaml(path.with_name(path.name.replace("scene", "request")))
-            Q[1::2] = read_goal(request, robot.joint_names) + rng.normal(0.0, SPREAD, Q[1::2].shape)
-            gaps = ikde.check_many(robot, Q, model).gaps_m[:, len(model.pairs) :].min(axis=1)
-            solids = list_solids(scene, twin.place_links({}))
-            for q, ours in zip(Q, gaps.tolist(), strict=True):
-                theirs = measure(solids, place_spheres(twin, robot.joint_names, q, moved))
-                if abs(theirs) <= CONTACT_M:
-                    near += 1
-                    continue
-                compared, hits = compared + 1, hits + (theirs <= 0.0)
-                wrong += (ours <= 0.0) != (theirs <= 0.0)
-                if theirs > 0.0:
-                    worst = max(worst, abs(ours - theirs))
-            scenes += 1
+    for pair in [pair for pairs in find_pairs(folder).values() for pair in pairs[:first]]:
+        scene, model = read_yaml(pair.scene), own.in_world(ikde.load_world(pair.scene))
+        Q = rng.uniform(*robot.drawn, (count, len(robot.joints)))
+        Q[1::2] = read_goal(read_request(pair.request), robot) + rng.normal(0.0, SPREAD, Q[1::2].shape)
+        gaps = ikde.check_many(robot, Q, model).gaps_m[:, len(model.pairs) :].min(axis=1)
+        solids = list_solids(scene, twin.place_links({}))
+        for q, ours in zip(Q, gaps.tolist(), strict=True):
+            theirs = measure(solids, place_spheres(twin, robot.joint_names, q, moved))
+            if abs(theirs) <= CONTACT_M:
+                near += 1
+                continue
+            compared, hits = compared + 1, hits + (theirs <= 0.0)
+            wrong += (ours <= 0.0) != (theirs <= 0.0)
+            if theirs > 0.0:
+                worst = max(worst, abs(ours - theirs))
+        scenes += 1
     print(
         f"{name}: {compared:,} configurations in {scenes} scenes, {hits:,} in collision with the world: {wrong} differ;"
     )
