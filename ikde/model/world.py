@@ -205,13 +205,8 @@ class PerObstacle(Generic[Found]):
 
     def list(self, obstacles: tuple[Obstacle, ...]) -> list[Found]:
         """Of each obstacle, in their order."""
-        make, (known, found) = self._make, self._last
-        if len(known) == len(obstacles):
-            pairs = zip(known, obstacles, found, strict=True)
-            made = [kept if old is new else make(new) for old, new, kept in pairs]
-        else:
-            kept_of = {id(obstacle): kept for obstacle, kept in zip(known, found, strict=True)}
-            made = [kept_of[id(o)] if id(o) in kept_of else make(o) for o in obstacles]
+        make, kept = self._make, {id(old): found for old, found in zip(*self._last, strict=True)}
+        made = [kept[id(obstacle)] if id(obstacle) in kept else make(obstacle) for obstacle in obstacles]
         self._last = obstacles, made
         return made
 
