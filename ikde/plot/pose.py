@@ -17,7 +17,7 @@ from ikde.scene.drawn_pose import AXIS_COLORS, COLORS, DrawnPose, DrawnRobot, Ma
 
 MESH = 24  # facets around a sphere
 MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
-MARGINS_IN_WORLD = (0.0, 0.13, 0.95, 0.83)
+MARGINS_IN_WORLD = (0.0, 0.16, 0.95, 0.8)
 GRID_M = 0.5
 LINK_PT, BASE_ALPHA = 6.0, 0.05
 VIEWS = {
@@ -59,7 +59,7 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0), vie
     box_m = pose.compute_box()
     half_m = 0.51 * float(np.ptp(box_m, axis=0).max())
     box_m[0, 2] = min(box_m[0, 2], 0.0)
-    _set_box(axes, box_m, half_m, 2.0 * half_m, 1.25 if pose.obstacles else 1.0)
+    _set_box(axes, box_m, half_m, 2.0 * half_m, 1.12 if pose.obstacles else 1.0)
     _draw_ground(axes)
     if axes.get_legend_handles_labels()[0]:
         place: dict[str, Any] = {"loc": "upper left"}

@@ -50,7 +50,7 @@ def draw_obstacles(axes: Any, obstacles: Sequence[DrawnObstacle]) -> None:
     """Draw what stands around a robot, grey, and what it touches in another colour, each with its name."""
     labelled: set[Role] = set()
     named = sorted(obstacles, key=lambda obstacle: not obstacle.is_touched)[:MAX_NAMES]
-    for obstacle in obstacles:
+    for obstacle in sorted(obstacles, key=_is_endless):  # whose faces are pale, for the legend
         role = Role.TOUCHED if obstacle.is_touched else Role.OBSTACLE
         label = "_nolegend_" if role in labelled else str(role)
         labelled.add(role)
@@ -80,11 +80,14 @@ def _draw_solid(axes: Any, solid: DrawnSolid, color: str, label: str, obstacle: 
     return "_nolegend_"
 
 
+def _is_endless(obstacle: DrawnObstacle) -> bool:
+    return all(solid.is_endless for solid in obstacle.solids)
+
+
 def _draw_text(axes: Any, text: str, obstacle: DrawnObstacle, color: str = "black") -> None:
     """Its name, or the number that the legend names, over the obstacle; over a corner of what has no end."""
     points = np.concatenate([np.concatenate([*s.polygons_m, s.points_m]) for s in obstacle.solids])
-    is_endless = all(solid.is_endless for solid in obstacle.solids)
-    place = points[0] if is_endless else np.append(points[:, :2].mean(axis=0), points[:, 2].max())
+    place = points[0] if _is_endless(obstacle) else np.append(points[:, :2].mean(axis=0), points[:, 2].max())
     axes.text(*place, text, fontsize=9, color=color, zorder=20, ha="center", va="bottom")
 
 

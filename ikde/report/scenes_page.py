@@ -233,7 +233,8 @@ def _draw(run: ScenesRun, name: str, row: Row) -> Figure | None:
     T = np.array(row["T_world_tool"])
     pose = draw_pose(model, np.array(row["q"]), target=Target(T[:, 3], R_world_tool=T[:, :3]))
     picture = to_png(plot_pose(replace(pose, title="")), dpi=DPI)
-    missed = ": the best that was found. What is too near is purple, what of the robot touches is black."
+    missed = ": the best that was found. What is too near is purple, what of the robot touches is black (white on a "
+    missed += "dark page)."
     caption = f"{verbatim(name)}, {_say(row)}{'' if row['reached'] else missed}"
     return Figure(image=picture, alt=f"the robot in {name}", caption=caption)
 

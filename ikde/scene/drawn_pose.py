@@ -121,7 +121,7 @@ def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = N
     robot, gaps_m = collision.robot, compute_gaps(collision, q)
     Ts_world = compute_frames(robot, q)
     drawn = draw_robot(collision, q, gaps_m)
-    marks = [_find_closest(collision, drawn, gaps_m, Ts_world)] if collision.pairs else []
+    marks = _find_closest(collision, drawn, gaps_m, Ts_world) if collision.pairs else []
     if target is not None:
         marks.append(Mark(points_m=target.p_world_tool[None, :], role=Role.TARGET, text="target"))
     base = Ts_world[_list_chain(robot)[0]]
@@ -236,16 +236,22 @@ def _mark_base(place_m: Floats, heading_rad: float) -> Mark:
     return Mark(points_m=np.column_stack([corners_m, np.zeros(4)]), role=Role.BASE, text="base, pointing forward")
 
 
-def _find_closest(collision: CollisionModel, drawn: DrawnRobot, gaps_m: Floats, Ts_world: Mapping[str, Floats]) -> Mark:
-    """The mark of what has the least room: two components, or a component and an obstacle."""
-    closest, pairs = int(np.argmin(gaps_m)), len(collision.pairs)
+def _find_closest(
+    collision: CollisionModel, drawn: DrawnRobot, gaps_m: Floats, Ts_world: Mapping[str, Floats]
+) -> list[Mark]:
+    """The mark of what has the least room; in a world of two components, and of a component and an obstacle."""
+    closest, pairs = int(np.argmin(gaps_m[: len(collision.pairs)])), len(collision.pairs)
     a, b = collision.name_pair(closest)
-    gap_m = float(gaps_m[closest]) + collision.extra_m(closest)
-    if closest < pairs:
-        return _mark_closest(drawn, a, b, gap_m)
-    obstacle = collision.obstacles[(closest - pairs) % len(collision.obstacles)]
+    own = _mark_closest(drawn, a, b, float(gaps_m[closest]) + collision.extra_m(closest))
+    if not (collision.obstacles and np.isfinite(gaps_m[pairs:]).any()):
+        return [own]
+    place = pairs + int(np.argmin(gaps_m[pairs:]))
+    a, b = collision.name_pair(place)
+    gap_m, kept_m = float(gaps_m[place]) + collision.extra_m(place), collision.extra_m(place) + collision.limit_m
+    obstacle = collision.obstacles[(place - pairs) % len(collision.obstacles)]
     points_m = reach_obstacle(obstacle, drawn.list_spheres(a), Ts_world)
-    return Mark(points_m=points_m, role=Role.CLOSEST, text=f"closest, {a} - {b}: {gap_m * 1e3:.1f} mm")
+    kept = f", {kept_m * 1e3:.4g} mm asked for" if kept_m > 0.0 else ""
+    return [own, Mark(points_m=points_m, role=Role.CLOSEST, text=f"closest, {a} - {b}: {gap_m * 1e3:.1f} mm{kept}")]
 
 
 def _mark_closest(drawn: DrawnRobot, a: str, b: str, gap_m: float) -> Mark:

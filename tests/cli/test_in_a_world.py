@@ -70,7 +70,7 @@ def test_an_answer_is_drawn_with_its_world(cli, write, tmp_path):
             "obstacles: {wall: {box: [1, 1, 1], ignore: [hnad]}}",
             "obstacles.wall.ignore[0]: no component is called 'hnad'",
         ),
-        ("obstacles: {wall: {box: [9, 9, 9]}}", "world.wall: floor is "),
+        ("obstacles: {wall: {box: [9, 9, 9]}}", "world.yaml:1 → obstacles.wall: floor is "),
         ("- nothing\n", "world.yaml"),
     ],
 )

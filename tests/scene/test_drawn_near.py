@@ -46,14 +46,18 @@ def test_the_component_and_the_obstacle_that_touch_are_marked():
     assert roles_of(pose)["arm"] != Role.COLLIDING
     assert [(o.name, o.is_touched) for o in pose.obstacles] == [("bead", True), ("arm", False)]
     assert pose.title.endswith("in collision with the world")
-    assert pose.marks[0].text.startswith("closest, hand - bead: -")
+    assert pose.marks[0].text.startswith("closest pair, ")
+    assert pose.marks[1].text.startswith("closest, hand - bead: -")
+    assert pose.marks[1].text.endswith(" mm")
 
 
 def test_a_pose_that_is_free_says_so_and_a_margin_counts():
     centre = compute_components(OWN, Q)["hand"][0][-1]
     near = ball("bead", centre + 0.13 * UP)
     assert draw(near).title.endswith("free of self-collision and of the world")
-    assert draw(near, margin_m=0.2).obstacles[0].is_touched
+    asked = draw(near, margin_m=0.2)
+    assert asked.obstacles[0].is_touched
+    assert asked.marks[1].text.endswith(" mm, 200 mm asked for")
 
 
 def test_what_is_far_is_left_out_and_a_plane_ends_with_the_picture():

@@ -45,7 +45,10 @@ def draw_in_world(placed: CollisionModel, q: Floats, target_m: Sequence[float], 
     """The robot at `q` [N] with what is near, and what it touches."""
     pose = draw_pose(placed, q, target=Target(target_m) if len(target_m) else None)
     picture = to_png(plot_pose(replace(pose, title="")), dpi=DPI)
-    caption = "Its configuration in its world. What is too near is purple, and what it touches of the robot black."
+    caption = (
+        "Its configuration in its world. What is too near is purple, and what it touches of the robot black (white "
+    )
+    caption += "on a dark page)."
     return Figure(image=picture, alt=alt, caption=caption)
 
 
