@@ -103,7 +103,9 @@ def format_check(robot: Robot, result: CheckResult, units: Units, *, color: bool
         gap = _format_gap(pair.clearance_m, units)
         tables[0].add_row(plain(f"{pair.a} - {pair.b}"), gap, COLLIDES if pair.collides else "")
     if result.obstacles:
-        tables.append(make_table("component - obstacle", f">clearance [{units.length}]", ">margin", ""))
+        tables.append(
+            make_table("component - obstacle", f">clearance [{units.length}]", f">margin [{units.length}]", "")
+        )
     for other in result.obstacles[:SHOWN]:
         gaps = [_format_gap(gap, units) for gap in (other.clearance_m, other.margin_m)]
         name = f"{other.component} - {other.obstacle}"

@@ -156,8 +156,10 @@ def refuse_touching(collision: CollisionModel) -> None:
         return
     first = touching[0]
     ignored = ", ".join(pair.component for pair in touching if pair.obstacle == first.obstacle)
+    margin_m = collision.kept_m(first.component) + collision.world[first.obstacle].margin_m
+    asked = f", and {1e3 * margin_m:,.6g} mm are asked for" if first.clearance_m > 0.0 else ""
     raise InputError(
-        f"{first.component} is {1e3 * first.clearance_m:.4g} mm from {first.obstacle} in every configuration, so "
+        f"{first.component} is {1e3 * first.clearance_m:.4g} mm from {first.obstacle} in every configuration{asked}, so "
         f"nothing is free of it; if that is meant, write `ignore: [{ignored}]` there",
         ("world", first.obstacle),
     )
