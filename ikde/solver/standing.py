@@ -159,7 +159,7 @@ def refuse_touching(collision: CollisionModel) -> None:
     margin_m = collision.kept_m(first.component) + collision.world[first.obstacle].margin_m
     asked = f", and {1e3 * margin_m:,.6g} mm are asked for" if first.clearance_m > 0.0 else ""
     raise InputError(
-        f"{first.component} is {1e3 * first.clearance_m:.4g} mm from {first.obstacle} in every configuration{asked}, so "
-        f"nothing is free of it; if that is meant, write `ignore: [{ignored}]` there",
+        f"{first.component} is {1e3 * first.clearance_m:.4g} mm from {first.obstacle} in every configuration{asked}, "
+        f"so nothing is free of it; if that is meant, write `ignore: [{ignored}]` there",
         ("world", first.obstacle),
     )
