@@ -37,7 +37,8 @@ def plot_moments(motion: DrawnMotion) -> Any:
         _draw_path(axes, motion, frame, view)
         _draw_robot(axes, motion, frame, view)
         names = motion.list_colliding(frame)
-        title = f"t = {motion.times_s[frame]:.2f} s{_format_collision(names)}"
+        said = _format_collision(names) or _format_clearance(float(motion.clearances_m[frame]))
+        title = f"t = {motion.times_s[frame]:.2f} s{said}"
         axes.set_title(title, fontsize=8, color=WRONG if names else COLORS[Role.COLLIDING])
         axes.set(xlim=box[:, 0], ylim=box[:, 1], aspect="equal")
         axes.set_axis_off()
@@ -49,6 +50,11 @@ def _format_collision(names: list[str]) -> str:
     if not names:
         return ""
     return f": {', '.join(names) if len(names) <= MAX_NAMED else f'{len(names)} parts'} collide"
+
+
+def _format_clearance(clearance_m: float) -> str:
+    """Nothing where nothing was compared."""
+    return f", {1e3 * clearance_m:.3g} mm clear" if np.isfinite(clearance_m) else ""
 
 
 def _list_directions() -> Floats:

@@ -27,6 +27,8 @@ class DrawnMotion:
     """Of the whole path, which the motion may not have followed to its end."""
     path_m: Floats
     """What the tool was asked to follow [P, 3]."""
+    clearances_m: Floats
+    """[F], the smallest there is; inf where nothing is compared."""
 
     def list_colliding(self, frame: int) -> list[str]:
         """Names of the components that collide in frame 0 .. F - 1, sorted."""
@@ -44,17 +46,20 @@ def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp])
         times_s=trajectory.times_s[chosen],
         duration_s=trajectory.path.duration_s,
         path_m=trajectory.path.p_world_tool,
+        clearances_m=gaps_m.min(axis=1, initial=np.inf),
     )
 
 
 def draw_still(collision: CollisionModel, q: Floats, target_m: Sequence[float]) -> DrawnMotion:
     """The robot at one configuration [N], as a motion that takes no time; its path is the target [3], or empty."""
+    gaps_m = compute_gaps(collision, q)[None]
     return DrawnMotion(
-        robot=draw_robot(collision, q[None], compute_gaps(collision, q)[None]),
+        robot=draw_robot(collision, q[None], gaps_m),
         samples=np.zeros(1, np.intp),
         times_s=np.zeros(1),
         duration_s=0.0,
         path_m=np.array(target_m, dtype=float).reshape(-1, 3),
+        clearances_m=gaps_m.min(axis=1, initial=np.inf),
     )
 
 

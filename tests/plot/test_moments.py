@@ -40,12 +40,13 @@ def test_far_spheres_are_drawn_first(folded):
 
 
 @pytest.mark.parametrize(
-    ("names", "text"), [(set(), ""), ({"M", "J2"}, ": J2, M collide"), ({"M", "J2", "L1"}, ": 3 parts collide")]
+    ("names", "text"),
+    [(set(), ", 20.5 mm clear"), ({"M", "J2"}, ": J2, M collide"), ({"M", "J2", "L1"}, ": 3 parts collide")],
 )
 def test_a_title_names_two_components_at_most(folded, names, text):
     robot = folded.robot
     roles = np.where(np.isin(robot.components, list(names)), Role.COLLIDING, Role.ARM)
-    motion = replace(folded, robot=replace(robot, roles=np.array([roles, roles])))
+    motion = replace(folded, robot=replace(robot, roles=np.array([roles, roles])), clearances_m=np.array([1, 0.0205]))
     assert plot_moments(motion).axes[1].get_title() == f"t = 0.20 s{text}"
 
 
@@ -53,6 +54,7 @@ def test_without_a_detector_the_links_are_drawn(qiao):
     (view,) = plot_moments(draw_motion(make_measured(qiao, detector="none"), [5])).axes
     assert circles(view) == []
     assert len(view.lines) > 3
+    assert view.get_title() == "t = 0.10 s"
 
 
 def test_it_becomes_a_picture(folded):
