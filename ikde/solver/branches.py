@@ -5,6 +5,7 @@ when each branch does not exist, is outside the limits in every turn, or collide
 throughout, and no kernel: what a search has missed is not counted on.
 """
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -204,15 +205,15 @@ def tell_branches(problem: Problem, target: Target) -> tuple[str, dict[tuple[str
 
 
 def _name_blockers(collision: CollisionModel, judged: Judged) -> list[str]:
-    """The pair that is deepest in each branch that collides, and by how much it is too near, in mm."""
+    """The pair that is deepest in each branch that collides, and by how much it is too near, in mm; alike ones once."""
     rows = np.flatnonzero(judged.colliding[0].any(axis=-1))
     gaps_m = np.where(judged.colliding[0][rows], compute_gaps(collision, judged.q[0][rows]), np.inf)
-    found = []
+    found = Counter[str]()
     for gaps in gaps_m:
         worst = int(gaps.argmin())
         a, b = collision.name_pair(worst)
-        found.append(f"{a} - {b} {1e3 * (gaps[worst] + collision.extra_m(worst)):.1f} mm")
-    return found
+        found[f"{a} - {b} {1e3 * (gaps[worst] + collision.extra_m(worst)):.1f} mm"] += 1
+    return [f"{words} ({count} of them)" if count > 1 else words for words, count in found.items()]
 
 
 def find_beyond(problem: Problem, target: Target) -> Floats | None:

@@ -1,5 +1,7 @@
 """What the closed form proves: nothing that can be reached is ruled out, and nothing that is ruled out is reached."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -18,7 +20,7 @@ from tests.problems import problem_of
 from tests.targets import free_rows, make_targets
 
 QIAO, UR5 = (ikde.load_robot(name) for name in ("qiao2021", "ur5"))
-SETTINGS = ikde.SolveSettings()
+OWN, SETTINGS = CollisionModel.of(UR5), ikde.SolveSettings()
 PARKED = {"d_x": 0.3, "d_y": -0.2, "q_z": 0.5}
 QUESTIONS = [problem_of(UR5), problem_of(QIAO, freeze=PARKED), problem_of(UR5, collision="none")]
 each_question = pytest.mark.parametrize("problem", QUESTIONS, ids=["ur5", "qiao2021", "ur5, not checked"])
@@ -106,6 +108,27 @@ def test_all_collisions_are_named_and_counted_as_plain_numpy_sees_them(rng):
         assert (f"{outside} outside the limits of" in reason) == (outside > 0)
         for (a, b), count in blocking.items():
             assert 0 < count <= hits[:, problem.collision.pairs.index((a, b))].sum()
+
+
+def test_among_obstacles_the_blocker_of_each_branch_is_named_alike_ones_once(rng):
+    wall = ikde.load_world({"obstacles": {"wall": {"box": [0.3, 2.0, 0.02], "position": [0.5, 0.0, 0.45]}}})
+    problem = problem_of(UR5, collision=OWN.in_world(wall))
+    targets = make_targets(UR5, random_q(UR5, rng, 400), "pose")
+    world = [str(reason) for reason in STOP_REASONS].index("world")
+    seen = np.flatnonzero(rule_out_by_branches(problem, targets) == world)
+    assert len(seen) > 5
+    several = 0
+    for row in seen.tolist():
+        judged = judge_branches(problem, targets.take(np.array([row])))
+        hits = judged.colliding[0][judged.colliding[0].any(axis=-1)]
+        reason, _ = tell_branches(problem, targets[row])
+        named = reason.split(f"{len(hits)} in collision: ")[1].split("; ")
+        found = [re.fullmatch(r"\w+ - \w+ (-?[\d.]+) mm(?: \((\d+) of them\))?", words) for words in named]
+        assert sum(int(match[2] or 1) for match in found) == len(hits)
+        assert len({match[0].split(" (")[0] for match in found}) == len(found)
+        assert all(float(match[1]) <= 0.0 for match in found)
+        several += any(match[2] for match in found)
+    assert several > 2
 
 
 def test_joints_that_stand_in_the_way_are_named(rng):
