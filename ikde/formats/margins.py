@@ -10,13 +10,14 @@ def read_margins(text: str | None, length_m: float) -> tuple[float, dict[str, fl
         InputError: for what is no such text.
     """
     margins: dict[str, float] = {}
-    for word in filter(None, (text or "").split(",")):
+    for word in [] if text is None else text.split(","):
         name, _, value = word.rpartition("=")
         name = name.strip()
-        if name in margins:
-            raise InputError("this margin is given twice", ("margin", *([name] if name else [])))
         try:
-            margins[name] = float(value) * length_m
+            margin_m = float(value) * length_m
         except ValueError:
             raise InputError(f"expected a distance or component=distance, got {quoted(word)}", ("margin",)) from None
+        if name in margins:
+            raise InputError("this margin is given twice", ("margin", *([name] if name else [])))
+        margins[name] = margin_m
     return margins.pop("", 0.0), margins

@@ -37,7 +37,7 @@ def is_curobo_scene(data: Mapping[str, Any]) -> bool:
 
 def read_curobo_scene(data: Mapping[str, Any], reading: Reading) -> World:
     """The world of a scene; raises `InputError` with the key that is wrong."""
-    obstacles = []
+    obstacles: dict[str, Obstacle] = {}
     for kind, entries in data.items():
         with prefix_errors(kind):
             if kind not in KINDS:
@@ -45,8 +45,10 @@ def read_curobo_scene(data: Mapping[str, Any], reading: Reading) -> World:
                 raise InputError(f"this kind is not read{nearest(kind, KINDS)}; expected some of {known}")
             for name, entry in as_mapping(entries).items():
                 with prefix_errors(name):
-                    obstacles.append(_read_obstacle(kind, name, as_mapping(entry), reading))
-    return make_world(obstacles)
+                    if name in obstacles:
+                        raise InputError(f"two obstacles are called {name!r}")
+                    obstacles[name] = _read_obstacle(kind, name, as_mapping(entry), reading)
+    return make_world(obstacles.values())
 
 
 def _read_obstacle(kind: str, name: str, entry: Mapping[str, Any], reading: Reading) -> Obstacle:

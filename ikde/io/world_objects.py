@@ -22,6 +22,7 @@ from ikde.io.cloud_file import read_cloud
 from ikde.io.mesh_solids import find_unit, read_mesh_hulls
 from ikde.io.scene_values import Frames, Reading, compose, rotation_from_unit_quat
 from ikde.kernels.arrays import Floats
+from ikde.model.robot import WORLD
 from ikde.model.rotation import check_rotation, length, measure_skew, rotation_from_rpy, rotation_with_z
 from ikde.model.solids import IDENTITY, MAX_CLOUD_POINTS, SIZES, Solid, make_columns, make_solid
 from ikde.model.world import MAX_SOLIDS, Obstacle, World, make_obstacle, make_world
@@ -36,6 +37,8 @@ def make_file_world(file: WorldFile, reading: Reading) -> World:
     frames = Frames()
     for name, entry in file.frames.items():
         with prefix_errors("frames", name):
+            if name == WORLD:
+                raise InputError("this name is that of what all frames are placed in; expected another one")
             frames.add(name, entry.frame, _to_pose(entry, file.units))
     for name in file.frames:
         with prefix_errors("frames", name, "frame"):
@@ -48,8 +51,7 @@ def make_file_world(file: WorldFile, reading: Reading) -> World:
             hulls += sum(solid.kind == "hull" for solid in obstacles[-1].solids)
             if solids > MAX_SOLIDS or hulls > MAX_HULLS:
                 raise InputError(f"expected at most {MAX_SOLIDS:,} solids in all, of them {MAX_HULLS:,} hulls")
-    with prefix_errors("switched_off"):
-        return make_world(obstacles, file.switched_off)
+    return make_world(obstacles, file.switched_off)
 
 
 def _to_obstacle(name: str, entry: ObstacleEntry, units: UnitsEntry, frames: Frames, reading: Reading) -> Obstacle:

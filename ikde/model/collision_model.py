@@ -117,7 +117,8 @@ class CollisionModel:
             margins_m: components that keep another distance in its place, by name, m.
 
         Raises:
-            InputError: for what does not fit the robot, and for what touches it in every configuration.
+            InputError: for what does not fit the robot. What touches it in every configuration is refused by `solve`,
+                `check` and all others that are asked in this world.
         """
         if not isinstance(world, World):
             raise InputError(f"expected a World, got {quoted(world)}", ("world",))
@@ -131,7 +132,8 @@ class CollisionModel:
                 raise InputError(f"no component is called {name!r}{nearest(name, self.components)}", ("margin", name))
             if not (is_number(value) and 0.0 <= value <= MAX_MAGNITUDE):
                 where = ("margin", name) if name else ("margin",)
-                raise InputError(f"expected a distance of at least 0 m, got {quoted(value)}", where)
+                most = f", up to {MAX_MAGNITUDE:g} m" if is_number(value) and value > 0.0 else " m"
+                raise InputError(f"expected a distance of at least 0{most}, got {quoted(value)}", where)
         kept = tuple((name, float(value)) for name, value in given.items())
         own = self.own
         model = CollisionModel(

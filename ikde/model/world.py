@@ -52,7 +52,7 @@ class World(ByFields):
     Equal are two of the same numbers and names, to the bit, also after pickling or copying.
 
     Raises:
-        InputError: for what is no obstacle, and for two of one name.
+        InputError: for what is no obstacle, for two of one name, and for a group that is switched off but none's.
     """
 
     obstacles: tuple[Obstacle, ...] = ()
@@ -61,12 +61,20 @@ class World(ByFields):
 
     def __post_init__(self) -> None:
         found: dict[str, Obstacle] = {}
+        for name, given in (("obstacles", self.obstacles), ("switched_off", self.switched_off)):
+            if isinstance(given, str) or not isinstance(given, Iterable):
+                what = "obstacles" if name == "obstacles" else "names of groups"
+                raise InputError(f"expected {what} in a sequence, got {quoted(given)}", (name,))
+            object.__setattr__(self, name, tuple(given))
         for place, obstacle in enumerate(self.obstacles):
             if not isinstance(obstacle, Obstacle):
                 raise InputError(f"expected an obstacle of a World, got {quoted(obstacle)}", ("obstacles", place))
             if found.setdefault(obstacle.name, obstacle) is not obstacle or len(found) <= place:
                 raise InputError(f"two obstacles are called {obstacle.name!r}", ("obstacles", obstacle.name))
-        object.__setattr__(self, "obstacles", tuple(self.obstacles))
+        known = dict.fromkeys(self.groups)
+        for group in self.switched_off:
+            if not isinstance(group, str) or group not in known:
+                raise InputError(f"no group is called {quoted(group)}{nearest(str(group), known)}", ("switched_off",))
         object.__setattr__(self, "switched_off", frozenset(self.switched_off))
 
     @cached_property
@@ -157,13 +165,13 @@ class World(ByFields):
 
 def make_world(obstacles: Iterable[Obstacle], switched_off: Iterable[str] = ()) -> World:
     """A world whose names are known to be right; raises `InputError`."""
-    world = World(obstacles=tuple(obstacles))
+    world = World(obstacles=tuple(obstacles), switched_off=frozenset(switched_off))
     if len(world) > MAX_OBSTACLES:
         raise InputError(f"expected at most {MAX_OBSTACLES:,} obstacles, got {len(world):,}", ("obstacles",))
     count = sum(len(obstacle.solids) for obstacle in world)
     if count > MAX_SOLIDS:
         raise InputError(f"expected at most {MAX_SOLIDS:,} solids in all, got {count:,}", ("obstacles",))
-    return world.switch(**dict.fromkeys(switched_off, False))
+    return world
 
 
 def make_obstacle(

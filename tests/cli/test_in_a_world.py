@@ -88,7 +88,8 @@ def test_a_world_that_does_not_fit_is_one_line(refuse, write, command, text, mes
         ("nan", "margin: expected a distance of at least 0 m, got nan"),
         ("-1", "margin: expected a distance of at least 0 m, got -1.0"),
         ("hnad=1", "margin.hnad: no component is called 'hnad'"),
-        ("1,,hand==2", "margin.hand=: no component is called 'hand='"),
+        ("1,,hand=2", "margin: expected a distance or component=distance, got ''"),
+        ("1,hand==2", "margin.hand=: no component is called 'hand='"),
     ],
 )
 def test_a_margin_that_is_none_is_one_line(refuse, write, margin, message):

@@ -17,6 +17,9 @@ def test_margins_are_one_for_all_and_those_of_components():
     ("text", "message"),
     [
         ("ten", r"^margin: expected a distance or component=distance, got 'ten'$"),
+        ("", r"^margin: expected a distance or component=distance, got ''$"),
+        ("1,", r"^margin: expected a distance or component=distance, got ''$"),
+        ("1,hand", r"^margin: expected a distance or component=distance, got 'hand'$"),
         ("hand=", r"^margin: expected a distance or component=distance, got 'hand='$"),
         ("1,2", r"^margin: this margin is given twice$"),
     ],

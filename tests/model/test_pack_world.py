@@ -40,6 +40,7 @@ def test_margins_that_do_not_fit_are_refused():
     for margin_m, margins_m, message in (
         (-0.1, None, r"^margin: expected a distance of at least 0 m, got -0.1"),
         (float("nan"), None, r"^margin: expected a distance of at least 0 m, got nan"),
+        (2e5, None, r"^margin: expected a distance of at least 0, up to 100000 m, got 200000"),
         (0.0, {"hnad": 0.0}, r"^margin\.hnad: no component is called 'hnad'"),
         (0.0, {"post": "x"}, r"^margin\.post: expected a distance of at least 0 m, got 'x'"),
     ):
