@@ -39,8 +39,9 @@ def find_candidates(solid: Solid, patches: Patches, protrusion_m: float, most: i
     radii, covers = np.empty(len(centres)), [np.empty(0, dtype=np.int64)] * len(centres)
     sign = np.where(np.arange(len(centres)) < len(inside), 1.0, -1.0)
     for block in _neighbours(centres, protrusion_m):
-        near = _patches_near(patches, centres[block], protrusion_m)
-        depth = sign[block] * _distances(solid, patches, centres[block])
+        around = _Around(patches, centres[block])
+        near = around.find_patches(protrusion_m)
+        depth = sign[block] * solid.surface.take(around.find_triangles()).distances(centres[block])
         radii[block] = depth + protrusion_m - WITHIN
         reach = patches.reach(centres[block], near)
         for index, row in zip(block, reach <= radii[block, None], strict=True):
@@ -57,21 +58,23 @@ def _neighbours(points: Floats, size_m: float) -> Iterator[Ints]:
         yield from np.array_split(block, len(block) // 64 + 1)
 
 
-def _patches_near(patches: Patches, block: Floats, protrusion_m: float) -> Ints:
-    """The patches that spheres around the points of a block [P, 3] may touch."""
-    middle = block.mean(axis=0)
-    spread = np.sqrt(((block - middle) ** 2).sum(axis=1).max())
-    gap = patches.gap(middle)
-    nearest = patches.reach(middle[None])[0].min()
-    return np.flatnonzero(gap <= nearest + 2.0 * spread + protrusion_m)
+class _Around:
+    """What of a surface may matter to a block of points [P, 3], by their middle: no farther than its nearest patch."""
 
+    def __init__(self, patches: Patches, block: Floats) -> None:
+        middle = block.mean(axis=0)
+        spread = np.sqrt(((block - middle) ** 2).sum(axis=1).max())
+        self._patches, self._gaps = patches, patches.gap(middle)
+        self._far = patches.reach(middle[None])[0].min() + 2.0 * spread
 
-def _distances(solid: Solid, patches: Patches, block: Floats) -> Floats:
-    """[P] m from the points of a block [P, 3] to the surface."""
-    middle = block.mean(axis=0)
-    spread = np.sqrt(((block - middle) ** 2).sum(axis=1).max())
-    nearest = np.flatnonzero(patches.gap(middle) <= patches.reach(middle[None])[0].min() + 2.0 * spread)
-    return solid.surface.take(np.unique(np.concatenate([patches.triangles[i] for i in nearest]))).distances(block)
+    def find_patches(self, protrusion_m: float) -> Ints:
+        """The patches that spheres around the points may touch."""
+        return np.flatnonzero(self._gaps <= self._far + protrusion_m)
+
+    def find_triangles(self) -> Ints:
+        """The triangles among which the nearest to each point is."""
+        nearest = np.flatnonzero(self._gaps <= self._far)
+        return np.unique(np.concatenate([self._patches.triangles[i] for i in nearest]))
 
 
 def grid_inside(solid: Solid, protrusion_m: float, most: int) -> Floats:

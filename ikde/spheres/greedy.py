@@ -64,6 +64,7 @@ class _Exchange:
         rows = np.repeat(large, [len(covers[i]) for i in large])
         ends = np.cumsum(np.bincount(patches))
         self.holders = np.split(rows[np.argsort(patches, kind="stable")], ends[:-1])
+        self.is_held = np.zeros(len(ends), dtype=np.bool_)
         self.times = np.bincount(np.concatenate([covers[i] for i in chosen]), minlength=len(ends))
 
     def exchange(self, out: list[int], draw: np.random.Generator) -> None:
@@ -94,5 +95,7 @@ class _Exchange:
             gains = np.bincount(holders)
             best = int((gains * (1.0 + 0.1 * draw.random(len(gains)))).argmax())
             found.append(best)
-            bare = np.setdiff1d(bare, self.covers[best], assume_unique=True)
+            self.is_held[self.covers[best]] = True
+            bare = bare[~self.is_held[bare]]
+            self.is_held[self.covers[best]] = False
         return found

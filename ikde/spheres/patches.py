@@ -54,11 +54,13 @@ def make_patches(corners: Floats, size_m: float) -> Patches:
     cells = np.floor(pieces.mean(axis=1) / size_m).astype(np.int64)
     order = np.lexsort((source, *cells.T))
     pieces, source, cells = pieces[order], source[order], cells[order]
-    first = np.flatnonzero(np.r_[True, (np.diff(cells, axis=0) != 0).any(axis=1)])
+    starts = np.r_[True, (np.diff(cells, axis=0) != 0).any(axis=1)]
+    first = np.flatnonzero(starts)
     low = np.minimum.reduceat(pieces.min(axis=1), first)
     high = np.maximum.reduceat(pieces.max(axis=1), first)
     halves = 0.5 * (high - low) + 1e-12 * np.abs(pieces).max()  # rounding of the middle
-    held = [np.unique(rows) for rows in np.split(source, first[1:])]
+    once = starts | np.r_[True, np.diff(source) != 0]  # in a cell, pieces of one triangle stand side by side
+    held = np.split(source[once], np.cumsum(once)[first[1:]] - 1)
     return Patches(0.5 * (low + high), halves, held)
 
 
