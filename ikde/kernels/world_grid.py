@@ -136,9 +136,9 @@ def count_cells(world, reach, out_counts):
 def visit_cells(world, s, dims, reach, out_counts, starts, out_solids, out_near):
     """Count solid `s` in each cell whose middle it is within `reach` of; with `starts`, enter it there, too."""
     grid, pitch = world.grid, world.grid[CELL_PITCH]
-    wide = world.solids[s, BOUND] + reach
     x, y, z = world.solids[s, PLACE], world.solids[s, PLACE + 1], world.solids[s, PLACE + 2]
     limit = reach + world.solids[s, ASKED]
+    wide = world.solids[s, BOUND] + limit
     for i in range(find_cell(grid, 0, x - wide), find_cell(grid, 0, x + wide) + 1):
         for j in range(find_cell(grid, 1, y - wide), find_cell(grid, 1, y + wide) + 1):
             for k in range(find_cell(grid, 2, z - wide), find_cell(grid, 2, z + wide) + 1):

@@ -79,6 +79,22 @@ def test_hits_and_distances_are_those_of_comparing_everything(fewest, rng):
     assert 0 < sum(verdicts) < len(verdicts)
 
 
+def test_what_is_asked_for_from_one_obstacle_reaches_as_far_in_cells(fewest, rng):
+    """A margin wider than all components are, of a small solid that stands alone."""
+    T = np.column_stack([np.eye(3), (0.9, 0.2, 0.5)])
+    world = make_world([make_obstacle("far", [make_solid("sphere", [0.002])], T, margin_m=0.6, ignore=("arm", "post"))])
+    world = world.add(make_obstacle("other", [make_solid("sphere", [0.002])], T))
+    verdicts = []
+    for q in draw(rng, 25):
+        arrays, (bounds, centres) = unpack_world.plain(pack(world, np.zeros(len(COMPONENTS)))), place(q)
+        gaps = plain_gaps(world, q) + KEPT[:, None]
+        with np.errstate(all="ignore"):
+            hit = find_hit.plain(arrays, COLLISION.arrays, bounds, centres)
+        assert (hit >= 0) == (gaps.min() <= 0.0)
+        verdicts.append(hit >= 0)
+    assert 0 < sum(verdicts) < len(verdicts)
+
+
 def test_what_is_farther_than_its_reach_is_not_measured(rng):
     world = random_world(rng, 3, kinds=CONVEX, far=0.5)
     arrays, (_, centres) = unpack_world.plain(pack(world)), place(ROBOT.home)
