@@ -1,5 +1,7 @@
 """A world becomes one array; what it names must be there."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -84,6 +86,7 @@ def test_a_changed_world_is_packed_as_if_nothing_had_been_before(count, rng):
         lambda world: world.remove("o1"),
         lambda world: world.remove("new").add(make_obstacle("new", [BALL], margin_m=0.3)),
         lambda world: world.remove("new").add(make_obstacle("new", [BALL], ignore=("hand",))),
+        lambda world: world.remove("new").add(replace(world["new"], margin_m=0.2)),
         lambda world: world.move("o0", shifted(rng)),
         lambda _: world,
     ]

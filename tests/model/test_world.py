@@ -127,6 +127,7 @@ def test_worlds_are_equal_by_value_also_those_that_travelled(world):
         world.switch(tools=False),
     ]
     assert all(world != other for other in others)
+    assert before.add(bigger).digest != world.digest
     assert world != 3
 
 
