@@ -47,6 +47,11 @@ def test_on_edges_and_axes_too(kind, size):
     assert np.abs([gap(arrays, p) for p in P] - measure_obstacle(obstacle, P)).max() < 1e-15
 
 
+def test_a_point_of_a_cloud_that_is_just_as_far_as_asked_is_found():
+    arrays = unpack(make_obstacle("scan", [make_solid("cloud", (0.25,), points=[[0.0, 0.0, 0.0]])]))
+    assert gap(arrays, np.array([1.0, 0.0, 0.0]), 0.75) == 0.75
+
+
 def test_a_cloud_says_nothing_beyond_its_reach(rng):
     points = rng.uniform(-1.0, 1.0, (3000, 3)) * [1.0, 1.0, 0.02]
     obstacle = make_obstacle("scan", [make_solid("cloud", (0.003,), points=points)])
