@@ -58,3 +58,34 @@ def test_what_stands_near_is_found_among_solids_and_clouds(rng):
         assert post in [pair.component for pair in near if pair.touches]
         away = world.move("near", shifted(1.0))
         assert post not in {pair.component for pair in find_standing_obstacles(OWN.in_world(away))}
+
+
+BLOCK = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+TALL = {  # solids that reach up to z = 1
+    "sphere": ((1.0,), None),
+    "box": ((2.0, 2.0, 2.0), None),
+    "cylinder": ((1.0, 2.0), None),
+    "capsule": ((0.5, 1.0), None),
+    "cone": ((1.0, 2.0), None),
+    "hull": ((), BLOCK),
+    "cloud": ((0.5,), [[0.0, 0.0, 0.5], [0.0, 0.0, -9.0]]),
+}
+
+
+@pytest.mark.parametrize("kind", TALL)
+def test_what_stands_on_a_large_solid_is_found(kind):
+    size, points = TALL[kind]
+    world = make_world([make_obstacle("block", [make_solid(kind, size, points=points)], shifted(-1.21))])
+    found = {pair.component: pair.clearance_m for pair in find_standing_obstacles(OWN.in_world(world))}
+    assert found["floor"] == pytest.approx(0.01, abs=1e-9)
+
+
+def test_an_obstacle_that_keeps_off_farther_than_it_ever_is_is_refused_by_its_own_line():
+    ball = make_solid("sphere", (0.1,))
+    wide = make_obstacle("wide", [ball], shifted(-0.35), margin_m=0.051)
+    model = OWN.in_world(make_world([wide, make_obstacle("sea", [make_solid("half_space")], shifted(5.0))]))
+    assert ("floor", "wide") in [(p.component, p.obstacle) for p in find_standing_obstacles(model) if p.touches]
+    with pytest.raises(InputError, match=r"^world\.wide: floor is 50 mm from wide .* `ignore: \[floor\]` there"):
+        ikde.check(ROBOT, ROBOT.home, model)
+    kept = OWN.in_world(make_world([make_obstacle("wide", [ball], shifted(-0.35), margin_m=0.049)]))
+    assert not any(pair.touches for pair in find_standing_obstacles(kept))

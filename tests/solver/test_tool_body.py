@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.model.collision_model import CollisionModel
+from ikde.model.robot import Frame
 from ikde.model.solids import make_solid
 from ikde.model.target import Targets
 from ikde.model.world import make_obstacle, make_world
@@ -24,6 +25,19 @@ from tests.three_joints import KINDS, ROBOT, free_q, meet
 from tests.written import written_kernels
 
 PANDA = ikde.load_robot("panda")
+SIDE = Frame(name="side", parent="tip", p_parent_frame=np.array([0.1, 0.05, 0.02]), R_parent_frame=np.eye(3))
+ROWS = (
+    *ROBOT.approximations["balls"],
+    *(
+        replace(row, start=a, end=a, component=c, count=1)
+        for row, a, c in (
+            (ROBOT.approximations["balls"][-1], "side", "hand"),
+            (ROBOT.approximations["balls"][-1], "tip", "arm"),
+        )
+    ),
+)
+BENT = replace(ROBOT, name="bent", frames=(*ROBOT.frames, SIDE), approximations={"balls": ROWS})
+"""With a sphere beside the tool's axis, and a component of which a part alone is fixed to the tool."""
 WORLD = STOP_REASONS.index(StopReason.WORLD)
 WIDE = ikde.SolveSettings(position_tolerance_m=2e-3, orientation_tolerance_rad=0.02)
 
@@ -64,7 +78,7 @@ def true_shortage(model, spheres, T):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("robot", [ROBOT, PANDA], ids=["three joints", "panda"])
+@pytest.mark.parametrize("robot", [ROBOT, PANDA, BENT], ids=["three joints", "panda", "bent"])
 def test_what_is_claimed_holds_at_every_pose_that_a_target_accepts(robot, kind, rng):
     own, spheres, proved = CollisionModel.of(robot), spheres_of_the_tool(robot), 0
     body = find_tool_body(own)
