@@ -56,6 +56,15 @@ def test_poses_compose_and_quaternions_have_w_last():
     assert obstacle.solids[0].T_obstacle_solid[:, 3].tolist() == [1, 0, 0]
 
 
+def test_a_pose_of_an_object_is_in_the_frame_of_its_header():
+    held = change(
+        id="held", header={"frame_id": "can"}, pose={"position": [1, 0, 0], "orientation": [HALF, 0, 0, HALF]}
+    )
+    can = change(pose={"position": [0, 0, 2], "orientation": QUARTER})
+    obstacle = read(scene(held, can))[0]["held"]
+    assert np.allclose(obstacle.T_world_obstacle, [[0, 0, 1, 0], [1, 0, 0, 1], [0, 1, 0, 2]])
+
+
 def test_values_may_have_names_and_types_numbers():
     pose = {"position": {"z": 0.0, "y": 0.0, "x": 1.0}, "orientation": {"w": 1.0, "x": 0, "y": 0, "z": 0}}
     named = change(primitives=[{"type": 3, "dimensions": [0.3, 0.05]}], primitive_poses=[pose], operation=0)
