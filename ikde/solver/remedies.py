@@ -71,7 +71,7 @@ def _try_branches(problem: Problem, target: Target, blockers: Iterable[str]) -> 
     q = q[(np.isfinite(q) & (problem.lower <= q) & (q <= problem.upper)).all(axis=-1)]
     gaps_m, own = compute_gaps(model, q) - model.limit_m, len(model.pairs)
     is_free = (gaps_m[:, :own] > 0.0).all(axis=-1)
-    q, of_world = q[is_free], gaps_m[is_free, own:].reshape(int(is_free.sum()), -1, len(model.obstacles)).min(axis=1)
+    q, of_world = q[is_free], gaps_m[is_free, own:].reshape(-1, len(model.components), len(model.obstacles)).min(axis=1)
     names = [obstacle.name for obstacle in model.obstacles]
     for name in blockers:
         others = np.delete(of_world, names.index(name), axis=1)

@@ -100,3 +100,11 @@ def test_where_no_obstacle_blocks_nothing_is_tried(monkeypatch):
     problem = replace(problem_of(ROBOT), collision=model)
     probe = Probe(meet(ROBOT, Q, "position"), 0, 0, 0.0)
     assert module.try_in_world(problem, probe, {("post", "hand"): 3}) is None
+
+
+def test_of_a_pose_whose_configurations_all_collide_with_themselves_nothing_is_said_to_help(ur5):
+    q = np.array([0.8, -1.4, -2.8, -2.9, 1.9, 2.5])  # as do the seven others of this pose
+    target = meet(ur5, q, "pose")
+    blocked = solve(ur5, target, world_of(ball=ball(target.p_world_tool)), 0.01)
+    assert (blocked.stop_reason, blocked.hint) == ("world", None)
+    assert "of 8 configurations with this pose 8 in collision" in blocked.reason
