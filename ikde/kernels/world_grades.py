@@ -31,6 +31,8 @@ from ikde.kernels.obstacles import (
     SPHERE,
 )
 
+ROUNDING = 1.0 + 1e-12  # of a square, which may come out too large
+
 
 @inline_kernel
 def square_from_segment(px, py, pz, ax, ay, az, bx, by, bz):
@@ -155,8 +157,14 @@ def measure_world(world, collision, centres, reach):
             asked = world.asked[component, owner]
             if asked == -math.inf:
                 continue
+            row = world.solids[s]
+            ox, oy, oz, bound = row[PLACE], row[PLACE + 1], row[PLACE + 2], row[BOUND]
             for i in range(collision.components[component, FIRST], collision.components[component, LAST]):
                 less = collision.radius[i] + asked
+                far = best + less + bound
+                dx, dy, dz = centres[0, i] - ox, centres[1, i] - oy, centres[2, i] - oz
+                if far < 0.0 or dx * dx + dy * dy + dz * dz > ROUNDING * far * far:
+                    continue  # as `grade_solid` would find: not to call it takes 0.6 of the time of an answer
                 gap = grade_solid(world, s, centres[0, i], centres[1, i], centres[2, i], best + less) - less
                 if gap < best:
                     best, which = gap, component * obstacles + owner
