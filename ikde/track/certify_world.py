@@ -3,7 +3,7 @@
 A distance to anything that stands still changes by no more than the point moves. A revolute joint that moves by |dq_j|
 moves no point farther than |dq_j| times its largest distance from the axis, a prismatic one no farther than |dq_j|, and
 a base with wheels none farther than its arc is long, and its rotation times that distance. So the gap of a component
-and an obstacle is nowhere in a segment below (gap(0) + gap(1) - travel) / 2. Where that is too weak segments are halved.
+and an obstacle is nowhere in a segment below (gap(0) + gap(1) - travel) / 2. Where that is too weak they are halved.
 """
 
 from collections.abc import Mapping
