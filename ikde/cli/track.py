@@ -3,6 +3,7 @@
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +13,7 @@ import typer
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
 from ikde.cli.output import Working, layout, print_json, print_result, print_written, working
+from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -35,7 +37,9 @@ def track(
     start: Annotated[
         str | None, instead(metavar="Q", help="Configuration at the first pose (as --q of check).")
     ] = None,
-    unit: Annotated[LengthUnit, instead("--unit", help="Unit of lengths in --start.")] = LengthUnit.m,
+    world: WorldOption = None,
+    margin: MarginOption = None,
+    unit: Annotated[LengthUnit, instead("--unit", help="Unit of lengths in --start and --margin.")] = LengthUnit.m,
     angles: Annotated[AngleUnit, instead("--angles", help="Unit of angles in --start.")] = AngleUnit.rad,
     convention: Annotated[
         str | None, instead(help="Convention of joint values in --start (default: the robot's own).")
@@ -43,7 +47,7 @@ def track(
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="Make the page with figures: report.html.")] = True,
     as_json: JsonOption = False,
 ) -> None:
-    """Follow a tool path inside all limits, free of self-collision at the samples and between them.
+    """Follow a tool path inside all limits, free of self-collision and of a world at the samples and between them.
 
     If it cannot be followed it says at which sample and what is in the way, writes what was followed, and exits with 1.
     Lengths are printed in mm and ranges in deg; files and --json are in m, rad and s.
@@ -58,8 +62,9 @@ def track(
     gc.enable()
     plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
+    plan = replace(plan, collision=place_in_world(plan.collision, world, margin, unit))
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
-    given = {"method": method, "drive": drive, "seed": seed, "start": start}
+    given = {"method": method, "drive": drive, "seed": seed, "start": start, "world": world, "margin": margin}
     units = {"unit": unit if unit != LengthUnit.m else None, "angles": angles if angles != AngleUnit.rad else None}
     command = repeat_command(["track", str(spec)], {**given, **units, "convention": convention})
     with open_folder(out) if out else nullcontext():

@@ -1,6 +1,7 @@
 """Linearised inequality constraints on a step along a path: slack + slope . change of the step >= 0.
 
-Pairs of components keep their distance, a base its place, wheels their speed, the tool its distance from the platform.
+Pairs of components keep their distance, and all of them what is asked for from a world; a base its place, wheels their
+speed, the tool its distance from the platform.
 """
 
 import math
@@ -14,9 +15,17 @@ from ikde.kernels.drive import fold_row
 from ikde.kernels.jit import inline_kernel, kernel, leaf_kernel
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.kernels.trig import sin_cos
+from ikde.kernels.world_contacts import (
+    PLACE,
+    WorldContacts,
+    fill_world_gradient,
+    find_world_contacts,
+    make_world_contacts,
+)
 
 MAX_PAIRS = 8  # the nearest
-MAX_CONSTRAINTS = MAX_PAIRS + 13  # and eight of a base's place, four of its wheels, one of the distance
+MAX_SOLIDS = 8  # likewise, of a world
+MAX_CONSTRAINTS = MAX_PAIRS + MAX_SOLIDS + 13  # and eight of a base's place, four of its wheels, one of the distance
 INSIDE = 2e-9  # m: where a curved constraint is set, so that meeting it to 1e-9 is meeting it
 
 
@@ -25,9 +34,10 @@ class StepConstraints(NamedTuple):
 
     slack: Floats  # [MAX_CONSTRAINTS] m
     slope: Floats  # [MAX_CONSTRAINTS, D] m for the whole of the largest step
-    pair: Ints  # [MAX_CONSTRAINTS] the pair of components of a row; -1: none
+    pair: Ints  # [MAX_CONSTRAINTS] the place of a row in the table of clearances; -1: none
     row: Floats  # [N]
     contacts: Contacts
+    world: WorldContacts
 
 
 @kernel
@@ -39,12 +49,30 @@ def make_step_constraints(collision, joints, size):
         np.empty(MAX_CONSTRAINTS, dtype=np.int64),
         np.empty(joints),
         make_contacts(np.empty((collision.components.shape[0], 3)), np.empty((3, collision.radius.size)), MAX_PAIRS),
+        make_world_contacts(MAX_SOLIDS),
     )
 
 
 @leaf_kernel
+def constrain_world(robot, collision, drive, track, T_world_body, q, step, count, constraints):
+    """Rows of what is near of the world, where the spheres are placed; returns how many rows there are then.
+
+    What is asked for there takes the place of the safe distance, which the margin and the reach are above.
+    """
+    near, contacts, safe = constraints.world, constraints.contacts, collision.safe_distance
+    reach = track.reach - safe
+    found = find_world_contacts(collision, contacts.bounds, contacts.centres, reach, near.gap, near.found, near.normal)
+    for k in range(found):
+        fill_world_gradient(robot, collision, T_world_body, contacts.centres, near, k, constraints.row)
+        fold_row(drive, q, step, constraints.row, constraints.slope[count])
+        constraints.slack[count], constraints.pair[count] = near.gap[k] + safe - track.margin, near.found[k, PLACE]
+        count += 1
+    return count
+
+
+@leaf_kernel
 def constrain_pairs(robot, collision, drive, track, T_world_body, q, step, constraints):
-    """Rows of the pairs nearer than the reach at the poses of the step's end; returns how many."""
+    """Rows of the pairs, and of what of a world is, nearer than the reach at the poses of the step's end; how many."""
     if track.reach == -math.inf:
         return 0
     contacts = constraints.contacts
@@ -55,6 +83,8 @@ def constrain_pairs(robot, collision, drive, track, T_world_body, q, step, const
         fill_gradient(robot, collision, T_world_body, contacts, k, constraints.row)
         fold_row(drive, q, step, constraints.row, constraints.slope[k])
         constraints.slack[k], constraints.pair[k] = contacts.gap[k] - track.margin, contacts.spheres[k, 0]
+    if collision.world.size > 0:
+        return constrain_world(robot, collision, drive, track, T_world_body, q, step, count, constraints)
     return count
 
 

@@ -38,6 +38,7 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "asked_start": None if plan.start is None else name_joints(motion, plan.start),
         "limits": _limits_json(motion),
         "detector": motion.collision.name if motion.collision.pairs else None,
+        **_world_json(motion),
         "dt_s": trajectory.path.dt_s,
         "points": trajectory.path.samples,
         "reached_points": trajectory.reached_points,
@@ -162,11 +163,15 @@ def _list_clearance(motion: TrackSummary) -> Iterator[Row]:
         return
     count = motion.grade.violations.collision
     hits = f", {count} collide" if count else ""
-    safe = f"above {MM * collision.limit_m:g} mm"
+    place = motion.closest_place or 0
+    safe = f"above {MM * (collision.limit_m + collision.extra_m(place)):.6g} mm"
     yield f"clearance at samples, {pair[0]} and {pair[1]}{hits}", f"{gap_mm(clearance_m)} mm", safe
     if motion.certificate is not None:
         # The samples keep the safe distance; between them what is certified is that nothing touches.
         yield "clearance between samples, certified", f"{gap_mm(motion.certificate.clearance_m)} mm", "no contact"
+        if collision.obstacles:
+            room = f"{gap_mm(float(motion.certificate.room_m.min()))} mm"
+            yield "between samples beyond margins to the world, certified", room, "above 0"
 
 
 def largest_wheel_speed(motion: TrackSummary) -> float | None:
@@ -198,6 +203,16 @@ def _limits_json(motion: TrackSummary) -> dict[str, Any]:
         if data[key] is not None:
             data[key] = {joint: _finite(value) for joint, value in name_joints(motion, data[key]).items()}
     return data
+
+
+def _world_json(motion: TrackSummary) -> dict[str, Any]:
+    """The world by its digest, and what was to be kept from it; nothing without one."""
+    collision, proof = motion.collision, motion.certificate
+    if not collision.obstacles:
+        return {}
+    room_m = None if proof is None else float(proof.room_m.min())
+    margins = {"margin_m": collision.margin_m, "margins_m": dict(collision.margins_m)}
+    return {"world": {"digest": collision.world.digest, **margins, "certified_room_m": room_m}}
 
 
 def _is_prismatic(motion: TrackSummary, name: str) -> bool:

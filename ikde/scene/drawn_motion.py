@@ -40,13 +40,14 @@ def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp])
     """The robot at `samples` of a motion, coloured by what plain numpy measured there."""
     trajectory, chosen = motion.trajectory, np.asarray(samples, np.intp)
     gaps_m = motion.grade.gaps_m[chosen]
+    is_checked = gaps_m.shape[1] > 0
     return DrawnMotion(
         robot=draw_robot(motion.collision, trajectory.q[chosen], gaps_m),
         samples=chosen,
         times_s=trajectory.times_s[chosen],
         duration_s=trajectory.path.duration_s,
         path_m=trajectory.path.p_world_tool,
-        clearances_m=gaps_m.min(axis=1, initial=np.inf),
+        clearances_m=motion.grade.clearances_m[chosen] if is_checked else np.full(len(chosen), np.inf),
     )
 
 

@@ -14,10 +14,12 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.base_motion import base_twist, find_wheels, step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
-from ikde.model.tree import Tree, build_tree
+from ikde.model.tree import build_tree
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import compute_orientation_errors
+from ikde.track.certify_world import bound_world
 from ikde.track.path import ToolPath
+from ikde.track.travel import chain_of, list_centres, max_radius
 
 SHARP_M, SHARP = 1e-4, 0.02  # how near the bound shall come to the true clearance: m, and as a share of it
 MAX_HALVINGS = 14
@@ -28,25 +30,48 @@ class Certificate:
     """What is certain about the motion between its samples."""
 
     clearance_m: float
-    """No gap of the motion is smaller, at any moment."""
+    """No gap of the motion is smaller, at any moment; in a world neither of components nor to obstacles."""
     segment_m: Floats
     """[M] the same, of each segment."""
+    room_m: Floats
+    """[M] by how much more than what is asked for everything keeps: of components, that nothing touches; of obstacles,
+    their margins."""
 
     def __repr__(self) -> str:
         return f"<Certificate: at least {1e3 * self.clearance_m:.6g} mm in {len(self.segment_m)} segments>"
 
     @property
     def is_free(self) -> bool:
-        """True if nothing can touch between samples."""
-        return bool(self.clearance_m > 0.0)
+        """True if nothing can touch between samples, and every margin to an obstacle is kept."""
+        return bool(self.room_m.min() > 0.0)
 
 
-def certify(collision: CollisionModel, q: Floats) -> Certificate | None:
-    """Bound the clearance of the motion through `q` [M + 1, N]; None without a pair or a segment: not checked."""
+def certify(collision: CollisionModel, q: Floats, drive: str = "omnidirectional") -> Certificate | None:
+    """Bound the clearance of the motion through `q` [M + 1, N]; None without a pair or a segment: not checked.
+
+    `drive`: of a base, which moves on arcs if it is `differential`; it matters in a world alone.
+    """
     if len(q) < 2 or not collision.pairs:
         return None
-    segments = bound_segments(collision, q)
-    return Certificate(clearance_m=float(segments.min()), segment_m=segments)
+    room = bound_all(collision, q, drive)
+    segments = (room + list_kept_m(collision)).min(axis=1)
+    return Certificate(clearance_m=float(segments.min()), segment_m=segments, room_m=room.min(axis=1))
+
+
+def list_kept_m(collision: CollisionModel) -> Floats:
+    """What is asked for between samples of each of `all_pairs`, m: that components do not touch, and margins."""
+    kept = collision.extras_m + collision.limit_m
+    kept[: len(collision.pairs)] = 0.0
+    return kept
+
+
+def bound_all(collision: CollisionModel, q: Floats, drive: str) -> Floats:
+    """Lower bound of what each of `all_pairs` keeps beyond what is asked for [M, P + C O], m."""
+    own = bound_pairs(collision, q)
+    if not collision.obstacles:
+        return own
+    world = bound_world(collision, q, drive)
+    return np.concatenate([own, world.reshape(len(own), -1)], axis=1)
 
 
 def bound_segments(collision: CollisionModel, q: Floats) -> Floats:
@@ -60,7 +85,7 @@ def bound_pairs(collision: CollisionModel, q: Floats) -> Floats:
     if not lower.size:
         return lower
     radii = travel_radii(collision, np.abs(q).max(axis=0))
-    gaps = compute_gaps(collision, q)
+    gaps = compute_gaps(collision, q, collision.pairs)
     least = gaps.min()
     goal = max(least - max(SHARP_M, SHARP * abs(least)), 0.5 * least if least > 0.0 else -np.inf)
     which, start, end = np.arange(len(lower)), q[:-1], q[1:]
@@ -74,7 +99,7 @@ def bound_pairs(collision: CollisionModel, q: Floats) -> Floats:
             break
         which, start, end, before, after = which[weak], start[weak], end[weak], before[weak], after[weak]
         middle = 0.5 * (start + end)
-        between = compute_gaps(collision, middle)
+        between = compute_gaps(collision, middle, collision.pairs)
         which = np.concatenate([which, which])
         start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
         before, after = np.concatenate([before, between]), np.concatenate([between, after])
@@ -87,46 +112,16 @@ def travel_radii(collision: CollisionModel, max_abs_q: Floats) -> Floats:
     `max_abs_q` [N], m and rad: what a prismatic joint has carried outwards, a revolute one moves more.
     """
     robot, tree = collision.robot, build_tree(collision.robot)
-    centres: dict[str, list[tuple[int, Floats]]] = {}
-    for sphere in collision.spheres:
-        centres.setdefault(sphere.component, []).append((sphere.body, sphere.p_body_sphere))
+    centres = list_centres(collision)
     radii = np.zeros((len(collision.pairs), len(robot.joints)))
     for row, names in zip(radii, collision.pairs, strict=True):
-        chains = [_chain(tree, centres[name][0][0]) for name in names]
+        chains = [chain_of(tree, centres[name][0][0]) for name in names]
         for name, chain, other in zip(names, chains, chains[::-1], strict=True):
             for body in chain:
                 if body not in other:
                     joint = tree.bodies[body].joint
-                    row[joint] = max(_max_radius(robot, tree, max_abs_q, chain, body, p) for _, p in centres[name])
+                    row[joint] = max(max_radius(robot, tree, max_abs_q, chain, body, p) for _, p in centres[name])
     return radii
-
-
-def _chain(tree: Tree, body: int) -> list[int]:
-    """Bodies from `body` down to the first that the world carries."""
-    chain = []
-    while body != 0:
-        chain.append(body)
-        body = tree.bodies[body].parent
-    return chain
-
-
-def _max_radius(robot: Robot, tree: Tree, max_abs_q: Floats, chain: list[int], body: int, point: Floats) -> float:
-    """Largest distance from the axis of `body` that a point of the chain's first body can have."""
-    joint = tree.bodies[body].joint
-    if joint is None or robot.joints[joint].kind == "prismatic":
-        return 1.0
-    inner, length = chain[: chain.index(body)], 0.0
-    for carried in inner:  # from the point towards the joint: the point may stand anywhere around each
-        length += float(np.linalg.norm(point)) + _prismatic_travel(robot, tree, max_abs_q, carried)
-        point = tree.bodies[carried].T_parent_body[:3, 3]
-    axis = tree.bodies[body].axis
-    return length + float(np.linalg.norm(point - (point @ axis) * axis))
-
-
-def _prismatic_travel(robot: Robot, tree: Tree, max_abs_q: Floats, body: int) -> float:
-    """How far a prismatic body is from where it is at q = 0, at most, m."""
-    joint = tree.bodies[body].joint
-    return float(max_abs_q[joint]) if joint is not None and robot.joints[joint].kind == "prismatic" else 0.0
 
 
 def halfway(robot: Robot, q: Floats, drive: str, dt_s: float) -> Floats:

@@ -10,7 +10,7 @@ from ikde.model.robot import MAX_MAGNITUDE
 from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
-from ikde.track.certify import bound_pairs
+from ikde.track.certify import bound_all
 from ikde.track.diagnosis import (
     explain_stop,
     first_out_of_reach,
@@ -141,9 +141,9 @@ class Continuation:
 def cut_at_doubt(rollout: Rollout) -> Rollout:
     """The same up to the first segment that may touch on its way."""
     follower = rollout.follower
-    bounds = bound_pairs(follower.collision, rollout.q)
+    bounds = bound_all(follower.collision, rollout.q, follower.plan.base_drive)
     doubtful = next((k for k, bound in enumerate(bounds.min(axis=1, initial=np.inf)) if not bound > 0.0), None)
     if doubtful is None:
         return rollout
-    pair = follower.collision.pairs[int(np.argmin(bounds[doubtful]))]
-    return replace(rollout, last=doubtful, stop=tell_uncertified(follower, doubtful + 1, pair))
+    place = int(np.argmin(bounds[doubtful]))
+    return replace(rollout, last=doubtful, stop=tell_uncertified(follower, doubtful + 1, place))

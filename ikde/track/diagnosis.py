@@ -24,6 +24,7 @@ FACTORS = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 OF_SOLVER = {
     StopReason.OUT_OF_REACH: TrackStopReason.OUT_OF_REACH,
     StopReason.COLLISION: TrackStopReason.COLLISION,
+    StopReason.WORLD: TrackStopReason.COLLISION,
     StopReason.LIMITS: TrackStopReason.JOINT_LIMIT,
 }
 
@@ -54,6 +55,8 @@ def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackSt
         reason = TrackStopReason.BUDGET
         off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
         text = f"no configuration was found in {result.attempts} attempts; the best is off by {off}"
+    if result.stop_reason == StopReason.WORLD and result.hint:
+        text = f"{text}; {result.hint}"
     return TrackStop(sample=sample, reason=reason, text=f"{tell_when(follower, sample)}: {text}", pair=pair)
 
 
@@ -84,9 +87,15 @@ def explain_stop(rollout: Rollout, static: SolveResult | None) -> TrackStop:
     return TrackStop(sample=sample, reason=TrackStopReason.BUDGET, text=text)
 
 
-def tell_uncertified(follower: Follower, sample: int, pair: tuple[str, str]) -> TrackStop:
-    """A stop before a segment in which a pair may touch on its way."""
-    text = f"{tell_when(follower, sample)}: contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
+def tell_uncertified(follower: Follower, sample: int, place: int) -> TrackStop:
+    """A stop before a segment in which a pair, by its place in the table of clearances, may touch on its way."""
+    collision, pair = follower.collision, follower.collision.name_pair(place)
+    kept_m = collision.extra_m(place) + collision.limit_m
+    is_world = place >= len(collision.pairs)
+    what = f"that {pair[0]} keeps {1e3 * kept_m:.4g} mm from {pair[1]}" if is_world and kept_m > 0.0 else ""
+    text = f"contact of {pair[0]} and {pair[1]} on the way there can't be excluded"
+    text = f"it can't be certified {what} on the way there" if what else text
+    text = f"{tell_when(follower, sample)}: {text}"
     return TrackStop(sample=sample, reason=TrackStopReason.COLLISION, text=text, pair=pair)
 
 
@@ -120,10 +129,10 @@ def _without_collision(rollout: Rollout) -> TrackStop | None:
         return None
     gaps = compute_gaps(follower.collision, found[0])
     worst = int(np.argmin(gaps))
-    pair, gap = pairs[worst], 1e3 * float(gaps[worst])
-    least = 1e3 * follower.track.margin
-    if gap > least:
+    if gaps[worst] > follower.track.margin:
         return None
+    pair, extra_m = follower.collision.name_pair(worst), follower.collision.extra_m(worst)
+    gap, least = 1e3 * (float(gaps[worst]) + extra_m), 1e3 * (follower.track.margin + extra_m)
     how = f"are {gap:.3g} mm apart, not {least:.3g} mm," if gap > 0.0 else f"overlap by {-gap:.3g} mm"
     text = f"{tell_when(follower, sample)}: {pair[0]} and {pair[1]} {how} {IN_STEP}"
     return TrackStop(sample=sample, reason=TrackStopReason.COLLISION, text=text, pair=pair)

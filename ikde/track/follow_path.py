@@ -47,7 +47,9 @@ def follow_path(
     freeze: Freeze | None = None,
     settings: TrackSettings | None = None,
 ) -> Trajectory:
-    """Follow the path inside all limits, free of self-collision at the samples and between them if there is a detector.
+    """Follow the path inside all limits, free of self-collision and of a world at the samples and between them.
+
+    Without a detector nothing is compared.
 
     Args:
         robot: the robot, its name or the path of its file.
@@ -59,7 +61,8 @@ def follow_path(
         limits: None for the robot's own speeds and accelerations, and the paper's limits (`MotionLimits.of`).
         start: the configuration at the first pose [N], or by name; None for the one that `continuation` finds best.
         seed: same seed, same bits.
-        collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
+        collision: a detector's name, a `Detector`, a `World`, a `CollisionModel` (with margins: its `in_world`),
+            `"none"`, or None for the robot's default.
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
         settings: of that method: `ContinuationSettings`, `OptimizedSettings` or `TypicalSettings`; None for its
             usual ones.
@@ -115,7 +118,7 @@ def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,
         grade=graded,
-        certificate=certify(plan.collision, q),
+        certificate=certify(plan.collision, q, drive),
         deviation_m=deviation_m,
         deviation_rad=deviation_rad,
     )

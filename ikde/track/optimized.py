@@ -85,7 +85,7 @@ def tell_unsolved(follower: Follower, sample: int, verdict: int, pair: int, q: F
         text = f"{when}: no step within the accelerations stays inside the joint ranges and can brake before they end"
         return TrackStop(sample=sample, reason=TrackStopReason.ACCELERATION_LIMIT, text=text)
     if verdict == COLLIDES:
-        names = follower.collision.pairs[pair]
+        names = follower.collision.counted[pair]
         text = f"{when}: {names[0]} and {names[1]} collide in {best}"
         return TrackStop(sample=sample, reason=TrackStopReason.COLLISION, text=text, pair=names)
     if verdict == LIMITED:

@@ -74,16 +74,23 @@ class TrackSummary:
 
     @cached_property
     def colliding(self) -> list[set[str]]:
-        """Components seen within the safe distance of another, for each sample; none without a detector."""
-        pairs = self.collision.pairs
+        """What is seen within the safe distance of another, for each sample, components and obstacles; none without a
+        detector.
+        """
+        pairs = self.collision.all_pairs
         touching = self.grade.gaps_m <= self.collision.limit_m
         return [{name for pair in np.flatnonzero(row) for name in pairs[pair]} for row in touching]
 
     @property
     def closest_pair(self) -> tuple[str, str] | None:
-        """The pair with the smallest clearance at any sample."""
+        """What has the least room at any sample: two components, or a component and an obstacle."""
+        return None if self.closest_place is None else self.collision.name_pair(self.closest_place)
+
+    @property
+    def closest_place(self) -> int | None:
+        """Its place in the table of clearances; None where nothing was checked."""
         gaps = self.grade.gaps_m
-        return self.collision.pairs[int(np.argmin(gaps.min(axis=0)))] if gaps.size else None
+        return int(np.argmin(gaps.min(axis=0))) if gaps.size else None
 
     @property
     def steps(self) -> Floats:

@@ -98,7 +98,8 @@ class Trajectory:
     grade: TrackGrade
     """What plain numpy says about the samples."""
     certificate: Certificate | None
-    """What is certain about self-collision between them; None: not checked, without a detector or a motion."""
+    """What is certain about collisions between them, with itself and a world; None: not checked, without a detector or
+    a motion."""
     deviation_m: Floats
     """[M] distance of the tool from the path half-way between samples."""
     deviation_rad: Floats
@@ -120,9 +121,9 @@ class Trajectory:
 
     @property
     def clearance_m(self) -> Floats | None:
-        """[M + 1] smallest over the detector's pairs; None without any: not checked."""
-        gaps = self.grade.gaps_m
-        return gaps.min(axis=1) if gaps.shape[1] else None
+        """[M + 1] smallest over the detector's pairs, in a world of what has the least room; None without any pairs:
+        not checked."""
+        return self.grade.clearances_m if self.grade.gaps_m.shape[1] else None
 
     @property
     def certified_clearance_m(self) -> float | None:

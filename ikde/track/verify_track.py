@@ -19,6 +19,7 @@ from ikde.solver.verify import Bools, compute_orientation_errors
 from ikde.track.limits import MotionLimits
 from ikde.track.path import ToolPath
 
+AT_ONCE = 256  # configurations whose clearances are computed together: more do not fit into the cache
 ROUNDING = 1e-9  # share of a limit, and m or rad of a range, that rounding may take
 
 
@@ -37,7 +38,7 @@ class Violations:
     distance: int
     """Samples with the tool too far from the platform's centre."""
     collision: int | None
-    """Samples within the safe distance; None without a detector: not checked."""
+    """Samples within the safe distance, or nearer to an obstacle than is asked for; None: not checked, no detector."""
     sideways: int
     """Segments in which a base with wheels would slip sideways, by more than 1e-9 m/s."""
 
@@ -68,7 +69,10 @@ class TrackGrade:
     sideways_m_s: Floats
     """[M] chord velocity across the mid heading (5); 0 without wheels."""
     gaps_m: Floats
-    """[M + 1, P] clearance of each pair."""
+    """[M + 1, P] clearance of each pair; in a world that of each component and obstacle follows, less what is asked for
+    beyond the safe distance, so that all are compared with that."""
+    extras_m: Floats
+    """[P] what is asked for beyond it: 0 between components."""
     distance_m: Floats
     """[M + 1] of the tool from the platform's centre (18); NaN if none is named."""
     violations: Violations
@@ -95,12 +99,18 @@ class TrackGrade:
 
     @cached_property
     def clearance_m(self) -> float | None:
-        """Smallest at any sample; None without a pair or a sample: not checked."""
-        return float(self.gaps_m.min()) if self.gaps_m.size else None
+        """Of what has the least room, at any sample; None without a pair or a sample: not checked."""
+        return float(self.clearances_m[self.gaps_m.min(axis=1).argmin()]) if self.gaps_m.size else None
+
+    @cached_property
+    def clearances_m(self) -> Floats:
+        """[M + 1] of what has the least room at each sample, m; there must be pairs."""
+        tightest = self.gaps_m.argmin(axis=1)
+        return self.gaps_m[np.arange(len(tightest)), tightest] + self.extras_m[tightest]
 
     @property
     def accepted(self) -> bool:
-        """True if no limit is broken, self-collision among them if it was checked."""
+        """True if no limit is broken, collisions among them if they were checked."""
         return self.violations.total == 0
 
 
@@ -126,7 +136,7 @@ def verify_track(
     if base[0] >= 0:
         v, omega, across = base_twist(q[:-1, base], q[1:, base], dt_s)
     wheels = wheel_speeds(robot.wheels, v, omega) if robot.wheels else np.full((len(v), 2), np.nan)
-    gaps = compute_gaps(collision, q)
+    gaps = np.concatenate([compute_gaps(collision, q[k : k + AT_ONCE]) for k in range(0, len(q) or 1, AT_ONCE)])
     centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
     driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)
@@ -141,6 +151,7 @@ def verify_track(
         wheel_speeds=wheels,
         sideways_m_s=across,
         gaps_m=gaps,
+        extras_m=collision.extras_m,
         distance_m=distance,
         violations=Violations(
             error=int(wrong.sum()),

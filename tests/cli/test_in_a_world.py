@@ -103,8 +103,8 @@ def test_no_file_and_a_margin_alone_are_one_line(refuse):
     assert refuse("check", "--margin", "1") == "ikde: margin: a margin needs a --world to be kept from\n"
 
 
-@pytest.mark.parametrize("command", [("track", "a.yaml", "--out", "b"), ("batch", "a.yaml", "--out", "b")])
-def test_tracks_and_batches_take_no_world(refuse, write, command):
+@pytest.mark.parametrize("command", [("batch", "a.yaml", "--out", "b")])
+def test_batches_take_no_such_option(refuse, write, command):
     error = refuse(*command, "--world", write(FREE))
     assert "--world" in error
     assert error.count("\n") == 1

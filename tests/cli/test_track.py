@@ -62,6 +62,20 @@ def test_without_figures_and_from_a_start(cli, spec, tmp_path, monkeypatch):
     assert again["start"] == pytest.approx(chosen["start"])
 
 
+def test_in_a_world_obstacles_are_kept_away_from(cli, spec, tmp_path):
+    world = tmp_path / "world.yaml"
+    world.write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [0.9, 0.2, 1.3]}}")
+    outcome = cli("track", spec, "--world", world, "--margin", "10", "--unit", "mm", "--json")
+    assert outcome.code == 0, outcome
+    kept = outcome.data["world"]
+    assert (kept["margin_m"], len(kept["digest"]), kept["certified_room_m"] > 0.0) == (0.01, 64, True)
+    world.write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [0.9, 0.2, 0.9]}}")
+    outcome = cli("track", spec, "--world", world, "--no-plot")
+    assert outcome.code == 1
+    assert "ball" in outcome.out
+    assert cli("track", spec, "--margin", "1").code == 2
+
+
 @pytest.fixture
 def cart(spec):
     """A robot file like the paper's but for its wheels, and the track file that names it."""

@@ -38,10 +38,15 @@ def make_motion(*, drive="differential", reached=4, stop=None, base=True, dt_s=0
         wheel_speeds=wheels,
         sideways_m_s=np.zeros(steps),
         gaps_m=np.full((len(q), pairs), 0.05),
+        extras_m=np.zeros(pairs),
         distance_m=np.full(len(q), np.nan),
         violations=changes.pop("violations", KEPT),
     )
-    proof = Certificate(clearance_m=0.04, segment_m=np.full(steps, 0.04)) if pairs and steps else None
+    proof = (
+        Certificate(clearance_m=0.04, segment_m=np.full(steps, 0.04), room_m=np.full(steps, 0.04))
+        if pairs and steps
+        else None
+    )
     given = {
         "path": path,
         "joint_names": NAMES,

@@ -27,12 +27,11 @@ def test_joints_are_frozen_where_the_start_has_them(qiao):
     assert TrackPlan.of(qiao, PATH, freeze=["q1"]).frozen == {"q1": qiao.home[3]}
 
 
-def test_a_world_is_refused_since_a_track_is_not_checked_against_one(qiao):
+def test_a_world_comes_with_the_plan(qiao):
     wall = ikde.load_world({"obstacles": {"wall": {"box": [0.1, 2, 2], "position": [5, 0, 1]}}})
-    with pytest.raises(InputError, match=r"^collision: a track is not checked against a world: leave it out$"):
-        TrackPlan.of(qiao, PATH, collision=wall)
-    with pytest.raises(InputError, match="a track is not checked against a world"):
-        ikde.follow_path(qiao, PATH, collision=CollisionModel.of(qiao).in_world(wall))
+    assert TrackPlan.of(qiao, PATH, collision=wall).collision.world == wall
+    model = CollisionModel.of(qiao).in_world(wall, 0.02)
+    assert TrackPlan.of(qiao, PATH, collision=model).collision == model
 
 
 def test_typical_ignores_the_drive(qiao):
