@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from types import TracebackType
 from typing import Self, TypeVar
 
-MAX_LENGTH = 300  # characters of an error; file, line and key are kept, the message is cut
+MAX_LENGTH = 400  # characters of an error; file, line and key are kept, the message is cut
 MAX_FILE_LENGTH, MAX_KEYS_LENGTH, MAX_QUOTE_LENGTH = 140, 100, 60
 MAX_COMPARED = 1000  # names that a misspelt one is compared with
 

@@ -132,7 +132,7 @@ def _list_told(collision: CollisionModel) -> list[Any]:
 
 
 def _pair_table(collision: CollisionModel) -> Any:
-    table = make_table("pair", "why", title="pairs left out, but for neighbours")
+    table = make_table("pair", "why", title="left out beside neighbours")
     for pair in _list_told(collision):
-        table.add_row(plain(f"{pair.a} - {pair.b}"), plain(pair.reason))
+        table.add_row(plain(f"{pair.a} - {pair.b}"), plain(pair.reason.removeprefix("adjacent: ")))
     return table

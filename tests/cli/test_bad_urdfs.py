@@ -98,8 +98,8 @@ def test_a_bad_file_is_one_line(refuse, tmp_path, what):
         (("--tool", "base_link"), "arm.urdf → tool: no joint moves the tool 'base_link'; name another link or a base"),
         (
             (),
-            "arm.urdf → tool: which link is the tool? it has 3 ends: tip, left, right; name one: "
-            "ikde robots import --tool NAME",
+            "arm.urdf → tool: which link is the tool? it has 3 ends: tip, left, right; "
+            "name one, or a link that carries them: ikde robots import --tool NAME",
         ),
         (
             ("--tool", "right"),

@@ -71,7 +71,9 @@ def choose_tool(description: Description, tree: LinkTree, tool: str | None, base
     if len(moved) != 1:
         found = f"it has {len(moved)} ends: {list_names(moved)}" if moved else "no joint of it moves"
         raise FileError(
-            description.path, f"which link is the tool? {found}; name one: ikde robots import --tool NAME", ("tool",)
+            description.path,
+            f"which link is the tool? {found}; name one, or a link that carries them: ikde robots import --tool NAME",
+            ("tool",),
         )
     return moved[0]
 

@@ -59,8 +59,8 @@ def test_of_several_ends_one_must_be_named_and_all_are_listed(tmp_path):
     with pytest.raises(FileError) as caught:
         choose_tool(*found, None)
     assert (
-        "tool: which link is the tool? it has 3 ends: tip, left, right; name one: ikde robots import --tool NAME"
-        in str(caught.value)
+        "tool: which link is the tool? it has 3 ends: tip, left, right; "
+        "name one, or a link that carries them: ikde robots import --tool NAME" in str(caught.value)
     )
     assert choose_tool(*found, "left") == "left"
     assert choose_tool(*found, "upper") == "upper"
