@@ -11,7 +11,6 @@ from ikde.kernels.answer import grade_row, open_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, REACHED, UNKNOWN_DEPTH, TargetArrays
 from ikde.kernels.flat_arguments import grades, unpack_answer, unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
-from ikde.kernels.repair import repair_at
 from ikde.kernels.rng import seed_stream
 from ikde.kernels.seeds import draw_seed
 from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used
@@ -19,7 +18,6 @@ from ikde.kernels.turns import unwind
 from ikde.kernels.world import find_obstacle_at, stands_in_world
 
 GO_ON, MET, GIVE_UP = range(3)
-PLAIN = 6  # colliding answers that are only thrown away: to start again costs a seventh of a repair
 
 
 @inline_kernel
@@ -93,10 +91,6 @@ def solve_target(
         pair = find_collision(robot, collision, q, buffers) if verdict == MET else -1
         if verdict == MET and pair < 0 and stands_in_world(whole):
             pair = find_obstacle_at(numbers, whole, q)
-        if pair >= 0 and out_counts[COLLIDING] >= PLAIN and stands_in_world(whole):
-            spent = repair_at(numbers, whole, target, index, ranges, descent, q)
-            out_counts[EVALUATIONS] += abs(spent)
-            pair = -1 if spent > 0 else pair
         if record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
             return
 
@@ -188,10 +182,6 @@ def solve_targets(
                 pair = find_collision(robot, collision, trial, buffers) if verdict == MET else -1
                 if verdict == MET and pair < 0 and stands_in_world(whole):
                     pair = find_obstacle_at(numbers, whole, trial)
-                if pair >= 0 and out_counts[index, COLLIDING] >= PLAIN and stands_in_world(whole):
-                    spent = repair_at(numbers, whole, target, index, ranges, descent, trial)
-                    out_counts[index, EVALUATIONS] += abs(spent)
-                    pair = -1 if spent > 0 else pair
                 outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
                 done = record(descent, verdict, pair, position, orientation, trial, *outputs)
                 attempt[lane] += 1
