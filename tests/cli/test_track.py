@@ -167,7 +167,11 @@ def test_a_file_that_is_not_there(refuse):
 def test_units_are_those_of_the_start(cli, spec, tmp_path, monkeypatch):
     leave_out_figures(monkeypatch)
     text = " ".join(cli("track", "--help").out.replace("│", " ").split())
-    for words in ("Unit of lengths in --start and --margin.", "Unit of angles in --start.", "joint values in --start (default"):
+    for words in (
+        "Unit of lengths in --start and --margin.",
+        "Unit of angles in --start.",
+        "joint values in --start (default",
+    ):
         assert words in text
     assert "in and out" not in text
     assert "in and out" in cli("fk", "--help").out
