@@ -59,12 +59,10 @@ class WorldPacker:
 
     def pack(self, world: World, kept_m: Floats) -> Floats:
         """As `pack_world`."""
-        asked, key = None, kept_m.tobytes()
-        packed = self._parts.list(world.active)
+        key, packed = kept_m.tobytes(), self._parts.list(world.active)
         whole = self._move(world.active, key, packed)
         if whole is None:
-            asked = _list_asked(world, self._components, kept_m)
-            whole = _join_obstacles(packed, asked, self._reach_m)
+            whole = _join_obstacles(packed, _list_asked(world, self._components, kept_m), self._reach_m)
         whole.setflags(write=False)
         self._last = Packed(world.active, key, whole)
         return whole

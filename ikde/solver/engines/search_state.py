@@ -66,9 +66,7 @@ class SearchState:
     pair_counts: PairCounts  # [T, P]
     excess_m: Floats  # [T] how far out of reach an unreached target provably is; 0 within the tolerance or if unknown
     excess_rad: Floats  # [T] by how much its orientation is, likewise
-    ruled_out: (
-        Ints  # [T] why it is proved to have no solution (`proof.rule_out`): index into `result.STOP_REASONS`; else -1
-    )
+    ruled_out: Ints  # [T] why it is proved to have no solution: index into `result.STOP_REASONS`; -1: not proved
     seconds: Floats  # [T] wall time of each lane; short searches that share a call share its time in equal parts
     engine: Ints  # [T] which one answered: its place in `engine_table.NAMES`
     metrics: Metrics  # of `q`, by the grader; what it refuses is not reached
