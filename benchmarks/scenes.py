@@ -29,6 +29,7 @@ import ikde
 from benchmarks.machine import describe
 from ikde.batch.scenes import make_question
 from ikde.io.scene_pairs import Request, ScenePair, find_pairs, read_request
+from ikde.solver.result import is_proof
 
 TOOLS = {"ur5": "ee_link", "panda": "panda_hand", "fetch": "gripper_link"}
 WARM, REPEATED, CHECKED, MOVED_M = 3, 5, 200, 1e-4
@@ -261,7 +262,7 @@ def judge(result: ikde.SolveResult, goal: np.ndarray, twin: Twin, scene: Path, t
     tally.stops[str(result.stop_reason)] += 1
     if not result.reached:
         tally.unsolved.append(f"{where}: {result.reason}")
-        tally.proved += "proved" in result.reason
+        tally.proved += is_proof(result.reason)
         tally.blockers.update(f"{a} x {b}" for a, b in result.blocking_pairs)
         return
     tally.solved += 1

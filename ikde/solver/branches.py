@@ -19,7 +19,7 @@ from ikde.model.robot import WORLD, FreeSpheres, Robot, Spheres
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
+from ikde.solver.result import NO_SOLUTION, STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.verify import Bools
 
 ROUNDING = 1e-8  # m and rad: what the arm's own model may be off by, and what sums lose
@@ -200,8 +200,8 @@ def tell_branches(problem: Problem, target: Target) -> tuple[str, dict[tuple[str
         worst = ", ".join(f"{a}-{b} in {n}" for (a, b), n in list(blocking.items())[:3])
         words.append(f"{colliding} in collision ({worst})")
     if not count:
-        return "no solution, proved: no configuration of the arm, whatever its limits, has this pose", {}
-    return f"no solution, proved: of {count} configurations with this pose {' and '.join(words)}", blocking
+        return f"{NO_SOLUTION}: no configuration of the arm, whatever its limits, has this pose", {}
+    return f"{NO_SOLUTION}: of {count} configurations with this pose {' and '.join(words)}", blocking
 
 
 def _name_blockers(collision: CollisionModel, judged: Judged) -> list[str]:

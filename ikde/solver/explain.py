@@ -28,7 +28,7 @@ from ikde.solver.plain import compute_gaps
 from ikde.solver.problem import Problem
 from ikde.solver.proof import prove
 from ikde.solver.remedies import try_in_world
-from ikde.solver.result import STOP_REASONS, StopReason, count_blocking_pairs
+from ikde.solver.result import NO_SOLUTION, STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
 from ikde.solver.tool_body import tell_tool_body
 from ikde.solver.touching import find_always_touching
@@ -95,7 +95,7 @@ def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_
 
 def reason_from_proof(stop: StopReason) -> str:
     """One line that says it of a pose that is ruled out."""
-    return f"no solution, proved: {PROVED[stop]}"
+    return f"{NO_SOLUTION}: {PROVED[stop]}"
 
 
 def explain(

@@ -300,6 +300,15 @@ def _freeze(values: Floats) -> Floats:
     return np.frombuffer(values.tobytes())
 
 
+NO_SOLUTION = "no solution, proved"
+"""How a reason begins that is a proof, and no other: what follows may hold any name."""
+
+
+def is_proof(reason: str) -> bool:
+    """Whether a reason says that there is no solution, proved by branches or by what is fixed to the tool."""
+    return reason.startswith(NO_SOLUTION)
+
+
 def count_blocking_pairs(pairs: Pairs, counts: Sequence[int] | NDArray[np.int64]) -> dict[tuple[str, str], int]:
     """Pairs that blocked, with how often, most often first; `counts` may go on behind the last pair."""
     blocking = {pair: int(count) for pair, count in zip(pairs, counts, strict=False) if count}

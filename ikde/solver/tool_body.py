@@ -18,7 +18,7 @@ from ikde.model.target import AXIS, POSE, Target, Targets
 from ikde.solver.digits import at_least
 from ikde.solver.plain import compute_components, compute_frames, list_world
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS, StopReason
+from ikde.solver.result import NO_SOLUTION, STOP_REASONS, StopReason
 
 ROUNDING = 1e-8  # m: what sums lose
 NAMED = 3  # in a message about many
@@ -126,5 +126,5 @@ def tell_tool_body(problem: Problem, target: Target) -> tuple[str, dict[tuple[st
     named = ", ".join([*found.values()][:NAMED])
     more = f" and {len(found) - NAMED} more" if len(found) > NAMED else ""
     fixed = f"this {'pose' if target.kind == 'pose' else 'target'} puts what is fixed to the tool too near"
-    reason = f"no solution, proved: whatever the joints do, {fixed}: {named}{more}"
+    reason = f"{NO_SOLUTION}: whatever the joints do, {fixed}: {named}{more}"
     return reason, {(problem.robot.name, name): 1 for name in found}

@@ -7,6 +7,7 @@ import ikde
 from ikde.batch.scenes import Margins, ask, make_question, read_known, refuse, run_scenes, summarise_rows
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
+from ikde.solver.result import SolveResult
 from tests.three_joints import ROBOT
 
 GOAL = {"reach": 0.25, "turn": 1.5, "shoulder": 0.7}
@@ -50,6 +51,13 @@ def test_a_target_in_an_obstacle_has_its_blocker():
     assert list(row["blockers"]) == ["ball"]
     summary = summarise_rows("all", [row, refuse(InputError("no"))])
     assert (summary.problems, summary.reached, summary.blockers) == (2, 0, {"ball": 1})
+
+
+@pytest.mark.parametrize(("reason", "proved"), [("no solution, proved: of 4", True), ("touches proved", False)])
+def test_a_name_is_no_proof(reason, proved, monkeypatch):
+    monkeypatch.setattr(SolveResult, "reason", reason)
+    row = ask(make_question(ROBOT, {}, GOAL), CollisionModel.of(ROBOT), WORLD, Margins())
+    assert row["proved"] is proved
 
 
 def test_rows_that_are_known_are_not_asked_again():
