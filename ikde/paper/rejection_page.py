@@ -104,7 +104,7 @@ def _judge(data: Rejection) -> Text:
 
 
 def _draw(data: Rejection) -> Figure:
-    groups = [f"target {target.target}\n{spheres}" for target, spheres in product(data.targets, APPROXIMATIONS)]
+    groups = [f"{target.target}, {spheres}" for target, spheres in product(data.targets, APPROXIMATIONS)]
     bars = []
     for reading in READING_NAMES:
         *_, printed, _, rates = zip(*_list_cells(data, reading), strict=True)
@@ -119,7 +119,7 @@ def _draw(data: Rejection) -> Figure:
             )
         )
     return Figure(
-        image=to_svg(plot_bars(groups, bars, y=Axis(label="rejected", unit="%"))),
+        image=to_svg(plot_bars(groups, bars, x=Axis(label="target, detector"), y=Axis(label="rejected", unit="%"))),
         alt="Bars of the rejected share for both targets and detectors in two readings, with the printed rates",
         caption="Rejected solutions in both readings with 95 % intervals; diamonds: the printed rates.",
     )

@@ -111,10 +111,10 @@ def _draw_event(axes: Any, event: Event, color: str, marker: str) -> None:
     axes.plot([event.x], [1.0], transform=axes.get_xaxis_transform(), label=legend_name(event.label), **head)
 
 
-def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, y: Axis) -> Any:
+def plot_bars(groups: Sequence[str], bars: Sequence[Bars], *, x: Axis, y: Axis) -> Any:
     """Groups of bars with intervals as whiskers and published values as diamonds."""
     width = 0.8 / len(bars)
-    with drawing(Axis(label=""), y) as (figure, axes):
+    with drawing(x, y) as (figure, axes):
         for k, series in enumerate(bars):
             places = np.arange(len(groups)) + (k - (len(bars) - 1) / 2) * width
             look = {"color": pick(COLORS, k), "hatch": pick(HATCHES, k), "edgecolor": "#ffffff"}

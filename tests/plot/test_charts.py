@@ -52,13 +52,14 @@ def test_bars_carry_intervals_and_published_values():
         Bars(label="a", values=[70, 80], lower=[65, 75], upper=[80, 82], published=[75, float("nan")]),
         Bars(label="b", values=[60, 61], published=[60, 60]),
     ]
-    figure = plot_bars(["one", "two"], bars, y=Axis(label="rate", unit="%"))
+    figure = plot_bars(["one", "two"], bars, x=Axis(label="group"), y=Axis(label="rate", unit="%"))
     axes = figure.axes[0]
     assert [patch.get_height() for patch in axes.patches] == [70, 80, 60, 61]
     assert sorted(labels(figure)) == ["a", "b", "published"]
     whiskers = axes.collections[0].get_segments()
     np.testing.assert_allclose([segment[:, 1] for segment in whiskers], [[65, 80], [75, 82]])
     assert [text.get_text() for text in axes.get_xticklabels()] == ["one", "two"]
+    assert axes.get_xlabel() == "group"
 
 
 def test_a_forest_marks_intervals_that_miss_the_published_value():
@@ -127,7 +128,7 @@ def test_a_curve_of_nothing_but_nan_is_shown(log):
 def test_bars_and_estimates_may_have_no_value():
     nan = [float("nan")]
     bars = [Bars(label="a", values=nan, lower=nan, upper=nan, published=nan)]
-    assert ">one</text>" in to_svg(plot_bars(["one"], bars, y=MM))
+    assert ">one</text>" in to_svg(plot_bars(["one"], bars, x=MM, y=MM))
     assert ">rate</text>" in to_svg(plot_forest([], x=Axis(label="rate")))
     assert ">one</text>" in to_svg(plot_forest([Estimate(label="one", value=nan[0], lower=0, upper=1)], x=MM))
 

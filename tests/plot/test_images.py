@@ -23,7 +23,7 @@ def chart():
 
 
 def hatched():
-    return plot_bars(["x"], [Bars(label=name, values=[1.0]) for name in "ab"], y=Axis(label="y"))
+    return plot_bars(["x"], [Bars(label=name, values=[1.0]) for name in "ab"], x=Axis(label="group"), y=Axis(label="y"))
 
 
 @pytest.mark.parametrize("make", [chart, hatched])
@@ -67,7 +67,7 @@ def test_a_photograph_is_on_white_and_the_same_every_time():
 
 @pytest.mark.parametrize("name", EVERYTHING)
 def test_a_name_is_text_in_a_drawing(name):
-    svg = to_svg(plot_bars([name], [Bars(label=name, values=[1.0])], y=Axis(label=name)))
+    svg = to_svg(plot_bars([name], [Bars(label=name, values=[1.0])], x=Axis(label="group"), y=Axis(label=name)))
     texts = [element.text for element in ElementTree.fromstring(svg).iter() if element.tag.endswith("text")]
     assert texts.count(printable(name)) == 3
     assert "<script" not in svg
@@ -91,14 +91,16 @@ def test_what_looks_like_a_part_of_a_drawing_is_text():
 
 
 def test_a_formula_that_is_none_is_drawn_as_text():
-    figure = plot_bars([r"$\frac{$"], [Bars(label=r"$\frac{$", values=[1.0])], y=Axis(label=r"$\frac{$"))
+    figure = plot_bars(
+        [r"$\frac{$"], [Bars(label=r"$\frac{$", values=[1.0])], x=Axis(label="group"), y=Axis(label=r"$\frac{$")
+    )
     assert to_png(figure, dpi=40).startswith(b"\x89PNG")
 
 
 def test_letters_that_the_type_does_not_have_are_no_news():
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        to_png(plot_bars(["手"], [Bars(label="臂", values=[1.0])], y=Axis(label="y")), dpi=40)
+        to_png(plot_bars(["手"], [Bars(label="臂", values=[1.0])], x=Axis(label="group"), y=Axis(label="y")), dpi=40)
     assert told == []
 
 
