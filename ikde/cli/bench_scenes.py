@@ -35,7 +35,7 @@ def bench_scenes(
     tool: ToolOption = None,
     detector: options.DetectorOption = None,
     margin: MarginOption = None,
-    unit: options.UnitOption = options.LengthUnit.mm,
+    unit: options.UnitOption = options.LengthUnit.m,
     first: Annotated[int | None, typer.Option(metavar="N", min=1, help="The first N of each family alone.")] = None,
     as_json: options.JsonOption = False,
 ) -> None:
@@ -43,7 +43,7 @@ def bench_scenes(
 
     Stop it, and the same command goes on. Exits with 1 if some problem was not solved.
 
-    Example: ikde bench scenes problems/ --robot ur5.yaml --margin 2 --out report/scenes
+    Example: ikde bench scenes problems/ --robot ur5.yaml --margin 0.002 --out report/scenes
     """
     from ikde.batch.scenes import Margins
     from ikde.formats.margins import read_margins

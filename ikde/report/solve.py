@@ -42,6 +42,7 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "motion": result.motion,
         "clearance_m": result.clearance_m,
         "closest_pair": list(result.closest_pair) if result.closest_pair else None,
+        "nearest_obstacle": asdict(near) if (near := result.grade.nearest_obstacle) else None,
         "collision": result.collision,
         "outside_limits": list(result.grade.outside_limits),
         "method": result.method,
@@ -138,19 +139,23 @@ def _tell_self(result: SolveResult) -> str:
     return COLLISIONS[any(pair[1] not in obstacles for pair in result.grade.colliding_pairs)]
 
 
-def _tell_world(result: SolveResult) -> str:
-    """What touches, or that nothing does."""
+def _tell_world(result: SolveResult, units: Units) -> str:
+    """What touches, or that nothing does, and what is nearest."""
     obstacles = set(result.obstacles)
     touching = [f"{a} - {b}" for a, b in result.grade.colliding_pairs if b in obstacles]
     if touching:
         return f"in collision: {', '.join(touching[:3])}{f' and {len(touching) - 3} more' * (len(touching) > 3)}"
-    return f"free of {count_of(len(obstacles), 'obstacle')}"
+    free, near = f"free of {count_of(len(obstacles), 'obstacle')}", result.grade.nearest_obstacle
+    if near is None:
+        return f"{free}; nothing that moves is compared with any"
+    asked = f", {units.format_length(near.margin_m)} asked for" if near.margin_m > 0.0 else ""
+    return f"{free}, nearest {near.component} - {near.obstacle}: {units.format_length(near.clearance_m)}{asked}"
 
 
 GRADERS = {
-    True: "by kernels, confirmed by plain numpy",
-    False: "by kernels; plain numpy disagrees",
-    None: "by kernels alone",
+    True: "by the kernels, and again by separate code in numpy",
+    False: "by the kernels; separate code in numpy disagrees",
+    None: "by the kernels alone",
 }
 COLLISIONS = {True: "yes", False: "no", None: "not checked"}
 
@@ -168,7 +173,7 @@ def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, weighted")
     if result.obstacles:
         table.add_row("self-collision", _tell_self(result))
-        table.add_row("world", plain(_tell_world(result)))
+        table.add_row("world", plain(_tell_world(result, units)))
     else:
         table.add_row("self-collision", COLLISIONS[result.collision])
     table.add_row("outside limits", plain(", ".join(result.grade.outside_limits) or "none"))

@@ -14,6 +14,7 @@ from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.robot import Pairs, Robot
 from ikde.model.value import MadeAnew
 from ikde.solver.joints import JointValues, joints_outside, read_joints
+from ikde.solver.obstacle_clearance import ObstacleClearance, list_obstacles
 from ikde.solver.plain import compute_gaps
 from ikde.solver.standing import find_model
 from ikde.solver.verify import Bools, MaskedBools
@@ -28,18 +29,6 @@ class PairClearance:
     a: str
     b: str
     clearance_m: float
-    collides: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ObstacleClearance:
-    """Clearance between a component and an obstacle: min over its spheres of distance - R; negative is penetration."""
-
-    component: str
-    obstacle: str
-    clearance_m: float
-    margin_m: float
-    """The distance that is asked for."""
     collides: bool
 
 
@@ -162,7 +151,7 @@ def check(
         collision=None if closest is None else bool(gaps_m[closest] <= model.limit_m),
         clearance_m=None if closest is None else float(gaps_m[closest]) + model.extra_m(closest),
         pairs=_list_pairs(model, gaps_m),
-        obstacles=_list_obstacles(model, gaps_m),
+        obstacles=list_obstacles(model, gaps_m),
         closest_pair=None if closest is None else model.name_pair(closest),
         detector=model.name,
         safe_distance_m=model.limit_m,
@@ -223,19 +212,3 @@ def _list_pairs(collision: CollisionModel, gaps_m: Floats) -> tuple[PairClearanc
         for (a, b), gap in zip(collision.pairs, gaps_m.tolist(), strict=False)
     ]
     return tuple(sorted(found, key=lambda pair: pair.clearance_m))
-
-
-def _list_obstacles(collision: CollisionModel, gaps_m: Floats) -> tuple[ObstacleClearance, ...]:
-    """Of every obstacle the component with the least room, worst first; not those that nothing is compared with."""
-    pairs, count, found = len(collision.pairs), len(collision.obstacles), []
-    if not count:
-        return ()
-    least = gaps_m[pairs:].reshape(-1, count)
-    for obstacle, component in enumerate(least.argmin(axis=0).tolist()):
-        place, gap = pairs + component * count + obstacle, float(least[component, obstacle])
-        if gap < np.inf:
-            name, other = collision.name_pair(place)
-            extra_m, collides = collision.extra_m(place), gap <= collision.limit_m
-            known = {"clearance_m": gap + extra_m, "margin_m": collision.limit_m + extra_m, "collides": collides}
-            found.append((gap, ObstacleClearance(component=name, obstacle=other, **known)))
-    return tuple(entry for _, entry in sorted(found, key=lambda pair: pair[0]))

@@ -16,6 +16,7 @@ from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import AXIS, POSE, Target, Targets
 from ikde.solver.families import label_family
 from ikde.solver.joints import JointValues, read_configuration
+from ikde.solver.obstacle_clearance import ObstacleClearance, find_nearest_obstacle
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.settings import SolveSettings, choose_settings
 from ikde.solver.standing import find_model
@@ -46,6 +47,8 @@ class Grade:
     within_tolerance: bool
     accepted: bool
     """Within both tolerances, inside all limits, and free of self-collision if that was checked."""
+    nearest_obstacle: ObstacleClearance | None
+    """The one with the least room beyond what is asked for; None without a world."""
     family: str | None
     """How a UR-type arm holds itself: shoulder/elbow/wrist, such as `left/up/no flip`; None for other arms."""
 
@@ -84,6 +87,7 @@ class Grades:
             outside_limits=tuple(joint.name for joint, is_outside in outside if is_outside),
             within_tolerance=bool(self.within_tolerance[index]),
             accepted=bool(self.accepted[index]),
+            nearest_obstacle=find_nearest_obstacle(collision, gaps),
             family=label_family(robot, self.Q[index]),
         )
 

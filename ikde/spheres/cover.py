@@ -64,7 +64,7 @@ def _say_how(meshes: Sequence[MeshCover], has_others: bool) -> Iterator[str]:
     if has_others:
         yield "rows and grids in closed form"
     if meshes:
-        yield "greedy, certified"
+        yield "fitted to the mesh"
     if parts := sum(mesh.parts.hulls for mesh in meshes if mesh.only_hulls):
         yield f"hulls of {parts} parts, for fewer spheres" if parts > 1 else "hull, for fewer spheres"
     if hulls := sum(mesh.parts.hulls for mesh in meshes if not mesh.only_hulls):

@@ -20,7 +20,7 @@ def read(out):
 
 def test_a_set_is_answered_on_a_page(cli, problems, tmp_path):
     out = tmp_path / "page"
-    outcome = cli("bench", "scenes", problems, "--robot", FILE, "--margin", "5,hand=0", "--out", out)
+    outcome = cli("bench", "scenes", problems, "--robot", FILE, "--margin", "0.005,hand=0", "--out", out)
     assert outcome.code == 0, outcome
     assert outcome.out == f"wrote {out / 'results.json'}\nwrote {out / 'report.html'}\n"
     assert "computing: shelf\ncomputing: table" in outcome.err
@@ -31,8 +31,8 @@ def test_a_set_is_answered_on_a_page(cli, problems, tmp_path):
     assert [family["name"] for family in data["families"]] == ["shelf", "table"]
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "3 of 3" in page
-    assert "--margin 5,hand=0 --unit mm --out FOLDER" in page
-    again = cli("bench", "scenes", problems, "--robot", FILE, "--margin", "5,hand=0", "--out", out)
+    assert "--margin 0.005,hand=0 --unit m --out FOLDER" in page
+    again = cli("bench", "scenes", problems, "--robot", FILE, "--margin", "0.005,hand=0", "--out", out)
     assert "3 of 3 problems are answered in" in again.err
     assert read(out)["problems"] == data["problems"]
     other = cli("bench", "scenes", problems, "--robot", FILE, "--first", "1", "--out", out)

@@ -40,8 +40,8 @@ def test_every_decision_is_listed(imported):
     assert rows(text, "frozen: 2 joints")[1][:4] == ["grip_mimic", "prismatic", "-17", "mm"]
     assert rows(text, "spheres: 4 on 4 links")[0] == ["base_link", "1", "sphere", "1", "as", "they", "are"]
     assert rows(text, "left out beside neighbours") == [["base_link", "-", "fore", "SRDF:", "Never"]]
-    assert "pairs: 2 compared (2 proved never to touch), 4 left out, 3 of them neighbours" in text
-    assert "home: 0, or mid-range; free" in text
+    assert "pairs: 6 in all: 2 compared, of which 2 never touch (proved); 4 left out, of which 3 are neighbours" in text
+    assert "home: 0, or mid-range where 0 is outside the limits; free" in text
 
 
 def test_names_are_whole_in_a_narrow_terminal(tmp_path):
@@ -84,7 +84,7 @@ def test_what_is_not_there_has_no_table(tmp_path):
     for title in ("frozen", "stand out", "pairs left out"):
         assert title not in text
     assert "pairs: none, self-collision is not checked" in text
-    assert "home: 0, or mid-range; not checked" in text
+    assert "home: 0, or mid-range where 0 is outside the limits; not checked" in text
     assert "warning: no link has spheres: self-collision is not checked" in text
 
 

@@ -77,9 +77,9 @@ def test_without_a_detector_the_text_says_that_nothing_was_checked(qiao):
 @pytest.mark.parametrize(
     ("verified", "words"),
     [
-        (True, "by kernels, confirmed by plain numpy"),
-        (False, "by kernels; plain numpy disagrees"),
-        (None, "by kernels alone"),
+        (True, "by the kernels, and again by separate code in numpy"),
+        (False, "by the kernels; separate code in numpy disagrees"),
+        (None, "by the kernels alone"),
     ],
 )
 def test_what_graded_is_said_as_it_was(qiao, result, verified, words):

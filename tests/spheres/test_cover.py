@@ -51,7 +51,7 @@ def test_a_mesh_is_covered_where_it_stands_and_counts_by_its_area(monkeypatch) -
     assert asked == [(Path("a.stl"), (1.0, -1.0, 1.0), 0.02)] * 2
     np.testing.assert_array_equal(cover.centres, [[1, 2.1, 3], [1, 2, 3]])
     assert (cover.covered, cover.protrusion_m, cover.warnings) == (pytest.approx(0.9), 0.02, ("large",))
-    assert cover.how == "greedy, certified, hulls of 4 open parts, 2 flat parts"
+    assert cover.how == "fitted to the mesh, hulls of 4 open parts, 2 flat parts"
 
 
 def test_a_hull_that_is_taken_for_fewer_spheres_is_said(monkeypatch) -> None:
@@ -59,4 +59,4 @@ def test_a_hull_that_is_taken_for_fewer_spheres_is_said(monkeypatch) -> None:
     made = MeshCover(Rows(np.zeros((1, 3)), np.array([0.3]), 0.02), 1.0, 1.0, parts, (), only_hulls=True)
     monkeypatch.setattr("ikde.spheres.cover.cover_mesh", lambda *own: made)
     mesh = Shape(kind="mesh", size=(), T_link_shape=np.eye(4), mesh=Path("a.stl"))
-    assert cover_shapes([mesh], 0.02).how == "greedy, certified, hull, for fewer spheres"
+    assert cover_shapes([mesh], 0.02).how == "fitted to the mesh, hull, for fewer spheres"

@@ -84,7 +84,7 @@ def _place_spheres(skeleton: Skeleton, covered: Mapping[str, LinkSpheres]) -> tu
 def free_home(robot: Robot, states: tuple[str, ...], srdf: Srdf) -> tuple[Robot, str, bool | None]:
     """The robot with a home that is free if one is found, where it comes from, and whether it is free."""
     named = f"{srdf.source.removeprefix('the ')} state {', '.join(states)}"
-    source = named if states else "0, or mid-range"
+    source = named if states else "0, or mid-range where 0 is outside the limits"
     if not robot.detectors:
         return robot, source, None
     found = find_free_home(CollisionModel.of(robot), robot.home)

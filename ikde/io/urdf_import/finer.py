@@ -32,7 +32,7 @@ def cover_finer(
 
 
 def _mark(own: LinkSpheres) -> LinkSpheres:
-    return replace(own, report=replace(own.report, how=f"{own.report.how}, finer"))
+    return replace(own, report=replace(own.report, how=f"{own.report.how}, half the protrusion"))
 
 
 def _is_small(own: LinkSpheres) -> bool:

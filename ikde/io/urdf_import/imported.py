@@ -81,6 +81,7 @@ def describe_pairs(imported: ImportedUrdf) -> str:
     if not collision.pairs:
         return "none, self-collision is not checked"
     never, left_out = len(imported.never_touching), collision.left_out_pairs
-    proved = f" ({never} proved never to touch)" if never else ""
+    proved = f", of which {never} never touch (proved)" if never else ""
     neighbours = sum(pair.reason.startswith(OF_THE_TREE) for pair in left_out)
-    return f"{len(collision.pairs)} compared{proved}, {len(left_out)} left out, {neighbours} of them neighbours"
+    left = f"{len(left_out)} left out, of which {neighbours} are neighbours"
+    return f"{len(collision.pairs) + len(left_out)} in all: {len(collision.pairs)} compared{proved}; {left}"

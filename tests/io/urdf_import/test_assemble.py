@@ -74,7 +74,7 @@ def test_masses_stand_at_the_frames_of_their_links(tmp_path):
 
 def test_a_home_that_collides_is_moved_and_that_is_said(tmp_path):
     imported = load(tmp_path, change('<sphere radius="0.1"/>', '<sphere radius="0.75"/>'))
-    assert imported.home == "0, or mid-range; moved to a free configuration near it"
+    assert imported.home == "0, or mid-range where 0 is outside the limits; moved to a free configuration near it"
     assert imported.is_home_free
     robot = imported.robot
     assert robot.home.tolist() != [0.0, 0.25]
@@ -87,7 +87,9 @@ def test_a_home_that_cannot_be_moved_stays_and_that_is_said(tmp_path, monkeypatc
     monkeypatch.setattr(assemble, "find_free_home", lambda *_: None)
     imported = load(tmp_path, ARM)
     assert imported.is_home_free is False
-    assert imported.home == "0, or mid-range; it collides, and no free one was found near it"
+    assert (
+        imported.home == "0, or mid-range where 0 is outside the limits; it collides, and no free one was found near it"
+    )
     assert imported.robot.home.tolist() == [0.0, 0.25]
 
 

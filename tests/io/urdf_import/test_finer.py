@@ -37,23 +37,25 @@ def read(folder, gap, **options):
 def test_the_smaller_of_two_links_that_touch_often_is_covered_finer(tmp_path):
     imported, links = read(tmp_path, 0.028)
     coarse = links["bar"]
-    assert links["finger"].how.endswith(", finer")
+    assert links["finger"].how.endswith(", half the protrusion")
     assert links["finger"].protrusion_m <= 0.01 < coarse.protrusion_m <= 0.02
-    assert not coarse.how.endswith(", finer")
+    assert not coarse.how.endswith(", half the protrusion")
     assert not any("touch" in warning for warning in imported.warnings)
-    assert any(line.startswith("spheres of finger: ") and ", finer" in line for line in list_notes(imported))
+    assert any(
+        line.startswith("spheres of finger: ") and ", half the protrusion" in line for line in list_notes(imported)
+    )
 
 
 def test_without_it_they_touch_often(tmp_path, monkeypatch):
     monkeypatch.setattr(finer, "MAX_SPHERES", 0)
     imported, links = read(tmp_path, 0.028)
-    assert not links["finger"].how.endswith(", finer")
+    assert not links["finger"].how.endswith(", half the protrusion")
     assert any("most often these touch: bar - finger" in warning for warning in imported.warnings)
 
 
 def test_links_that_are_clear_stay_as_asked(tmp_path):
     imported, links = read(tmp_path, 0.1)
-    assert not any(link.how.endswith(", finer") for link in links.values())
+    assert not any(link.how.endswith(", half the protrusion") for link in links.values())
     assert not imported.warnings
 
 

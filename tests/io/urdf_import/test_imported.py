@@ -11,15 +11,18 @@ def test_the_notes_hold_what_the_file_cannot_show(tmp_path):
     notes = list_notes(read_urdf(write(tmp_path, text), ImportOptions(tool="tip")))
     assert notes[0] == f"Imported from {tmp_path / 'arm.urdf'}; m and rad."
     assert notes[1] == "frozen: grip (prismatic) at 0.01: off the chain to the tool, the limit next to 0"
-    assert notes[3:5] == ["home: 0, or mid-range", "pairs: none, self-collision is not checked"]
+    assert notes[3:5] == [
+        "home: 0, or mid-range where 0 is outside the limits",
+        "pairs: none, self-collision is not checked",
+    ]
     assert notes[5].startswith("warning: line 3: a collision element of base_link is left out")
 
 
 def test_how_a_link_is_covered_is_said():
     known = {"link": "fore", "shapes": "1 mesh", "spheres": 28}
-    made = CoveredLink(**known, covered=0.9995, protrusion_m=0.02, how="greedy, certified")
+    made = CoveredLink(**known, covered=0.9995, protrusion_m=0.02, how="fitted to the mesh")
     assert describe_cover(made) == (
-        "fore: 28 for 1 mesh, greedy, certified; 99.95 % proved to be covered; at most 20 mm out"
+        "fore: 28 for 1 mesh, fitted to the mesh; 99.95 % proved to be covered; at most 20 mm out"
     )
     given = CoveredLink(**known, covered=None, protrusion_m=None, how="as in a.yml (cuRobo)")
     assert describe_cover(given) == "fore: 28 for 1 mesh, as in a.yml (cuRobo)"

@@ -91,7 +91,11 @@ def test_the_account_says_what_was_decided(tmp_path):
     assert (imported.root, imported.robot.tool, imported.tool_was_chosen) == ("base_link", "tip", False)
     assert [held.name for held in imported.held] == ["grip", "grip_mimic"]
     assert [(link.link, link.spheres) for link in imported.links] == [("base_link", 1), ("upper", 1), ("fore", 1)]
-    assert (imported.home, imported.is_home_free, imported.warnings) == ("0, or mid-range", True, ())
+    assert (imported.home, imported.is_home_free, imported.warnings) == (
+        "0, or mid-range where 0 is outside the limits",
+        True,
+        (),
+    )
     assert read_urdf(write(tmp_path, ARM)).tool_was_chosen
 
 
