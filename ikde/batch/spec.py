@@ -13,6 +13,7 @@ from ikde.formats.entries import (
     Entry,
     FileEntry,
     Interval,
+    MarginChoice,
     Number,
     OrientationEntry,
     TextOrEntry,
@@ -138,9 +139,6 @@ class SettingsEntry(Entry):
     """Seconds after which no further attempt at a target is begun. The answers may then depend on the machine."""
     de: DeEntry | None = None
     """What belongs to the method `de`."""
-
-
-MarginChoice = Annotated[Annotated[Text, AsText] | Annotated[Number, Field(ge=0.0), AsEntry], TextOrEntry]
 
 
 class SolveEntry(Entry):

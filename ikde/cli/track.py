@@ -63,6 +63,7 @@ def track(
     plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     plan = replace(plan, collision=place_in_world(plan.collision, world, margin, unit))
+    plan = plan if world is None else replace(plan, world_file=str(world))
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     given = {"method": method, "drive": drive, "seed": seed, "start": start, "world": world, "margin": margin}
     units = {"unit": unit if unit != LengthUnit.m else None, "angles": angles if angles != AngleUnit.rad else None}

@@ -27,19 +27,29 @@ NEAR_M = 0.02  # a gap that could be asked for as a margin
 def place_in_world(
     collision: "CollisionModel", world: Path | None, margin: str | None, unit: LengthUnit
 ) -> "CollisionModel":
-    """The robot in the world of a file; stderr says how it was read, and what is near whatever joints do."""
+    """The robot in the world of a file; stderr says how it was read, and what is near whatever joints do.
+
+    A world and margins that `collision` has already are kept where no others are given.
+    """
     from ikde.errors import InputError
 
-    if world is None:
-        if margin is not None:
-            raise InputError("a margin needs a --world to be kept from", ("margin",))
+    if world is None and margin is None:
         return collision
     from ikde.formats.margins import read_margins
     from ikde.formats.units import LENGTHS_M
-    from ikde.io.world_file import read_world
+    from ikde.model.world import NOTHING
     from ikde.solver.standing import find_standing_obstacles, refuse_touching
 
-    margin_m, margins_m = read_margins(margin, LENGTHS_M[unit])
+    kept = collision.margin_m, dict(collision.margins_m)
+    margin_m, margins_m = kept if margin is None else read_margins(margin, LENGTHS_M[unit])
+    if world is None:
+        if collision.world is NOTHING:
+            raise InputError("a margin needs a --world to be kept from", ("margin",))
+        model = collision.in_world(collision.world, margin_m, margins_m)
+        refuse_touching(model)
+        return model
+    from ikde.io.world_file import read_world
+
     found = read_world(world)
     with found.errors():
         model = collision.in_world(found.world, margin_m, margins_m)

@@ -28,6 +28,7 @@ def _text_or_entry(value: Any) -> str:
 AsText, AsEntry, TextOrEntry = Tag("text"), Tag("entry"), Discriminator(_text_or_entry)  # errors of one branch only
 ThreeColumns = Annotated[Annotated[Text, AsText] | Annotated[ThreeTexts, AsEntry], TextOrEntry]
 FourColumns = Annotated[Annotated[Text, AsText] | Annotated[FourTexts, AsEntry], TextOrEntry]
+MarginChoice = Annotated[Annotated[Text, AsText] | Annotated[Number, Field(ge=0.0), AsEntry], TextOrEntry]
 
 
 class Entry(BaseModel):

@@ -55,11 +55,23 @@ def _read_world(folder: Path, name: str) -> "tuple[World, Errors]":
     return found.world, found.errors
 
 
+def _read_track_world(folder: Path, name: str) -> "tuple[World, Errors]":
+    """The same, with the key that names a file which is not there."""
+    try:
+        read_text(folder / name)
+    except FileError as error:
+        raise InputError(f"{error.message}: {folder / name}", ("world",)) from None
+    return _read_world(folder, name)
+
+
 def load_track(source: str | Path | Mapping[str, Any]) -> "TrackPlan":
     """Load a track and check all of it, before anything moves; `source` and errors as for `load_batch`."""
     from ikde.track.make_plan import make_plan
 
-    return _load_plan(source, "track", TrackSpec, make_plan)
+    def make(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None) -> "TrackPlan":
+        return make_plan(spec, robot, folder=folder, file=file, read_world=partial(_read_track_world, folder))
+
+    return _load_plan(source, "track", TrackSpec, make)
 
 
 def _load_plan(source: Any, kind: str, model: type[Spec], make: Callable[..., Plan]) -> Plan:

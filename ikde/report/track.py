@@ -38,7 +38,7 @@ def track_json(plan: TrackPlan, motion: TrackSummary) -> dict[str, Any]:
         "asked_start": None if plan.start is None else name_joints(motion, plan.start),
         "limits": _limits_json(motion),
         "detector": motion.collision.name if motion.collision.pairs else None,
-        **_world_json(motion),
+        **_world_json(motion, plan.world_file),
         "dt_s": trajectory.path.dt_s,
         "points": trajectory.path.samples,
         "reached_points": trajectory.reached_points,
@@ -205,14 +205,14 @@ def _limits_json(motion: TrackSummary) -> dict[str, Any]:
     return data
 
 
-def _world_json(motion: TrackSummary) -> dict[str, Any]:
-    """The world by its digest, and what was to be kept from it; nothing without one."""
+def _world_json(motion: TrackSummary, file: str | None) -> dict[str, Any]:
+    """The world by its file and digest, and what was to be kept from it; nothing without one."""
     collision, proof = motion.collision, motion.certificate
     if not collision.obstacles:
         return {}
     room_m = None if proof is None else float(proof.room_m.min())
     margins = {"margin_m": collision.margin_m, "margins_m": dict(collision.margins_m)}
-    return {"world": {"digest": collision.world.digest, **margins, "certified_room_m": room_m}}
+    return {"world": {"file": file, "digest": collision.world.digest, **margins, "certified_room_m": room_m}}
 
 
 def _is_prismatic(motion: TrackSummary, name: str) -> bool:

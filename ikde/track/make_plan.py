@@ -1,6 +1,7 @@
 """From a track file to a `TrackPlan`: every name resolved, and what is wrong placed at its key."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +9,15 @@ import numpy as np
 from ikde.errors import InputError, nearest
 from ikde.formats.entries import UnitsEntry
 from ikde.formats.error_path import prefix_errors
+from ikde.formats.margins import read_margins
 from ikde.formats.robot_entries import read_collision, to_si, with_ranges
 from ikde.kernels.arrays import Floats
 from ikde.model.base_motion import find_wheels, usual_drive
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, Drive, Robot
+from ikde.model.world import World
 from ikde.solver.joints import joints_outside
+from ikde.solver.standing import refuse_touching
 from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path
 from ikde.track.plan import TrackPlan
@@ -20,9 +25,14 @@ from ikde.track.spec import LimitsEntry, TrackSpec
 from ikde.track.starts import settle_start
 
 KINDS = ("prismatic", "revolute")
+ReadWorld = Callable[[str], tuple[World, Callable[[], AbstractContextManager[None]]]]
+"""Reads a world file, whose path starts where the track file is; and a block in which what does not fit the robot is
+said at its place in that file. Raises `FileError`."""
 
 
-def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None = None) -> TrackPlan:
+def make_plan(
+    spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None = None, read_world: ReadWorld | None = None
+) -> TrackPlan:
     """Resolve a track file.
 
     Args:
@@ -30,16 +40,18 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
         robot: the robot that it names.
         folder: paths in the track file start here.
         file: the track file's name, for the record.
+        read_world: reads the world file that it names.
 
     Raises:
         InputError: with the path of the key inside the track file.
-        FileError: for what is wrong inside a table.
+        FileError: for what is wrong inside a table, or a world file.
     """
     robot = with_ranges(robot, spec.ranges, spec.units)
     drive = _read_drive(spec, robot)
     name = spec.name or (Path(file).stem if file else "track")
     with prefix_errors("detector"):
         collision = read_collision(robot, spec.detector, spec.units)
+    collision = _place_in_world(collision, spec, read_world)
     plan = TrackPlan(
         name=name,
         collision=collision,
@@ -50,10 +62,29 @@ def make_plan(spec: TrackSpec, robot: Robot, *, folder: Path, file: str | None =
         start=_read_start(spec, robot),
         seed=spec.seed,
         file=file,
+        world_file=spec.world,
     )
     if plan.start is not None:
         settle_start(plan, plan.start)
     return plan
+
+
+def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld | None) -> CollisionModel:
+    """The robot among the obstacles of the world that the file names, if it names one."""
+    if spec.world is None:
+        if spec.margin is not None:
+            raise InputError("a margin needs a `world` to be kept from", ("margin",))
+        return collision
+    if not collision.pairs:
+        message = "a world needs a detector: without spheres nothing can be compared with it"
+        raise InputError(message, ("detector" if spec.detector is not None else "world",))
+    assert read is not None, "`read_world` reads what `world` names"
+    world, errors = read(spec.world)
+    margin = None if spec.margin is None else str(spec.margin)
+    with errors():
+        model = collision.in_world(world, *read_margins(margin, spec.units.length_m))
+        refuse_touching(model)
+    return model
 
 
 def _read_drive(spec: TrackSpec, robot: Robot) -> Drive:

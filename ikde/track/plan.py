@@ -45,6 +45,8 @@ class TrackPlan:
     """Of the method; None for its usual ones."""
     file: str | None = None
     """The file it was read from, for the record only."""
+    world_file: str | None = None
+    """That of the world, as it was named there, likewise."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "seed", check_seed(self.seed))

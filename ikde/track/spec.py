@@ -10,6 +10,7 @@ from ikde.formats.entries import (
     Entry,
     FileEntry,
     Interval,
+    MarginChoice,
     Number,
     OrientationEntry,
     UnitsEntry,
@@ -201,6 +202,10 @@ class TrackSpec(Entry):
     """What the motion must keep."""
     detector: DetectorChoice | None = None
     """What counts as self-collision: a name, `none`, or a detector of your own (default: the robot's)."""
+    world: Text | None = None
+    """What is in the way: a world file, a cuRobo scene or a MoveIt planning scene, relative to the track file."""
+    margin: MarginChoice | None = None
+    """Distance to keep from the world; `10,gripper=0`: that of a component in its place."""
     ranges: dict[Name, Interval] = {}
     """Joint ranges instead of the robot's: joint: [lower, upper]."""
     start: dict[Name, Number] | None = None

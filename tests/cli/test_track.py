@@ -76,6 +76,25 @@ def test_in_a_world_obstacles_are_kept_away_from(cli, spec, tmp_path):
     assert cli("track", spec, "--margin", "1").code == 2
 
 
+def test_options_replace_the_world_and_the_margin_of_the_file(cli, spec, tmp_path):
+    (tmp_path / "far.yaml").write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [0.9, 0.2, 1.3]}}")
+    (tmp_path / "other.yaml").write_text("obstacles: {can: {sphere: {radius: 0.05}, position: [0.9, 0.2, 2.3]}}")
+    spec.write_text(SPEC + "world: far.yaml\nmargin: 0.02,hand=0\n".replace("hand", "LT"))
+    kept = cli("track", spec, "--json").data["world"]
+    assert (kept["file"], kept["margin_m"], kept["margins_m"]) == ("far.yaml", 0.02, {"LT": 0.0})
+    less = cli("track", spec, "--margin", "3", "--unit", "mm", "--json").data["world"]
+    assert (less["digest"], less["margin_m"], less["margins_m"]) == (kept["digest"], 0.003, {})
+    other = cli("track", spec, "--world", tmp_path / "other.yaml", "--json").data["world"]
+    assert other["digest"] != kept["digest"]
+    assert (other["file"], other["margin_m"]) == (str(tmp_path / "other.yaml"), 0.02)
+
+
+def test_a_margin_that_makes_it_always_touch_is_refused(refuse, spec, tmp_path):
+    (tmp_path / "floor.yaml").write_text("obstacles: {floor: {half_space: {}, position: [0, 0, -0.1]}}")
+    spec.write_text(SPEC + "world: floor.yaml\n")
+    assert "ignore: [" in refuse("track", spec, "--margin", "500", "--unit", "mm")
+
+
 @pytest.fixture
 def cart(spec):
     """A robot file like the paper's but for its wheels, and the track file that names it."""

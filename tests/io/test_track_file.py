@@ -81,6 +81,41 @@ def test_the_shipped_robot_has_the_angle_limits_of_the_tasks(qiao):
     np.testing.assert_allclose(qiao.lower, -qiao.upper)
 
 
+def test_a_world_stands_beside_its_track_file(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "wall.yaml").write_text("obstacles: {wall: {box: [1, 1, 1], position: [9, 0, 0]}}")
+    (tmp_path / "track.yaml").write_text(f"{GOOD}world: a/wall.yaml\nmargin: 10,LT=2\n")
+    plan = load_track(tmp_path / "track.yaml")
+    assert plan.collision.world.names == ("wall",)
+    assert (plan.collision.margin_m, plan.collision.margins_m) == (0.01, (("LT", 0.002),))
+    assert plan.world_file == "a/wall.yaml"
+    (tmp_path / "track.yaml").write_text(f"{GOOD}world: a/wall.yaml\nmargin: 10\n")
+    assert load_track(tmp_path / "track.yaml").collision.margin_m == 0.01
+
+
+WALL = "obstacles: {wall: {box: [1, 1, 1], position: [9, 0, 0]}}"
+
+
+@pytest.mark.parametrize(
+    ("keys", "world", "message"),
+    [
+        ("world: nothing.yaml", WALL, "track.yaml:14 → world: no such file: nothing.yaml"),
+        ("world: 5", WALL, "track.yaml:14 → world: expected text, got 5"),
+        ("world: world.yaml\nmargin: -1", WALL, "track.yaml:15 → margin: expected at least 0, got -1"),
+        ("world: world.yaml\nmargin: ten", WALL, "track.yaml:15 → margin: expected a distance or component=distance"),
+        ("world: world.yaml\nmargin: 1,hnad=2", WALL, "track.yaml:15 → margin.hnad: no component is called 'hnad'"),
+        ("margin: 1", WALL, "track.yaml:14 → margin: a margin needs a `world` to be kept from"),
+        ("detector: none\nworld: world.yaml", WALL, "track.yaml:14 → detector: a world needs a detector"),
+        ("world: world.yaml", "obstacles: {wall: {box: [1, 0, 1]}}", "world.yaml:1 → obstacles.wall.box.y: expected"),
+        ("world: world.yaml", "obstacles: {wall: {half_space: {}}}", "world.yaml:1 → obstacles.wall: "),
+        ("world: world.yaml", "- 1\n", "world.yaml"),
+    ],
+)
+def test_a_world_that_is_wrong_is_one_line_with_its_place(tmp_path, keys, world, message):
+    (tmp_path / "world.yaml").write_text(world)
+    assert complaint(f"{GOOD}{keys}\n", tmp_path).startswith(message)
+
+
 def test_a_mapping_is_the_same_track(tmp_path):
     (tmp_path / "track.yaml").write_text(GOOD)
     a, b = load_track(tmp_path / "track.yaml"), load_track(yaml.safe_load(GOOD))
