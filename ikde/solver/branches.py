@@ -13,10 +13,10 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.branches import find_branches
-from ikde.model.closed_form import URArm, find_still_arm, find_ur_arm
+from ikde.model.closed_form import find_still_arm, find_ur_arm
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import WORLD, FreeSpheres, Robot, Spheres
 from ikde.model.target import KINDS, Target, Targets
+from ikde.solver.arm_motions import find_motions
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.problem import Problem
 from ikde.solver.result import NO_SOLUTION, STOP_REASONS, StopReason, count_blocking_pairs
@@ -32,11 +32,30 @@ _OUT_OF_REACH, _COLLISION, _LIMITS, _WORLD = map(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Asked:
+    """T poses of an arm, as what carries it sees them."""
+
+    q: Floats
+    """[T, N] of the joints that are not the arm's."""
+    T_carrier_tool: Floats
+    """[T, 4, 4] m"""
+    carrier: int | None = None
+    """A joint that carries the arm and is not known exactly."""
+    carrier_slack: float = 0.0
+    """By how much, m or rad."""
+    moves_m: float = 0.0
+    """How far the pose may be from what the carrier sees, beside the tolerances: for the joint that is not known."""
+    rotates_rad: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Judged:
     """The eight branches of T poses."""
 
     q: Floats
-    """[T, 8, N] in the turn nearest to the ranges; NaN where there is no branch."""
+    """[T, 8, N] in the turn nearest to the ranges; NaN where no pose within the tolerances has the branch."""
+    is_own: Bools
+    """[T, 8] the pose itself has it."""
     missing: Bools
     """[T, 8] does not exist, for sure."""
     outside: Bools
@@ -68,41 +87,52 @@ def rule_out_by_branches(problem: Problem, targets: Targets) -> Ints:
 
 def judge_branches(problem: Problem, targets: Targets) -> Judged:
     """All branches of poses, by an arm that alone may move."""
-    robot, settings = problem.robot, problem.settings
-    arm = find_still_arm(robot, problem.lower, problem.upper)
+    q = np.broadcast_to(problem.lower, (len(targets), len(problem.lower)))
+    T_world_tool = np.broadcast_to(np.eye(4), (len(targets), 4, 4)).copy()
+    T_world_tool[:, :3] = targets.T_world_tool
+    return judge(problem, Asked(q=q, T_carrier_tool=_place_carrier(problem) @ T_world_tool))
+
+
+def judge(problem: Problem, asked: Asked) -> Judged:
+    """All branches of poses, where every joint but the arm's is known, or nearly so."""
+    settings, arm = problem.settings, find_ur_arm(problem.robot)
     assert arm is not None
     tolerances = settings.position_tolerance_m + ROUNDING, settings.orientation_tolerance_rad + ROUNDING
-    found = find_branches(arm, _find_carried(problem, targets), *tolerances)
-    q = np.broadcast_to(problem.lower, (*found.missing.shape, len(robot.joints))).copy()
+    found = find_branches(arm, asked.T_carrier_tool, tolerances[0] + asked.moves_m, tolerances[1] + asked.rotates_rad)
+    q = np.repeat(asked.q[:, None], found.missing.shape[1], axis=1)
     slack = np.zeros(q.shape)
     joints, middle = list(arm.coordinates), 0.5 * (problem.lower + problem.upper)[list(arm.coordinates)]
     angles = arm.signs * (found.angles - arm.offsets)
     q[..., joints] = angles - TURN * np.rint((angles - middle) / TURN)
     slack[..., joints] = found.slack
     outside = (_measure_excess(problem, q) > slack).any(axis=-1) & ~found.missing
+    if asked.carrier is not None:
+        joints.append(asked.carrier)
+        slack[..., asked.carrier] = asked.carrier_slack
     pairs, every = len(problem.collision.pairs), len(problem.collision.all_pairs)
     colliding = np.zeros((*outside.shape, every), dtype=bool)
     tested = np.isfinite(slack).all(axis=-1) & ~outside & ~found.missing
     if not problem.collision.pairs:
-        return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
-    motions, moved = find_motions(problem.collision.own), (slack[tested][:, joints], *tolerances)
+        return Judged(q=q, is_own=found.is_own, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
+    motions, moved = (
+        find_motions(problem.collision.own, tuple(joints)),
+        (slack[tested][:, joints], _seen_by_tool(found.is_own[tested], tolerances[0]), tolerances[1]),
+    )
     room = motions.bound_m(*moved)
     if problem.collision.obstacles:
         room = np.concatenate([room, motions.bound_in_world_m(*moved, problem.collision)], axis=-1)
     colliding[tested] = compute_gaps(problem.collision, q[tested]) + room <= problem.collision.limit_m
-    return Judged(q=q, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
+    return Judged(q=q, is_own=found.is_own, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
+
+
+def _seen_by_tool(is_own: Bools, position_m: float) -> Floats:
+    """How far the tool may be from where it is in a branch [K, 1], m: of a branch that the pose has not, anywhere."""
+    return np.where(is_own, position_m, np.inf)[:, None]
 
 
 def _measure_excess(problem: Problem, q: Floats) -> Floats:
     """How far each joint is outside its range in the nearest turn [..., N]; q is in the turn nearest to the middle."""
     return np.maximum(np.maximum(problem.lower - q, q - problem.upper), 0.0)
-
-
-def _find_carried(problem: Problem, targets: Targets) -> Floats:
-    """T_carrier_tool [T, 4, 4] of targets, the carrier being where the frozen joints put it."""
-    T_world_tool = np.broadcast_to(np.eye(4), (len(targets), 4, 4)).copy()
-    T_world_tool[:, :3] = targets.T_world_tool
-    return _place_carrier(problem) @ T_world_tool
 
 
 @lru_cache(maxsize=64)
@@ -113,74 +143,6 @@ def _place_carrier(problem: Problem) -> Floats:
     T_world_carrier = compute_frames(problem.robot, problem.lower)[problem.robot.tool]
     T_world_carrier = T_world_carrier @ np.linalg.inv(arm.tool_pose(arm.angles(problem.lower)))
     return np.asarray(np.linalg.inv(T_world_carrier), dtype=float)
-
-
-class Motions:
-    """How far two components can move against each other while the arm's joints move within their slack."""
-
-    def __init__(self, collision: CollisionModel, arm: URArm) -> None:
-        robot, pairs = collision.robot, collision.pairs
-        names = [robot.joint_names[k] for k in arm.coordinates]
-        axes = [next(frame.name for frame in robot.frames if frame.joint == name) for name in names]
-        ways = {name: _list_ways_up(robot, name) for name in (WORLD, *(frame.name for frame in robot.frames))}
-        parts = {name: ([False] * 6, np.zeros(6), 0.0) for pair in pairs for name in pair}
-        for row in collision.rows:
-            beyond = _reach_beyond(row)
-            for point in (row.start, row.end):
-                levers = np.array([_join(ways[axis], ways[point]) for axis in axes])
-                _, old, old_tool = parts.get(row.component, (None, 0.0, 0.0))
-                tool = max(old_tool, _join(ways[robot.tool], ways[point]) + beyond)
-                moved = [axis in ways[point] for axis in axes]
-                parts[row.component] = moved, np.maximum(old, levers + beyond), tool
-        self._parts = parts
-        self._moved, self._levers, self._tool = (
-            [np.array([parts[pair[side]][k] for pair in pairs]) for side in (0, 1)] for k in range(3)
-        )
-
-    def bound_in_world_m(
-        self, slack: Floats, position_m: float, orientation_rad: float, collision: CollisionModel
-    ) -> Floats:
-        """By how much each component can move in the world, at most, [K, C O] in m for slacks [K, 6]."""
-        parts = [self._parts.get(name, ([False] * 6, np.zeros(6), np.inf)) for name in collision.components]
-        moved, levers, tool = (np.array(column) for column in zip(*parts, strict=True))
-        by_tool = slack @ (~moved * levers).T + position_m + orientation_rad * tool
-        return np.repeat(np.minimum(slack @ (moved * levers).T, by_tool), len(collision.obstacles), axis=-1)
-
-    def bound_m(self, slack: Floats, position_m: float, orientation_rad: float) -> Floats:
-        """By how much, at most, [K, P] in m for slacks [K, 6]: seen from either component, and from base and tool."""
-        apart = (self._moved[0] != self._moved[1]) * np.maximum(*self._levers)  # what moves both moves neither
-        own = [
-            np.minimum(slack @ (moved * levers).T, slack @ (~moved * levers).T + position_m + orientation_rad * tool)
-            for moved, levers, tool in zip(self._moved, self._levers, self._tool, strict=True)
-        ]
-        return np.minimum(slack @ apart.T, own[0] + own[1])
-
-
-@lru_cache(maxsize=64)
-def find_motions(collision: CollisionModel) -> Motions:
-    """Those of a robot's UR-type arm."""
-    arm = find_ur_arm(collision.robot)
-    assert arm is not None
-    return Motions(collision, arm)
-
-
-def _list_ways_up(robot: Robot, frame: str) -> dict[str, float]:
-    """Frames from one up to the world, and how far their origins can be from its own, m."""
-    frames, length, ways = {frame.name: frame for frame in robot.frames}, 0.0, {}
-    while frame in frames:
-        ways[frame] = length
-        length += float(np.linalg.norm(frames[frame].p_parent_frame))
-        joint = frames[frame].joint
-        index = None if joint is None else robot.joint_names.index(joint)
-        if index is not None and robot.is_prismatic[index]:
-            length += max(abs(robot.lower[index]), abs(robot.upper[index]))
-        frame = frames[frame].parent
-    return {**ways, frame: length}
-
-
-def _join(one: dict[str, float], other: dict[str, float]) -> float:
-    """How far two frames can be apart, m: along the tree, over the first one that is above both."""
-    return min((one[name] + other[name] for name in one if name in other), default=0.0)
 
 
 def tell_branches(problem: Problem, target: Target) -> tuple[str, dict[tuple[str, str], int]]:
@@ -218,16 +180,9 @@ def _name_blockers(collision: CollisionModel, judged: Judged) -> list[str]:
 
 def find_beyond(problem: Problem, target: Target) -> Floats | None:
     """The configuration [N] that meets a pose and is least outside the limits, if one is free of collision."""
-    q = judge_branches(problem, Targets.of([target])).q[0]
-    q = q[np.isfinite(q).all(axis=-1)]
+    judged = judge_branches(problem, Targets.of([target]))
+    q = judged.q[0][judged.is_own[0]]
     free = q[(compute_gaps(problem.collision, q) > problem.collision.limit_m).all(axis=-1)]
     if not len(free):
         return None
     return free[_measure_excess(problem, free).sum(axis=-1).argmin()]
-
-
-def _reach_beyond(row: Spheres) -> float:
-    """How far a row's centres may be beyond its key points, m."""
-    if isinstance(row, FreeSpheres):
-        return float(np.linalg.norm(np.array(row.spheres)[:, :3], axis=1).max())
-    return 2.0 * row.radius_m * row.count if row.spacing == "touching" else 0.0

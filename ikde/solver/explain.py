@@ -30,6 +30,7 @@ from ikde.solver.proof import prove
 from ikde.solver.remedies import try_in_world
 from ikde.solver.result import NO_SOLUTION, STOP_REASONS, StopReason, count_blocking_pairs
 from ikde.solver.search import search
+from ikde.solver.sweep import Swept, rule_out_by_sweep, tell_sweep
 from ikde.solver.tool_body import tell_tool_body
 from ikde.solver.touching import find_always_touching
 from ikde.solver.verify import Bools, Grade, verify
@@ -115,6 +116,16 @@ def explain(
     if stop_from_counts(problem, found)[0] == _TIMED_OUT:
         return _timed_out(found, graded, timeout_s, met.blocking)
     probe = Probe(target, seed, stream, float(found.seconds[0]))
+    swept = rule_out_by_sweep(problem, target)
+    if swept is not None:
+        return _swept(problem, target, probe, swept, found, graded)
+    return _searched(problem, target, probe, met, found, graded)
+
+
+def _searched(
+    problem: Problem, target: Target, probe: Probe, met: _Met, found: SearchState, graded: Grade
+) -> Explanation:
+    """What is not proved: what more of the search finds, what always touches, what would help."""
     met, hint = _look_closer(problem, probe, met)
     hint = hint or try_longer(problem, probe)
     if hint:
@@ -208,6 +219,19 @@ def _ruled_out(
     hint = hint or hint_at_tolerance(problem, target, found.q[0], graded)
     stop = STOP_REASONS[found.ruled_out[0]]
     return Explanation(stop_reason=stop, reason=reason, hint=hint, blocking_pairs=blocking)
+
+
+def _swept(
+    problem: Problem, target: Target, probe: Probe, swept: Swept, found: SearchState, graded: Grade
+) -> Explanation:
+    """What the sweep of the joint that carries the arm proves; what would help."""
+    hint = try_in_world(problem, probe, swept.blocking) or try_freeing(problem, probe) or try_widening(problem, probe)
+    return Explanation(
+        stop_reason=swept.stop_reason,
+        reason=tell_sweep(problem.robot, swept),
+        hint=hint or hint_at_tolerance(problem, target, found.q[0], graded),
+        blocking_pairs=swept.blocking,
+    )
 
 
 def _colliding(problem: Problem, met: _Met, graded: Grade, remedy: str | None) -> Explanation:

@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 
 import ikde
 from ikde.kernels.arrays import REACHED
-from ikde.model.closed_form import find_still_arm, find_ur_arm
+from ikde.model.closed_form import find_still_arm
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import Targets
-from ikde.solver.branches import find_beyond, find_motions, judge_branches, rule_out_by_branches, tell_branches
+from ikde.solver.branches import find_beyond, judge_branches, rule_out_by_branches, tell_branches
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.result import STOP_REASONS
 from ikde.solver.search import search
@@ -170,23 +170,3 @@ def test_nothing_is_ruled_out_but_poses_of_an_arm_that_alone_may_move():
     for problem in (problem_of(QIAO), problem_of(QIAO, freeze=["d_x", "d_y"]), problem_of(ikde.load_robot("panda"))):
         assert find_still_arm(problem.robot, problem.lower, problem.upper) is None
         assert rule_out_by_branches(problem, pose).tolist() == [-1]
-
-
-@pytest.mark.parametrize("problem", QUESTIONS[:2], ids=["ur5", "qiao2021"])
-def test_components_move_no_further_against_each_other_than_the_bound_says(problem, rng):
-    """From both ends: what is said of the joints alone, and with a tool that hardly moves."""
-    robot, collision, arm = problem.robot, problem.collision, find_ur_arm(problem.robot)
-    motions, joints, tightest = find_motions(collision), list(arm.coordinates), 0.0
-    Q = park(problem, random_q(robot, rng, 200))
-    for size in (1e-3, 0.1):
-        change = np.zeros(Q.shape)
-        change[:, joints] = rng.uniform(-size, size, (len(Q), 6)) * (rng.random((len(Q), 6)) < 0.4)
-        before, after = (compute_frames(robot, q)[robot.tool] for q in (Q, Q + change))
-        moved = np.linalg.norm(after[:, :3, 3] - before[:, :3, 3], axis=1)
-        turned = Rotation.from_matrix(np.einsum("tji,tjk->tik", before[:, :3, :3], after[:, :3, :3])).magnitude()
-        gaps = np.abs(compute_gaps(collision, Q + change) - compute_gaps(collision, Q))
-        for row in range(len(Q)):
-            bound = motions.bound_m(np.abs(change[row : row + 1, joints]), moved[row], turned[row])[0]
-            assert (gaps[row] <= bound + 1e-12).all()
-            tightest = max(tightest, (gaps[row] / np.maximum(bound, 1e-12)).max())
-    assert tightest > 0.3
