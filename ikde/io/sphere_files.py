@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
@@ -79,11 +78,14 @@ def _read_curobo(document: Document) -> SphereFile:
     where, section = _find_curobo(document)
     spheres = section[SPHERES]
     where = (*where, SPHERES)
-    if isinstance(spheres, str):
-        return replace(_follow(document, spheres, where), ignored=read_ignored(document, section, where[:-1]))
-    found = {name: _read_list(document, own, (*where, name)) for name, own in _items(document, spheres, where)}
     buffers = [key for key in ("collision_sphere_buffer", "self_collision_buffer") if _says_more(section.get(key))]
-    made = _make(document.path, "cuRobo", found, [f"{key} is not added to radii" for key in buffers])
+    notes = [f"{key} is not added to radii" for key in buffers]
+    if isinstance(spheres, str):
+        made = _follow(document, spheres, where)
+        made = replace(made, notes=(*notes, *made.notes))
+    else:
+        found = {name: _read_list(document, own, (*where, name)) for name, own in _items(document, spheres, where)}
+        made = _make(document.path, "cuRobo", found, notes)
     return replace(made, ignored=read_ignored(document, section, where[:-1]))
 
 
@@ -107,8 +109,9 @@ def _follow(document: Document, name: str, where: Where) -> SphereFile:
     if path is None:
         raise document.error(f"its spheres are in {quoted(name)}, which is not in its folder; name that file", where)
     other = read_yaml(path)
-    if isinstance(other.data, dict) and isinstance(other.data.get(SPHERES), str):
-        raise other.error("expected links with their spheres", (SPHERES,))
+    own, section = _find_curobo(other)
+    if isinstance(section[SPHERES], str):
+        raise other.error("expected links with their spheres", (*own, SPHERES))
     return _read_curobo(other)
 
 
@@ -116,9 +119,9 @@ def _read_xrdf(document: Document, data: dict[Any, Any]) -> SphereFile:
     name, where = _choose_geometry(document, data)
     geometry: dict[Any, Any] = data["geometry"]
     own = geometry[name]
-    if isinstance(own, dict) and "spheres" not in own and own.get("clone") in geometry:
-        where = ("geometry", own["clone"])
-        own = geometry[own["clone"]]
+    clone = own.get("clone") if isinstance(own, dict) and "spheres" not in own else None
+    if isinstance(clone, str) and clone in geometry:
+        where, own = ("geometry", clone), geometry[clone]
     if not isinstance(own, dict) or "spheres" not in own:
         raise document.error("expected spheres by link", where)
     where = (*where, "spheres")
@@ -174,7 +177,7 @@ def _is_ball(ball: Any) -> bool:
 
 def _is_place(numbers: Sequence[Any]) -> bool:
     are_numbers = all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers)
-    return are_numbers and all(isfinite(number) and abs(number) <= MAX_MAGNITUDE for number in numbers)
+    return are_numbers and all(abs(number) <= MAX_MAGNITUDE for number in numbers)  # False for NaN; as large as it likes
 
 
 def _says_more(value: Any) -> bool:

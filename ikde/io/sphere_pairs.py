@@ -2,9 +2,11 @@
 
 from typing import Any
 
+from ikde.errors import printable
 from ikde.io.srdf import DisabledPair, Srdf
 from ikde.io.yaml_file import Document, Where
 from ikde.model.numbers import is_number
+from ikde.model.robot import MAX_MAGNITUDE
 
 Section = dict[Any, Any]
 
@@ -25,7 +27,7 @@ def read_ignored(document: Document, data: Section, where: Where) -> Srdf:
         states=(("", "home", home),) if home else (),
         disabled=disabled,
         is_whole=ignored is not None,
-        source=document.path.name,
+        source=printable(document.path.name),
     )
 
 
@@ -55,6 +57,7 @@ def _read_home(document: Document, data: Section, where: Where) -> dict[str, flo
         key = (*where, "cspace", "retract_config")
     if not isinstance(names, list) or not isinstance(values, list):
         return {}
-    if len(names) != len(values) or not all(is_number(value) for value in values):
-        raise document.error(f"expected {len(names)} numbers, one a joint", key)
+    are_good = all(is_number(value) and abs(value) <= MAX_MAGNITUDE for value in values)  # not for NaN
+    if len(names) != len(values) or not are_good:
+        raise document.error(f"expected {len(names)} numbers within {MAX_MAGNITUDE:g} of 0, one a joint", key)
     return {name: float(value) for name, value in zip(names, values, strict=True) if isinstance(name, str)}

@@ -39,13 +39,14 @@ def test_spheres_of_curobo_are_found_wherever_they_stand(tmp_path, text):
 def test_a_file_of_spheres_is_followed_within_the_folder_only(tmp_path):
     (tmp_path / "deep").mkdir()
     (tmp_path / "deep" / "balls.yml").write_text(f"collision_spheres: {BALLS}", encoding="utf-8")
-    (tmp_path / "round.yml").write_text("collision_spheres: round.yml", encoding="utf-8")
     assert read(tmp_path, "robot_cfg: {kinematics: {collision_spheres: deep/balls.yml}}").spheres == FOUND
     for name in ("../balls.yml", "missing.yml", "/etc/passwd", "deep"):
         with pytest.raises(FileError, match=r"spheres\.yml:1 → .*is not in its folder; name that file"):
             read(tmp_path, f"collision_spheres: {name}")
-    with pytest.raises(FileError, match=r"round\.yml:1 → .*expected links with their spheres"):
-        read(tmp_path, "collision_spheres: round.yml")
+    for text in ("collision_spheres: round.yml", "robot_cfg: {kinematics: {collision_spheres: round.yml}}"):
+        (tmp_path / "round.yml").write_text(text, encoding="utf-8")
+        with pytest.raises(FileError, match=r"round\.yml:1 → .*expected links with their spheres"):
+            read(tmp_path, text)
 
 
 def test_xrdf_has_one_geometry_or_names_it(tmp_path):
@@ -72,6 +73,11 @@ def test_what_is_not_taken_over_is_listed(tmp_path):
         "collision_sphere_buffer is not added to radii",
         "1 sphere without a radius above 0",
     )
+    (tmp_path / "balls.yml").write_text(f"self_collision_buffer: 1\ncollision_spheres: {BALLS}", encoding="utf-8")
+    assert read(tmp_path, "collision_spheres: balls.yml\ncollision_sphere_buffer: 0.005").notes == (
+        "collision_sphere_buffer is not added to radii",
+        "self_collision_buffer is not added to radii",
+    )
     xrdf = f"geometry: {{g: {{spheres: {BALLS}}}}}\nself_collision: {{geometry: g, buffer_distance: {{upper: 0.01}}}}\n"
     assert read(tmp_path, xrdf + "modifiers: [{set_base_frame: a}]").notes == (
         "self_collision.buffer_distance is not added to radii",
@@ -91,6 +97,9 @@ def test_what_is_not_taken_over_is_listed(tmp_path):
         ("collision_spheres: {a: [{center: [0, 0, true], radius: 1}]}", "expected {center"),
         ("collision_spheres: {a: [{center: [0, 0, 1e9], radius: 1}]}", "expected {center"),
         ("collision_spheres: {a: [{radius: 1}]}", "expected {center"),
+        (f"collision_spheres: {{a: [{{center: [0, 0, {'9' * 400}], radius: 1}}]}}", "expected {center"),
+        ("geometry: {a: {clone: [1]}}", "expected spheres by link"),
+        ("geometry: {a: {clone: a}}", "expected spheres by link"),
         (
             "collision_spheres: {a: [{center: [0, 0, 0], radius: 0}]}",
             "expected spheres with a radius above 0, got none",

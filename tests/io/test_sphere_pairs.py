@@ -44,6 +44,12 @@ def test_an_import_keeps_them(tmp_path, text):
     assert "spheres.yml names links that there are not: nowhere" in imported.warnings
 
 
+def test_a_file_of_any_name_leaves_pairs_out(tmp_path):
+    spheres = write(tmp_path, CUROBO, "a\nb\x1b.yml")
+    (pair,) = ikde.import_urdf(write(tmp_path, ARM), spheres=spheres).adjacent
+    assert pair.reason == r"a\nb\x1b.yml: ignored"
+
+
 def test_neighbours_are_compared_if_a_list_is_there_that_does_not_ignore_them(tmp_path):
     balls = "{upper: [{center: [0, 0, 0.3], radius: 0.05}], fore: [{center: [0, 0, 0], radius: 0.04}]}"
     path = write(tmp_path, ARM)
@@ -57,7 +63,9 @@ def test_neighbours_are_compared_if_a_list_is_there_that_does_not_ignore_them(tm
     [
         ("{base_link: [fore, nowhere]}", "[base_link]", "self_collision_ignore: expected links with lists of links"),
         ("{base_link: [fore, nowhere]}", "{base_link: [1]}", "expected links with lists of links"),
-        ("[0.5, 0.2]", "[0.5]", "retract_config: expected 2 numbers, one a joint"),
+        ("[0.5, 0.2]", "[0.5]", "retract_config: expected 2 numbers within 100000 of 0, one a joint"),
+        ("[0.5, 0.2]", "[0.5, .nan]", "retract_config: expected 2 numbers"),
+        ("[0.5, 0.2]", f"[0.5, {'9' * 400}]", "retract_config: expected 2 numbers"),
         ("[0.5, 0.2]", "[0.5, much]", "expected 2 numbers"),
     ],
 )
