@@ -177,7 +177,9 @@ def _is_ball(ball: Any) -> bool:
 
 def _is_place(numbers: Sequence[Any]) -> bool:
     are_numbers = all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers)
-    return are_numbers and all(abs(number) <= MAX_MAGNITUDE for number in numbers)  # False for NaN; as large as it likes
+    return are_numbers and all(
+        abs(number) <= MAX_MAGNITUDE for number in numbers
+    )  # False for NaN; as large as it likes
 
 
 def _says_more(value: Any) -> bool:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.spheres.candidates import Candidates, find_candidates
 from ikde.spheres.certificate import certify
@@ -49,7 +50,10 @@ def cover_mesh(path: Path, scale: tuple[float, float, float], protrusion_m: floa
     """
     triangles, warnings = read_mesh(path, scale)
     own, parts = make_solid(triangles, convex_hull)
-    cover = _cover_surface(own, parts, protrusion_m, warnings)
+    try:
+        cover = _cover_surface(own, parts, protrusion_m, warnings)
+    except InputError as error:
+        raise InputError("; ".join([*warnings, error.message])) from None
     if len(cover.rows.radii) <= MAX_SPHERES:
         return cover
     hulls, parts = make_solid(triangles, convex_hull, only_hulls=True)

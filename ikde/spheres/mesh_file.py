@@ -1,4 +1,4 @@
-"""Files of meshes: STL, OBJ and DAE as triangles in m, read by trimesh (the extra `meshes`)."""
+"""Files of meshes: STL, OBJ and, by trimesh (the extra `meshes`), DAE as triangles in m."""
 
 import io
 from importlib import import_module
@@ -8,15 +8,18 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ikde.errors import FileError, InputError
+from ikde.errors import FileError, InputError, quoted
 from ikde.kernels.arrays import Floats
+from ikde.spheres.collada import count_triangles
+from ikde.spheres.mesh_text import read_obj, read_text_stl
 
 MAX_BYTES = 50_000_000
 MAX_TRIANGLES = 500_000
 LARGE_M = 20.0
 """A body beyond this is most likely given in mm."""
 KINDS = {".stl": "stl", ".obj": "obj", ".dae": "dae"}
-STL_HEADER, STL_TRIANGLE = 84, 50  # bytes
+STL_HEADER = 84  # bytes
+STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
 MISSING = "meshes need trimesh: pip install 'ikde[meshes]'"
 
 
@@ -73,47 +76,73 @@ def _read_whole(path: Path) -> bytes:
 
 
 def _parse(path: Path, content: bytes) -> Floats:
-    trimesh = import_trimesh()
     kind = KINDS[path.suffix.lower()]
-    unit_m = _read_unit(path, content) if kind == "dae" else 1.0
-    options: Any = {"resolver": None, "process": False, "skip_materials": True}
-    fault = _find_fault(kind, content)
-    if fault:
-        raise FileError(path, f"is no {kind.upper()} that can be read: {fault}")
-    try:
-        mesh = trimesh.load_scene(io.BytesIO(content), file_type=kind, **options).to_mesh()
-        return np.array(mesh.triangles, dtype=np.float64) * unit_m
-    except Exception as error:
-        if isinstance(error, ImportError) and kind == "dae":  # trimesh reads it with packages of its own
-            raise FileError(path, f"cannot be read: {error}; a DAE needs it, or give the mesh as STL or OBJ") from None
-        raise FileError(
-            path, f"is no {kind.upper()} that can be read: it is damaged, or of another kind than its ending"
-        ) from None
-
-
-def _find_fault(kind: str, content: bytes) -> str | None:
-    """What is wrong with a mesh, as far as its length says."""
+    import_trimesh()  # for hulls: without it nothing is read
     if not content:
-        return "it is empty"
-    if kind == "stl" and not content.lstrip().startswith(b"solid"):
-        if len(content) < STL_HEADER:
-            return f"{len(content)} bytes are less than its header of {STL_HEADER}"
-        count = int.from_bytes(content[STL_HEADER - 4 : STL_HEADER], "little")
-        expected = STL_HEADER + STL_TRIANGLE * count
-        if expected > len(content):
-            return f"its header tells of {count:,} triangles, {expected:,} bytes, but it has {len(content):,}"
-    return None
+        raise FileError(path, f"is no {kind.upper()} that can be read: it is empty")
+    if kind == "dae":
+        return _read_dae(path, content)
+    if kind == "obj":
+        return read_obj(path, content.decode("utf-8", "replace"))
+    return _read_stl(path, content)
 
 
-def _read_unit(path: Path, content: bytes) -> float:
-    """How long a DAE's unit is in m; a DOCTYPE, which could name other files and grow without end, is refused."""
+def _read_stl(path: Path, content: bytes) -> Floats:
+    """Of an STL that is binary, as its length says, or of text."""
+    count = int.from_bytes(content[STL_HEADER - 4 : STL_HEADER], "little")
+    expected = STL_HEADER + STL_TRIANGLE.itemsize * count
+    is_text = b"\0" not in content and content.lstrip()[:5].lower() == b"solid"
+    if len(content) != expected and is_text:
+        return read_text_stl(path, content.decode("utf-8", "replace"))
+    if len(content) < STL_HEADER:
+        fault = f"{len(content)} bytes are less than its header of {STL_HEADER}"
+        raise FileError(path, f"is no STL that can be read: {fault}")
+    if len(content) != expected:
+        fault = f"its header tells of {count:,} triangles, {expected:,} bytes, but it has {len(content):,}"
+        raise FileError(path, f"is no STL that can be read: {fault}")
+    return np.frombuffer(content, STL_TRIANGLE, offset=STL_HEADER)["corners"].astype(np.float64)
+
+
+def _read_dae(path: Path, content: bytes) -> Floats:
+    """Of a DAE: all that its scene shows, or nothing."""
+    unit_m, expected = _look_into(path, content)
+    options: Any = {"resolver": None, "process": False, "skip_materials": True}
+    try:
+        mesh = import_trimesh().load_scene(io.BytesIO(content), file_type="dae", **options).to_mesh()
+        triangles = np.array(mesh.triangles, dtype=np.float64).reshape(-1, 3, 3) * unit_m
+    except ImportError as error:  # trimesh reads it with packages of its own
+        raise FileError(path, f"cannot be read: {error}; a DAE needs it, or give the mesh as STL or OBJ") from None
+    except Exception:
+        message = "is no DAE that can be read: it is damaged, or of another kind than its ending"
+        raise FileError(path, message) from None
+    if len(triangles) != expected:
+        raise FileError(path, f"of its {expected:,} triangles {len(triangles):,} can be read; give it as STL or OBJ")
+    return triangles
+
+
+def _look_into(path: Path, content: bytes) -> tuple[float, int]:
+    """How long a DAE's unit is in m, and how many triangles it shows.
+
+    A DOCTYPE, which could name other files and grow without end, is refused.
+    """
     if b"\0" in content or b"<!DOCTYPE" in content or b"<!ENTITY" in content:
         raise FileError(path, "expected COLLADA in UTF-8 without a DOCTYPE")
     try:
-        unit = ElementTree.fromstring(content).find("{*}asset/{*}unit")
-        unit_m = 1.0 if unit is None else float(unit.get("meter", "1"))
-    except (ElementTree.ParseError, ValueError) as error:
+        root = ElementTree.fromstring(content)
+    except (ElementTree.ParseError, ValueError, LookupError, RecursionError) as error:
         raise FileError(path, f"is no COLLADA that can be read ({type(error).__name__})") from None
+    unit = root.find("{*}asset/{*}unit")
+    given = "1" if unit is None else unit.get("meter", "1")
+    try:
+        unit_m = float(given)
+    except ValueError:
+        unit_m = 0.0
     if not 0.0 < unit_m < 1e6:
-        raise FileError(path, f"expected a unit of some m, got {unit_m:g}", ("asset", "unit"))
-    return unit_m
+        raise FileError(path, f"expected a unit of some m, got {quoted(given)}", ("asset", "unit"))
+    try:
+        count = count_triangles(root)
+    except ValueError as error:
+        raise FileError(path, f"is no DAE that can be read: {error}; give the mesh as STL or OBJ") from None
+    if count > MAX_TRIANGLES:
+        raise FileError(path, f"expected at most {MAX_TRIANGLES:,} triangles, got {count:,}")
+    return unit_m, count

@@ -5,6 +5,7 @@ import hashlib
 import numpy as np
 import pytest
 
+from ikde.errors import InputError
 from ikde.spheres import cover_mesh as module
 from ikde.spheres.certificate import certify
 from ikde.spheres.cover_mesh import convex_hull, cover_mesh, cover_solid, drop_needless
@@ -107,3 +108,11 @@ def test_where_a_mesh_takes_too_many_spheres_its_hull_is_covered(tmp_path, monke
     assert not few.only_hulls
     assert again.only_hulls == (len(again.rows.radii) < len(few.rows.radii))
     assert again.covered == 1.0
+
+
+def test_a_mesh_too_large_to_cover_is_suspected_to_be_in_mm(tmp_path) -> None:
+    path = write_stl(tmp_path / "box.stl", box(120, 50, 40))
+    with pytest.raises(
+        InputError, match=r"^box\.stl is 120 m large; if it is given in mm, use --mesh-scale 0\.001; the"
+    ):
+        cover_mesh(path, (1.0, 1.0, 1.0), 0.02)

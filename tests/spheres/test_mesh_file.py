@@ -84,6 +84,29 @@ class TestRead:
         with pytest.raises(FileError, match="expected COLLADA in UTF-8 without a DOCTYPE"):
             read_mesh(tmp_path / "a.dae")
 
+    @pytest.mark.parametrize("encoding", ["bogus", "hex", "utf-7"])
+    def test_an_encoding_that_is_none_is_refused(self, tmp_path, encoding: str) -> None:
+        (tmp_path / "a.dae").write_text(f'<?xml version="1.0" encoding="{encoding}"?>{DAE}', encoding="utf-8")
+        with pytest.raises(FileError, match=r"a\.dae: is no COLLADA that can be read"):
+            read_mesh(tmp_path / "a.dae")
+
+    def test_a_dae_of_which_a_part_is_missing_is_refused(self, tmp_path) -> None:
+        pytest.importorskip("collada")
+        (tmp_path / "a.dae").write_text(DAE.replace("0 1 2", "0 1 9"), encoding="utf-8")
+        with pytest.raises(FileError, match="of its 1 triangles 0 can be read"):
+            read_mesh(tmp_path / "a.dae")
+        (tmp_path / "a.dae").write_text(DAE.replace("#g", "#h"), encoding="utf-8")
+        with pytest.raises(FileError, match="no geometry is called '#h' in it; give the mesh as STL or OBJ"):
+            read_mesh(tmp_path / "a.dae")
+
+    def test_a_binary_stl_may_begin_like_a_text(self, tmp_path) -> None:
+        path = write_stl(tmp_path / "box.stl", box(1, 1, 1))
+        path.write_bytes(b"solid vertex" + path.read_bytes()[12:])
+        np.testing.assert_array_equal(read_mesh(path)[0], box(1, 1, 1))
+        path.write_bytes(path.read_bytes()[:-1])
+        with pytest.raises(FileError, match="its header tells of 12 triangles"):
+            read_mesh(path)
+
     @pytest.mark.parametrize("unit", ["0", "-1", "nan", "x"])
     def test_a_unit_that_is_none_is_refused(self, tmp_path, unit: str) -> None:
         (tmp_path / "a.dae").write_text(DAE.replace("0.01", unit), encoding="utf-8")
@@ -120,6 +143,7 @@ def test_without_trimesh_the_extra_is_named(tmp_path, monkeypatch: pytest.Monkey
         (b"", "is no STL that can be read: it is empty"),
         (b"x" * 83, "is no STL that can be read: 83 bytes are less than its header of 84"),
         (bytes(80) + b"\x02\0\0\0" + bytes(50), "its header tells of 2 triangles, 184 bytes, but it has 134"),
+        (bytes(80) + b"\x01\0\0\0" + bytes(100), "its header tells of 1 triangles, 134 bytes, but it has 184"),
     ],
 )
 def test_what_is_wrong_with_a_broken_stl_is_said(tmp_path, content, said):

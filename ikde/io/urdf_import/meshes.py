@@ -20,9 +20,12 @@ def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | 
     in rest, what follows that; anything else is a path beside the file.
 
     Raises:
-        FileError: for a mesh that is missing, no regular file, or outside all folders.
+        FileError: for a mesh that is missing, no regular file, or outside all folders; for a folder that is none.
     """
     folders = [urdf.parent, *package_paths]
+    for folder in package_paths:
+        if not _is_folder(folder):
+            raise FileError(folder, "no such folder; expected one with meshes", ("package_path",))
     try:
         roots = [folder.resolve(strict=True) for folder in folders]
         outside = False
@@ -43,6 +46,14 @@ def find_mesh(urdf: Path, name: str, package_paths: Sequence[Path], line: int | 
     raise FileError(urdf, message, (), line)
 
 
+def _is_folder(path: Path) -> bool:
+    """Whether there is such a folder; False, too, for what can be no name of one."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
 def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
     if parts := _split_package(name):
         within = [(folder, k) for folder in folders for k in _find_all(folder.resolve().name, parts)]
@@ -56,7 +67,7 @@ def _list_candidates(name: str, folders: Sequence[Path]) -> list[Path]:
 
 def _suggest_folder(urdf: Path, name: str) -> str:
     """The folder above the URDF in which the mesh is found, written shortly."""
-    above = urdf.absolute().parents if _split_package(name) else ()
+    above = urdf.absolute().parents[:-1] if _split_package(name) else ()  # never all of the disk
     candidates = [(folder, _list_candidates(name, [folder])) for folder in above]
     whole = [(folder, paths[0]) for folder, paths in candidates]
     for folder, path in [*whole, *((folder, path) for folder, paths in candidates for path in paths[1:])]:

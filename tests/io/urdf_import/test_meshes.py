@@ -91,4 +91,12 @@ def test_no_mesh_comes_from_the_network(robot):
 
 
 def test_a_package_path_that_is_not_there_is_one_line(robot):
-    reject(robot, "near.stl", "cannot be looked for: No such file", robot.parent / "nowhere")
+    for name in ("nowhere", robot.name, "x" * 5000):
+        with pytest.raises(FileError, match="package_path: no such folder; expected one with meshes"):
+            find_mesh(robot, "near.stl", (robot.parent / name,))
+
+
+def test_all_of_the_disk_is_never_advised(robot):
+    with pytest.raises(FileError) as caught:
+        find_mesh(robot, f"package:/{robot.parents[1] / 'meshes' / 'a.stl'}", ())
+    assert "--package-path /," not in str(caught.value)
