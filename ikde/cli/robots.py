@@ -164,6 +164,7 @@ def export(
 
     from ikde.errors import InputError
     from ikde.io.mjcf import format_mjcf
+    from ikde.io.robots import check_kept, robot_path
     from ikde.io.sphere_writers import format_curobo, format_xrdf
     from ikde.io.srdf_writer import format_srdf
     from ikde.io.unheld import BESIDE, Format, list_unheld
@@ -178,6 +179,7 @@ def export(
     kind: Format = wanted[0]
     if urdf_path is not None and kind not in BESIDE:
         raise InputError("only --curobo and --xrdf go with a URDF", ("urdf-path",))
+    check_kept(out, robot_path(name))
     robot = read_whole(name)
     is_alone = kind not in BESIDE or out is None or urdf_path is not None
     beside_text = "" if is_alone else format_urdf(robot, collision=detector)
@@ -201,10 +203,17 @@ def export(
 
 def _find_beside(out: Path, text: str) -> Path:
     """Where the URDF goes; raises `InputError` if another one is there, which may be the user's own."""
-    from ikde.errors import InputError
+    from ikde.errors import FileError, InputError
+    from ikde.formats.reading import read_bytes
+    from ikde.io.robots import is_there
 
+    if not out.name:
+        raise FileError(out, "cannot be written: expected the name of a file")
     path = out.with_suffix(".urdf")
-    if path.exists() and not (path.is_file() and path.read_bytes() == text.encode()):
+    if path == out:
+        message = f"{path} is where the URDF goes; expected another name, or the URDF that goes with it (--urdf-path)"
+        raise InputError(message, ("out",))
+    if is_there(path) and not (path.is_file() and read_bytes(path) == text.encode()):
         message = f"{path} is there already, and is not written over; name the URDF that goes with it (--urdf-path)"
         raise InputError(message, ("out",))
     return path

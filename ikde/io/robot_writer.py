@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ikde.errors import printable
+from ikde.errors import FileError, printable
 from ikde.io.urdf import rpy_from_rotation
 from ikde.io.xml_file import write_xml
 from ikde.io.yaml_text import format_flow
@@ -16,11 +16,20 @@ from ikde.model.validate import NON_ADJACENT
 
 Entry = dict[str, Any]
 _AS_SPHERES = "spheres"
+OF_OTHERS = (".urdf", ".xacro", ".srdf", ".xml", ".stl", ".obj", ".dae", ".html")
+"""Endings of files that an import reads, or that stand beside a robot's."""
 
 
 def write_robot(robot: Robot, path: str | PathLike[str], notes: Iterable[str] = ()) -> None:
-    """Write a robot's file, whole or not at all; raises `FileError` in one line."""
-    write_xml(Path(path), format_robot_file(robot, notes))
+    """Write a robot's file, whole or not at all.
+
+    Raises:
+        FileError: if it cannot be written, or its name is that of another kind of file, as which it would be read.
+    """
+    place = Path(path)
+    if place.suffix.lower() in OF_OTHERS:
+        raise FileError(place, "a robot file is YAML; expected a name that ends in .yaml")
+    write_xml(place, format_robot_file(robot, notes))
 
 
 def format_robot_file(robot: Robot, notes: Iterable[str] = ()) -> str:

@@ -111,7 +111,7 @@ def _bound(
         if seen > boxes:
             return Verdict("unknown", boxes=seen)
         reach = halves @ travel
-        left = np.abs(gaps) <= reach
+        left = (np.abs(gaps) <= reach) & (reach > 0.0)  # what cannot move is decided, at the limit itself as well
         if is_hit and not left.all():
             depth = min(depth, float((-gaps - reach)[~left].min()))
         middles, halves = _halve(middles[left], halves[left], travel)

@@ -9,6 +9,7 @@ from ikde.io.robots import robot_path
 from tests.bare_robot import BARE
 from tests.hostile_names import PRINTABLE, rename_in_file
 from tests.robot_files import GOOD, NAMES
+from tests.urdf_texts import ARM, write
 
 
 @pytest.mark.parametrize("command", [("robots",), ("robots", "list")])
@@ -235,6 +236,19 @@ def test_a_robot_file_is_exported(cli, tmp_path):
     assert cli("robots", "export", path, "--urdf").out == ikde.format_urdf(ikde.load_robot(path))
 
 
+@pytest.mark.parametrize("option", ["--urdf", "--srdf", "--mjcf", "--curobo", "--xrdf"])
+def test_nothing_is_exported_over_what_it_is_made_of(refuse, tmp_path, option):
+    for path, text in ((tmp_path / "two.yaml", GOOD), (write(tmp_path, ARM), ARM)):
+        path.write_text(text)
+        (tmp_path / "link").unlink(missing_ok=True)
+        (tmp_path / "link").symlink_to(path)
+        for out in (path, tmp_path / "link"):
+            assert "is what is read; expected another file to write" in refuse(
+                "robots", "export", path, option, "--out", out
+            )
+        assert path.read_text() == text
+
+
 @pytest.mark.parametrize(
     ("command", "words"),
     [
@@ -249,6 +263,9 @@ def test_a_robot_file_is_exported(cli, tmp_path):
         ("ur5 --mjcf --out missing/ur5.xml", "its folder does not exist"),
         ("ur5 --urdf --out /dev/null", "no ordinary file"),
         ("ur5 --urdf --out", "requires an argument"),
+        ("ur5 --curobo --out .", "cannot be written: expected the name of a file"),
+        ("ur5 --xrdf --out arm.urdf", "arm.urdf is where the URDF goes; expected another name"),
+        (f"ur5 --xrdf --out {'x' * 300}", "cannot be written: File name too long"),
     ],
 )
 def test_what_export_refuses(refuse, command, words):

@@ -48,6 +48,10 @@ def test_save_writes_a_file_that_loads(tmp_path):
     robot.save(str(tmp_path / "robot.yaml"))
     with pytest.raises(FileError, match="cannot be written: its folder does not exist"):
         robot.save(tmp_path / "nowhere" / "robot.yaml")
+    for name in ("robot.urdf", "mesh.STL", "robot.srdf", "page.html"):
+        with pytest.raises(FileError, match=r"a robot file is YAML; expected a name that ends in \.yaml"):
+            robot.save(tmp_path / name)
+    assert [path.name for path in tmp_path.iterdir()] == ["robot.yaml"]
 
 
 @pytest.mark.parametrize(

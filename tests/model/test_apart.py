@@ -99,3 +99,14 @@ def test_a_pair_many_joints_apart_is_given_up_at_once_or_by_the_budget():
     assert not is_apart(packed, chains, 0.0, robot.drawn, BOXES)
     assert decide(packed, chains, 0.0, robot.drawn, 1).answer == "unknown"
     assert decide(packed, chains, 0.0, robot.drawn, BOXES).answer == "apart"
+
+
+@pytest.mark.parametrize("limits", [{"lower": 0.5, "upper": 0.5}, None])
+def test_what_does_not_move_is_decided_at_the_limit_itself(limits):
+    robot = on_the_axis(0.0, **(limits or {}))
+    packed, (chains,) = find_all(robot)
+    still = chains if limits else chains._replace(bodies=((), ()))
+    gap = float(compute_gaps(packed, still, np.full((1, len(still.joined)), 0.5))[0])
+    for limit, answer in ((gap, "touching"), (gap - 1e-9, "apart"), (gap + 1e-9, "touching")):
+        verdict = decide(packed, still, limit, robot.drawn, BOXES)
+        assert (verdict.answer, verdict.boxes) == (answer, 1)

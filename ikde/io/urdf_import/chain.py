@@ -59,6 +59,11 @@ def choose_tool(description: Description, tree: LinkTree, tool: str | None, base
 
     If none is moved by a joint of the file but its base is, all leaves are.
     """
+    part_of = description.marks.components.get(tool) if tool else None
+    if tool and part_of is not None:
+        message = f"the link {quoted(tool)} holds spheres of {quoted(part_of)} and is no frame; expected"
+        carrier = tree.joint_of[tool].parent
+        raise FileError(description.path, f"{message} another link, such as {quoted(carrier)}", ("tool",))
     if tool in description.links:
         return tool
     parents = {joint.parent for joint in tree.joint_of.values()}

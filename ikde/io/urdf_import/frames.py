@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import pi
 
 import numpy as np
 
@@ -121,8 +122,8 @@ def _add_planar(skeleton: Skeleton, name: str, parent: str, joint: UrdfJoint, op
     x, y, yaw = (reserve_name(f"{joint.name}_{key}", skeleton.joint_names) for key in ("x", "y", "yaw"))
     place = (parent, joint.p_parent_child, joint.R_parent_child)
     reach_m = options.base_reach_m
-    is_given = joint.lower < joint.upper and max(-joint.lower, joint.upper) <= MAX_MAGNITUDE
-    limits = (joint.lower, joint.upper) if is_given else (-reach_m, reach_m)
+    is_given = joint.lower < joint.upper
+    limits = _close_range(joint.lower, joint.upper, reach_m, about_zero=True) if is_given else (-reach_m, reach_m)
     _add_plane(skeleton, (x, y, yaw), name, place, (rotation_with_z(joint.axis), limits))
     for part in (x, y, yaw):
         skeleton.notes[part] = f"of the planar joint {joint.name}"
@@ -149,19 +150,33 @@ def _add_plane(
 def _to_joint(skeleton: Skeleton, joint: UrdfJoint) -> Joint:
     """A joint of the chain, its home at 0 or in mid-range."""
     given = {"name": joint.name, "max_speed": joint.max_speed, "max_effort": joint.max_effort}
-    no_limits = max(-joint.lower, joint.upper) > MAX_MAGNITUDE
-    if joint.kind == "continuous" or (joint.kind == "revolute" and no_limits):
+    is_endless = joint.lower < -MAX_MAGNITUDE and joint.upper > MAX_MAGNITUDE
+    if joint.kind == "continuous" or (joint.kind == "revolute" and is_endless):
         if joint.kind == "revolute":
             skeleton.notes[joint.name] = "no limits in the file: continuous"
         return Joint(**given, kind="continuous", home=0.0)
-    lower, upper = joint.lower, joint.upper
-    if joint.kind == "prismatic" and no_limits:
-        lower, upper = max(lower, -FAR_M), min(upper, FAR_M)
-        skeleton.notes[joint.name] = f"no limits in the file: {lower:g} to {upper:g} m"
+    is_prismatic = joint.kind == "prismatic"
+    lower, upper = _close_range(joint.lower, joint.upper, FAR_M if is_prismatic else 2.0 * pi, is_prismatic)
+    if (lower, upper) != (joint.lower, joint.upper):
+        unit = "m" if is_prismatic else "rad"
+        which = "no limits" if is_endless else "no lower limit" if lower != joint.lower else "no upper limit"
+        skeleton.notes[joint.name] = f"{which} in the file: {lower:g} to {upper:g} {unit}"
     if lower == upper:
         skeleton.notes[joint.name] = f"cannot move: both limits are {lower:g}"
-    kind = "prismatic" if joint.kind == "prismatic" else "revolute"
+    kind = "prismatic" if is_prismatic else "revolute"
     return Joint(**given, kind=kind, lower=lower, upper=upper, home=_choose_home(lower, upper))
+
+
+def _close_range(lower: float, upper: float, far: float, about_zero: bool) -> tuple[float, float]:
+    """Limits with an end where there is none: `far` from 0 if the other end lies within, else from that end."""
+    open_below, open_above = lower < -MAX_MAGNITUDE, upper > MAX_MAGNITUDE
+    if open_below and open_above:
+        return -far, far
+    if open_below:
+        return (-far if about_zero and upper > -far else upper - far), upper
+    if open_above:
+        return lower, (far if about_zero and lower < far else lower + far)
+    return lower, upper
 
 
 def _choose_home(lower: float, upper: float) -> float:

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Literal, cast, get_args
 
 from ikde.errors import InputError, quoted
+from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE
 
 Base = Literal["urdf", "fixed", "omni", "differential"]
@@ -57,8 +59,42 @@ class ImportOptions:
         if self.base not in get_args(Base):
             raise InputError(f"expected one of {', '.join(get_args(Base))}, got {quoted(self.base)}", ("base",))
         for key, unit in (("base_reach_m", " m"), ("protrusion_m", " m"), ("mesh_scale", "")):
-            if not 0.0 < getattr(self, key) <= MAX_MAGNITUDE:
+            value = getattr(self, key)
+            if not (is_number(value) and 0.0 < value <= MAX_MAGNITUDE):
                 raise InputError(f"expected a number above 0, up to {MAX_MAGNITUDE:g}{unit}", (key,))
+        _check_tool(self.tool)
+        _check_hold(self.hold)
+
+
+def _check_tool(tool: object) -> None:
+    """Raise `InputError` unless this is nothing, a link, or links by name."""
+    named = tool.items() if isinstance(tool, Mapping) else [("tool", tool)]
+    are_names = all(isinstance(text, str) and text for pair in named for text in pair)
+    if tool is not None and not (are_names and named):
+        raise InputError(f"expected a link, or links by name, got {quoted(tool)}", ("tool",))
+
+
+def _check_hold(hold: object) -> None:
+    """Raise `InputError` unless these are values by joint."""
+    if not isinstance(hold, Mapping):
+        raise InputError(f"expected values by joint, such as {{'grip': 0.02}}, got {quoted(hold)}", ("hold",))
+    for name, value in hold.items():
+        if not (isinstance(name, str) and is_number(value)):
+            raise InputError(f"expected a number by the name of a joint, got {quoted(value)}", ("hold", str(name)))
+
+
+def read_path(path: object, where: str) -> Path:
+    """A path as it is given; raises `InputError` for what is none."""
+    if not isinstance(path, str | PathLike) or not isinstance(fspath(path), str):
+        raise InputError(f"expected the path of a file, got {quoted(path)}", (where,))
+    return Path(fspath(path))
+
+
+def read_folders(folders: object, where: str) -> tuple[Path, ...]:
+    """Paths of folders; raises `InputError` for what are none, a single one among them."""
+    if isinstance(folders, str | PathLike) or not isinstance(folders, Iterable):
+        raise InputError(f"expected paths of folders, such as ['meshes'], got {quoted(folders)}", (where,))
+    return tuple(read_path(folder, where) for folder in folders)
 
 
 def read_holds(words: Iterable[str]) -> dict[str, float]:

@@ -7,7 +7,7 @@ from typing import Protocol
 from ikde.errors import nearest, quoted
 from ikde.io.xml_elements import Element, XmlFile
 from ikde.kernels.arrays import Floats
-from ikde.model.names import check_printable
+from ikde.model.names import find_fault
 from ikde.model.robot import MAX_MAGNITUDE
 
 MAX_NUMBER = 1e9
@@ -92,7 +92,8 @@ def _read_component(
 ) -> tuple[str, str]:
     """A link and its component."""
     link, name = _read_known(file, element, "link", links, "link"), file.read_name(element, "name", "ikde", "component")
-    check_printable(name, ("ikde", "component"))
+    if fault := find_fault(name):
+        raise file.error(fault, element, "ikde", "component")
     above = [joint for joint in joints.values() if joint.child == link]
     is_end = len(above) == 1 and all(joint.parent != link for joint in joints.values())
     if not is_end or above[0].kind != "fixed":

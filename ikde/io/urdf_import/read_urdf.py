@@ -18,7 +18,7 @@ from ikde.io.urdf_import.frames import build_skeleton
 from ikde.io.urdf_import.given_spheres import give_spheres
 from ikde.io.urdf_import.held import HeldJoint, find_held
 from ikde.io.urdf_import.imported import ImportedUrdf
-from ikde.io.urdf_import.options import Base, ImportOptions, check_pairs
+from ikde.io.urdf_import.options import Base, ImportOptions, check_pairs, read_folders, read_path
 from ikde.model.robot import Robot
 
 
@@ -60,10 +60,10 @@ def import_urdf(
     options = ImportOptions(
         tool=tool,
         base=base,
-        hold=hold or {},
-        srdf=None if srdf is None else Path(srdf),
-        package_paths=tuple(map(Path, package_paths)),
-        spheres=spheres if isinstance(spheres, bool) else Path(spheres),
+        hold={} if hold is None else hold,
+        srdf=None if srdf is None else read_path(srdf, "srdf"),
+        package_paths=read_folders(package_paths, "package_paths"),
+        spheres=spheres if isinstance(spheres, bool) else read_path(spheres, "spheres"),
         protrusion_m=protrusion_m,
         compare=check_pairs(compare),
     )
@@ -83,9 +83,10 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         FileError: for a file that cannot be read or is wrong, with its line and the link or joint.
     """
     options = options or ImportOptions()
-    description = read_description(Path(path))
+    description = read_description(read_path(path, "path"))
     tree = find_tree(description)
-    tool = choose_tool(description, tree, options.first_tool or description.marks.tool, options.drives)
+    asked = description.marks.tool if options.tool is None else options.first_tool
+    tool = choose_tool(description, tree, asked, options.drives)
     tools = {name: choose_tool(description, tree, link) for name, link in options.tools.items()}
     file = read_spheres(options.spheres) if isinstance(options.spheres, Path) else None
     srdf = read_srdf(options.srdf) if options.srdf else file.ignored if file else Srdf()

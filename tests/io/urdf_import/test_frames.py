@@ -76,7 +76,26 @@ def test_a_joint_without_limits_turns_without_end_or_slides_far_and_that_is_said
 def test_a_slide_with_one_limit_keeps_it(tmp_path):
     imported = load(tmp_path, change('lower="0.1" upper="0.4"', 'lower="-1e16" upper="0.4"'))
     assert (imported.robot.lower[1], imported.robot.upper[1]) == (-100.0, 0.4)
-    assert imported.joint_notes == {"slide": "no limits in the file: -100 to 0.4 m"}
+    assert imported.joint_notes == {"slide": "no lower limit in the file: -100 to 0.4 m"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "lower", "upper", "kept", "note"),
+    [
+        ("revolute", "-1", "inf", (-1.0, -1.0 + 2 * np.pi), "no upper limit in the file: -1 to 5.28319 rad"),
+        ("revolute", "-1e6", "1", (1.0 - 2 * np.pi, 1.0), "no lower limit in the file: -5.28319 to 1 rad"),
+        ("prismatic", "-1", "inf", (-1.0, 100.0), "no upper limit in the file: -1 to 100 m"),
+        ("prismatic", "150", "inf", (150.0, 250.0), "no upper limit in the file: 150 to 250 m"),
+        ("prismatic", "-inf", "-150", (-250.0, -150.0), "no lower limit in the file: -250 to -150 m"),
+    ],
+)
+def test_the_only_limit_of_a_joint_is_kept(tmp_path, kind, lower, upper, kept, note):
+    text = ARM.replace('lower="0.1" upper="0.4"', f'lower="{lower}" upper="{upper}"').replace("prismatic", kind)
+    imported = load(tmp_path, text)
+    slide = imported.robot.joints[1]
+    assert slide.kind == kind
+    assert (slide.lower, slide.upper) == pytest.approx(kept, abs=0.0)
+    assert imported.joint_notes == {"slide": note}
 
 
 def test_a_joint_that_cannot_move_is_kept_and_that_is_said(tmp_path):

@@ -4,6 +4,7 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.io.urdf_import.options import ImportOptions, read_holds
+from ikde.io.urdf_import.read_urdf import import_urdf
 
 
 @pytest.mark.parametrize(
@@ -14,6 +15,15 @@ from ikde.io.urdf_import.options import ImportOptions, read_holds
         ({"mesh_scale": 0.0}, "mesh_scale: expected a number above 0, up to 100000"),
         ({"protrusion_m": -0.1}, "protrusion_m: expected a number above 0"),
         ({"protrusion_m": float("nan")}, "protrusion_m: expected a number above 0"),
+        ({"protrusion_m": "20"}, "protrusion_m: expected a number above 0"),
+        ({"mesh_scale": True}, "mesh_scale: expected a number above 0"),
+        ({"tool": ""}, "tool: expected a link, or links by name, got ''"),
+        ({"tool": 5}, "tool: expected a link, or links by name, got 5"),
+        ({"tool": {}}, "tool: expected a link, or links by name, got {}"),
+        ({"tool": {"left": None}}, "tool: expected a link, or links by name"),
+        ({"tool": ["left"]}, "tool: expected a link, or links by name"),
+        ({"hold": ["grip"]}, "hold: expected values by joint"),
+        ({"hold": {"grip": "0.1"}}, "hold.grip: expected a number by the name of a joint, got '0.1'"),
     ],
 )
 def test_wrong_values_are_refused_by_name(options, message):
@@ -37,3 +47,21 @@ def test_options_are_equal_by_value_and_may_be_keys():
     one, other = ImportOptions(hold={"grip": 0.02}), ImportOptions(hold={"grip": 0.02})
     assert {one: "found"}[other] == "found"
     assert one != ImportOptions(hold={"grip": 0.03})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"path": 5}, "path: expected the path of a file, got 5"),
+        ({"path": b"arm.urdf"}, "path: expected the path of a file"),
+        ({"srdf": 5}, "srdf: expected the path of a file, got 5"),
+        ({"spheres": None}, "spheres: expected the path of a file, got None"),
+        ({"package_paths": "meshes"}, "package_paths: expected paths of folders, such as ['meshes'], got 'meshes'"),
+        ({"package_paths": [5]}, "package_paths: expected the path of a file, got 5"),
+        ({"package_paths": 5}, "package_paths: expected paths of folders"),
+    ],
+)
+def test_what_is_no_path_is_refused_by_its_argument(arguments, message):
+    with pytest.raises(InputError) as caught:
+        import_urdf(**{"path": "arm.urdf", **arguments})
+    assert str(caught.value).startswith(message)

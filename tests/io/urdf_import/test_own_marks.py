@@ -29,6 +29,17 @@ def test_a_component_is_no_frame_and_stands_where_its_link_does(tmp_path):
     assert (pad.frame, pad.spheres) == ("fore", ((0.0, 0.0, 0.05, 0.03),))
 
 
+def test_a_component_is_no_tool_as_it_is_no_frame(tmp_path):
+    path = write(tmp_path, extend(f"{END}<ikde>{PAD}</ikde>"))
+    message = "tool: the link 'component_pad' holds spheres of 'pad' and is no frame; expected another .* 'fore'$"
+    for tool in ("component_pad", {"pad": "component_pad"}):
+        with pytest.raises(FileError, match=message):
+            ikde.import_urdf(path, tool=tool)
+    own = write(tmp_path, extend(f'{END}<ikde tool="component_pad">{PAD}</ikde>'))
+    with pytest.raises(FileError, match=message):
+        ikde.import_urdf(own)
+
+
 def test_a_placeholder_counts_as_long_as_nobody_has_changed_the_number(tmp_path):
     mark = '<ikde><placeholder joint="shoulder" velocity="1.2" effort="31"/><placeholder link="upper" mass="2"/></ikde>'
     robot = ikde.import_urdf(write(tmp_path, extend(mark)))
@@ -66,6 +77,10 @@ def test_the_safe_distance_is_that_of_the_detector(tmp_path):
         ('<ikde><component link="upper" name="u"/></ikde>', "expected a link at an end, on a fixed joint, got 'upper'"),
         ('<ikde><component link="gone" name="u"/></ikde>', "ikde.component: no link is called 'gone'"),
         ('<ikde><component link="tip"/></ikde>', "expected an attribute 'name'"),
+        (
+            '<ikde>\n<component link="tip" name="a&#10;b"/></ikde>',
+            "arm.urdf:22 → ikde.component: expected a name of printable characters",
+        ),
         ('<ikde><placeholder joint="slide" velocity="fast"/></ikde>', "expected a number, got 'fast'"),
     ],
 )
