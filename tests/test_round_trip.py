@@ -1,5 +1,7 @@
 """A shipped robot, written for other programs and imported again, is the same robot."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -99,3 +101,13 @@ def test_so_does_a_joint_that_does_not_move_the_tool_a_pair_of_one_body_and_a_nu
 ):
     robot = load_text(BRANCHES)
     check_same(robot, read_back(tmp_path, robot, "srdf"), rng)
+
+
+@pytest.mark.parametrize("beside", BESIDE)
+def test_names_as_long_as_names_may_be_come_back(tmp_path, rng, beside):
+    names = {name: f"{name}{(100 - len(name)) * name[-1]}" for name in ("pan", "column", "post", "hand", "tip")}
+    text = ENDLESS
+    for name, long in names.items():
+        text = re.sub(rf"\b{name}\b", long, text)
+    robot = load_text(text)
+    check_same(robot, read_back(tmp_path, robot, beside), rng)

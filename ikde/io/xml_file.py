@@ -8,6 +8,7 @@ from pathlib import Path
 from ikde.errors import InputError
 from ikde.formats.atomic import write_named
 from ikde.model.collision_model import CollisionModel
+from ikde.model.names import find_free_name
 from ikde.model.robot import WORLD, Robot
 from ikde.model.spheres import Sphere
 from ikde.model.tree import build_tree
@@ -40,11 +41,13 @@ def format_document(root: ET.Element, notes: Iterable[str]) -> str:
 
 
 def reserve_name(wanted: str, taken: set[str]) -> str:
-    """`wanted`, with underscores after it until nothing else is called so; adds it to `taken`."""
-    while wanted in taken:
-        wanted += "_"
-    taken.add(wanted)
-    return wanted
+    """`wanted`, cut to the length of a name, with underscores at its end until nothing else is called so.
+
+    Adds it to `taken`.
+    """
+    name = find_free_name(wanted, taken)
+    taken.add(name)
+    return name
 
 
 def list_components(collision: CollisionModel) -> dict[str, list[Sphere]]:

@@ -8,7 +8,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.collision_model import CollisionModel
-from ikde.model.names import MAX_NAME_LENGTH
+from ikde.model.names import MAX_NAME_LENGTH, find_free_name
 from ikde.model.robot import (
     NO_DETECTOR,
     TOOL,
@@ -178,9 +178,7 @@ def _rename(names: Iterable[str], word: str, taken: set[str]) -> dict[str, str]:
     for name in own:
         new = name
         if name in taken:
-            new = f"{word}_{name}"
-            while new in used:
-                new += "_"
+            new = find_free_name(f"{word}_{name}", used)
             used.add(new)
         found[name] = new
     return found

@@ -27,6 +27,9 @@ def test_a_negative_zero_is_a_zero():
 def test_a_taken_name_gets_underscores():
     taken = {"arm", "arm_"}
     assert [reserve_name(name, taken) for name in ("arm", "arm", "leg")] == ["arm__", "arm___", "leg"]
+    long = "component_" + 100 * "x"
+    assert [len(reserve_name(long, taken)) for _ in range(12)] == 12 * [100]
+    assert {long[:100], f"{long[:99]}_", f"{long[:98]}__"} <= taken
 
 
 @pytest.mark.parametrize("note", ["plain", "two -- dashes", "---->", "ends with -"])

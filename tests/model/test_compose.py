@@ -137,3 +137,23 @@ def test_wheels_stay_only_under_a_base_that_carries_all(platform):
     held = replace(platform, approximations={"s": (on_base, on_ground)})
     with pytest.raises(InputError, match="wheels need a planar base"):
         compose(held, ikde.load_robot("ur5"), MOUNT)
+
+
+def test_names_as_long_as_names_may_be_stay_apart(platform):
+    frames = tuple(replace(own, name=100 * own.name[0], parent="world") for own in platform.frames[2:3])
+    joints = {100 * "j": platform.joints[2]}
+    long = replace(
+        platform,
+        joints=tuple(replace(own, name=name) for name, own in joints.items()),
+        frames=tuple(replace(own, joint=100 * "j") for own in frames),
+        tool=100 * "b",
+        approximations={"s": (SphereRow(component=100 * "b", start=100 * "b", end=100 * "b", radius_m=0.1),)},
+        detectors={},
+        default_detector="none",
+        wheels=None,
+        drive=None,
+        inertias={},
+    )
+    robot = compose(long, long, np.eye(4))
+    assert robot.joint_names == (100 * "j", f"arm_{96 * 'j'}")
+    assert robot.tool == f"arm_{96 * 'b'}"
