@@ -49,6 +49,8 @@ def write_named(path: Path, data: Any, beside: Mapping[str, Any] | None = None) 
     if not path.name:
         raise FileError(path, "cannot be written: expected the name of a file")
     try:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            path.lstat()  # unlike exists, it tells what can be no name of a file
         if path.exists() and not path.is_file():
             raise FileError(path, "cannot be written: this is no ordinary file; expected a file name")
         place = path.resolve() if path.is_symlink() else path

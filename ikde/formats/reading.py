@@ -36,6 +36,13 @@ def max_bytes(share: float = 1.0) -> int:
     return int(share * most * 1e6)
 
 
+def read_path(path: object, where: str) -> Path:
+    """A path as it is given; raises `InputError` for what is none."""
+    if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
+        raise InputError(f"expected the path of a file, got {quoted(path)}", (where,))
+    return Path(os.fspath(path))
+
+
 def read_bytes(path: Path, share: float = 1.0, *, follow: bool = True) -> bytes:
     """A whole file, of at most `share` of the limit `$IKDE_MAX_FILE_MB`; with `follow` a link may lead elsewhere.
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ikde.errors import FileError, printable
+from ikde.formats.reading import read_path
 from ikde.io.urdf import rpy_from_rotation
 from ikde.io.xml_file import write_xml
 from ikde.io.yaml_text import format_flow
@@ -26,7 +26,7 @@ def write_robot(robot: Robot, path: str | PathLike[str], notes: Iterable[str] = 
     Raises:
         FileError: if it cannot be written, or its name is that of another kind of file, as which it would be read.
     """
-    place = Path(path)
+    place = read_path(path, "path")
     if place.suffix.lower() in OF_OTHERS:
         raise FileError(place, "a robot file is YAML; expected a name that ends in .yaml")
     write_xml(place, format_robot_file(robot, notes))

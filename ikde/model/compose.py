@@ -23,6 +23,7 @@ from ikde.model.robot import (
     Spheres,
 )
 from ikde.model.rotation import rotation_about
+from ikde.model.solids import read_pose
 from ikde.model.validate import NON_ADJACENT, check_robot
 
 SPHERES = "spheres"
@@ -61,6 +62,7 @@ def compose(base: RobotLike, arm: RobotLike, T_base_arm: Floats, tool: RobotLike
     """
     base, arm = read_robot(base, ("base",)).whole, read_robot(arm, ("arm",)).whole
     tool = None if tool is None else read_robot(tool, ("tool",))
+    T_base_arm = read_pose(T_base_arm, ("T_base_arm",))
     assembly = _Assembly()
     _add(assembly, base, "base", np.eye(4), is_last=False)
     _add(assembly, arm, "arm", T_base_arm, is_last=tool is None)

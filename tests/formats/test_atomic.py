@@ -135,6 +135,10 @@ def test_a_file_that_a_user_names_is_written_through_a_link(tmp_path):
         ("round", "Too many levels|no path|no ordinary|folder does not exist"),
         ("away", "its folder does not exist"),
         ("none/a.txt", "its folder does not exist"),
+        ("pipe/a.txt", "its folder does not exist"),
+        ("a\0b", "cannot be written: no path"),
+        ("\ud800", "cannot be written: no path"),
+        ("x" * 300, "cannot be written: File name too long"),
     ],
 )
 def test_what_is_no_place_for_a_file_is_left_alone(tmp_path, name, said):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.errors import FileError
+from ikde.errors import FileError, InputError
 from ikde.io.robot_writer import format_robot_file
 from ikde.model.robot import Inertia
 from tests.hostile_names import payload
@@ -51,6 +51,9 @@ def test_save_writes_a_file_that_loads(tmp_path):
     for name in ("robot.urdf", "mesh.STL", "robot.srdf", "page.html"):
         with pytest.raises(FileError, match=r"a robot file is YAML; expected a name that ends in \.yaml"):
             robot.save(tmp_path / name)
+    for name in (5, None, b"robot.yaml"):
+        with pytest.raises(InputError, match="path: expected the path of a file, got"):
+            robot.save(name)
     assert [path.name for path in tmp_path.iterdir()] == ["robot.yaml"]
 
 

@@ -157,3 +157,9 @@ def test_names_as_long_as_names_may_be_stay_apart(platform):
     robot = compose(long, long, np.eye(4))
     assert robot.joint_names == (100 * "j", f"arm_{96 * 'j'}")
     assert robot.tool == f"arm_{96 * 'b'}"
+
+
+@pytest.mark.parametrize("T", [None, "x", np.zeros(3), np.eye(3), np.zeros((4, 4)), 1j * np.eye(4), np.eye(4) + 1e9])
+def test_what_is_no_pose_is_refused_by_its_argument(platform, T):
+    with pytest.raises(InputError, match=r"^T_base_arm: expected "):
+        compose(platform, "ur5", T)

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import Literal, cast, get_args
 
 from ikde.errors import InputError, quoted
+from ikde.formats.reading import read_path
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE
 
@@ -64,6 +65,12 @@ class ImportOptions:
                 raise InputError(f"expected a number above 0, up to {MAX_MAGNITUDE:g}{unit}", (key,))
         _check_tool(self.tool)
         _check_hold(self.hold)
+        check_pairs(self.compare)
+        given = {"package_paths": read_folders(self.package_paths, "package_paths")}
+        given |= {} if self.srdf is None else {"srdf": read_path(self.srdf, "srdf")}
+        given |= {} if isinstance(self.spheres, bool) else {"spheres": read_path(self.spheres, "spheres")}
+        for key, paths in given.items():
+            object.__setattr__(self, key, paths)  # texts are paths as well
 
 
 def _check_tool(tool: object) -> None:
@@ -81,13 +88,6 @@ def _check_hold(hold: object) -> None:
     for name, value in hold.items():
         if not (isinstance(name, str) and is_number(value)):
             raise InputError(f"expected a number by the name of a joint, got {quoted(value)}", ("hold", str(name)))
-
-
-def read_path(path: object, where: str) -> Path:
-    """A path as it is given; raises `InputError` for what is none."""
-    if not isinstance(path, str | PathLike) or not isinstance(fspath(path), str):
-        raise InputError(f"expected the path of a file, got {quoted(path)}", (where,))
-    return Path(fspath(path))
 
 
 def read_folders(folders: object, where: str) -> tuple[Path, ...]:
@@ -139,7 +139,7 @@ def read_pairs(words: Iterable[str]) -> tuple[tuple[str, str], ...]:
 def check_pairs(pairs: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
     """Pairs of names as they are; raises `InputError` for anything else, a text among them."""
     checked = []
-    for pair in pairs:
+    for pair in pairs if isinstance(pairs, Iterable) else [pairs]:
         is_pair = not isinstance(pairs, str) and isinstance(pair, tuple | list) and len(pair) == 2
         if not is_pair or not all(isinstance(name, str) for name in pair):
             raise InputError(f"expected pairs of links, such as [('base', 'hand')], got {quoted(pair)}", ("compare",))

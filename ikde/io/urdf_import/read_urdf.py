@@ -4,8 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
+from typing import cast
 
-from ikde.errors import FileError, InputError
+from ikde.errors import FileError, InputError, quoted
+from ikde.formats.reading import read_path
 from ikde.io.sphere_files import SphereFile, read_spheres
 from ikde.io.srdf import Srdf, read_srdf
 from ikde.io.urdf_import.assemble import add_spheres, assemble, free_home, set_home
@@ -18,7 +20,7 @@ from ikde.io.urdf_import.frames import build_skeleton
 from ikde.io.urdf_import.given_spheres import give_spheres
 from ikde.io.urdf_import.held import HeldJoint, find_held
 from ikde.io.urdf_import.imported import ImportedUrdf
-from ikde.io.urdf_import.options import Base, ImportOptions, check_pairs, read_folders, read_path
+from ikde.io.urdf_import.options import Base, ImportOptions, check_pairs
 from ikde.model.robot import Robot
 
 
@@ -61,9 +63,9 @@ def import_urdf(
         tool=tool,
         base=base,
         hold={} if hold is None else hold,
-        srdf=None if srdf is None else read_path(srdf, "srdf"),
-        package_paths=read_folders(package_paths, "package_paths"),
-        spheres=spheres if isinstance(spheres, bool) else read_path(spheres, "spheres"),
+        srdf=cast(Path | None, srdf),
+        package_paths=cast(tuple[Path, ...], package_paths),
+        spheres=cast(bool | Path, spheres),
         protrusion_m=protrusion_m,
         compare=check_pairs(compare),
     )
@@ -82,7 +84,9 @@ def read_urdf(path: str | PathLike[str], options: ImportOptions | None = None) -
         InputError: for a value that makes no sense.
         FileError: for a file that cannot be read or is wrong, with its line and the link or joint.
     """
-    options = options or ImportOptions()
+    options = ImportOptions() if options is None else options
+    if not isinstance(options, ImportOptions):
+        raise InputError(f"expected ImportOptions, got {quoted(options)}", ("options",))
     description = read_description(read_path(path, "path"))
     tree = find_tree(description)
     asked = description.marks.tool if options.tool is None else options.first_tool

@@ -1,10 +1,12 @@
 """What an import is asked for."""
 
+from pathlib import Path
+
 import pytest
 
 from ikde.errors import InputError
 from ikde.io.urdf_import.options import ImportOptions, read_holds
-from ikde.io.urdf_import.read_urdf import import_urdf
+from ikde.io.urdf_import.read_urdf import import_urdf, read_urdf
 
 
 @pytest.mark.parametrize(
@@ -21,6 +23,10 @@ from ikde.io.urdf_import.read_urdf import import_urdf
         ({"tool": 5}, "tool: expected a link, or links by name, got 5"),
         ({"tool": {}}, "tool: expected a link, or links by name, got {}"),
         ({"tool": {"left": None}}, "tool: expected a link, or links by name"),
+        ({"compare": "ab"}, "compare: expected pairs of links, such as [('base', 'hand')], got 'a'"),
+        ({"compare": None}, "compare: expected pairs of links, such as [('base', 'hand')], got None"),
+        ({"spheres": None}, "spheres: expected the path of a file, got None"),
+        ({"package_paths": "meshes"}, "package_paths: expected paths of folders"),
         ({"tool": ["left"]}, "tool: expected a link, or links by name"),
         ({"hold": ["grip"]}, "hold: expected values by joint"),
         ({"hold": {"grip": "0.1"}}, "hold.grip: expected a number by the name of a joint, got '0.1'"),
@@ -41,6 +47,13 @@ def test_held_joints_are_names_with_values():
 def test_anything_else_is_refused(word):
     with pytest.raises(InputError, match="hold: expected JOINT=VALUE, in m or rad, got"):
         read_holds([word])
+
+
+def test_texts_are_paths_as_well():
+    options = ImportOptions(srdf="a.srdf", spheres="s.yml", package_paths=["meshes"])
+    assert options == ImportOptions(srdf=Path("a.srdf"), spheres=Path("s.yml"), package_paths=(Path("meshes"),))
+    with pytest.raises(InputError, match=r"^options: expected ImportOptions, got \{'tool': 'tip'\}"):
+        read_urdf("arm.urdf", {"tool": "tip"})
 
 
 def test_options_are_equal_by_value_and_may_be_keys():
