@@ -2,7 +2,11 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from ikde.errors import FileError
 from ikde.io import sphere_files
@@ -123,3 +127,41 @@ def test_a_link_has_not_too_many(tmp_path, monkeypatch):
     monkeypatch.setattr(sphere_files, "MAX_SPHERES", 1)
     with pytest.raises(FileError, match="expected at most 1 spheres of a link, got 2"):
         read(tmp_path, f"collision_spheres: {BALLS}")
+
+
+SOUND = {
+    "curobo.yml": """{robot_cfg: {kinematics: {collision_sphere_buffer: 0.01, self_collision_ignore: {a: [b]},
+        cspace: {joint_names: [j], retract_config: [0.1]},
+        collision_spheres: {a: [{center: [0, 0, 1], radius: 0.1}], b: [{center: [0, 0, 1], radius: 0.2}]}}}}""",
+    "arm.xrdf": """{format: xrdf, collision: {geometry: g},
+        self_collision: {buffer_distance: {a: 0.1}, ignore: {a: [b]}}, default_joint_positions: {j: 0.1},
+        modifiers: [{add_frame: x}],
+        geometry: {g: {clone: h}, h: {spheres: {a: [{center: [0, 0, 1], radius: 0.1}], b: []}}}}""",
+}
+VALUES = [0, -1, 0.5, float("nan"), float("inf"), 1e308, 10**400, True, None, ""]
+VALUES += ["g", "a", "spheres.yml", [], {}, [[]]]
+
+
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.sampled_from([*SOUND]), st.lists(st.tuples(st.integers(0, 60), st.sampled_from(VALUES)), max_size=2))
+def test_a_file_with_a_few_flaws_gives_spheres_or_one_line(tmp_path, name, flaws):
+    data = yaml.safe_load(SOUND[name])
+    for number, value in flaws:
+        places = list(list_places(data))
+        inside, key = places[number % len(places)]
+        inside[key] = value
+    try:
+        balls = [ball for own in read(tmp_path, yaml.safe_dump(data), name).spheres.values() for ball in own]
+    except FileError as error:
+        assert str(error).isprintable()
+        return
+    assert all(radius > 0.0 for *_, radius in balls)
+    assert np.abs(balls).max() <= 1e5
+
+
+def list_places(data):
+    """Every value of plain data, as what it is in and its key."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+        yield data, key
+        if isinstance(value, dict | list):
+            yield from list_places(value)

@@ -62,6 +62,8 @@ def test_neighbours_are_compared_if_a_list_is_there_that_does_not_ignore_them(tm
     ("old", "new", "message"),
     [
         ("{base_link: [fore, nowhere]}", "[base_link]", "self_collision_ignore: expected links with lists of links"),
+        ("{base_link: [fore, nowhere]}", "5", r"yml:4 → robot_cfg.kinematics.self_collision_ignore: expected"),
+        ("{base_link: [fore, nowhere]}", "{base_link: 5}", "expected links with lists of links"),
         ("{base_link: [fore, nowhere]}", "{base_link: [1]}", "expected links with lists of links"),
         ("[0.5, 0.2]", "[0.5]", "retract_config: expected 2 numbers within 100000 of 0, one a joint"),
         ("[0.5, 0.2]", "[0.5, .nan]", "retract_config: expected 2 numbers"),

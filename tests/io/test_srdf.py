@@ -59,3 +59,9 @@ def test_reasons_are_one_short_printable_line(tmp_path):
     reason = read_srdf(write(tmp_path, TEXT.replace("Never", "x\u202ey" * 99))).disabled[0].reason
     assert reason.isprintable()
     assert len(reason) == 80
+
+
+def test_a_value_without_end_is_no_state(tmp_path):
+    text = '<robot><group_state name="home" group="g"><joint name="a" value="inf"/><joint name="b" value="1"/>'
+    srdf = read_srdf(write(tmp_path, f"{text}</group_state></robot>", "arm.srdf"))
+    assert srdf.choose_states()[1] == {"b": 1.0}

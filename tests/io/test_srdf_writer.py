@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.io.sphere_files import read_spheres
 from ikde.io.srdf_writer import format_srdf
 from ikde.io.urdf import format_urdf
+from ikde.io.urdf_import.description import read_description
 from ikde.model.collision_model import CollisionModel
 from tests.bare_robot import BARE
 from tests.robot_files import load_text
@@ -52,3 +54,15 @@ def test_without_a_detector_nothing_is_disabled(qiao):
     text = format_srdf(qiao, collision="none")
     assert "disable_collisions" not in text
     assert "No collision shapes." in text
+
+
+def test_spheres_are_those_of_the_urdf_beside_it(tmp_path):
+    robot = ikde.load_robot("ur5")
+    (tmp_path / "ur5.srdf").write_text(format_srdf(robot), encoding="utf-8")
+    (tmp_path / "ur5.urdf").write_text(ikde.format_urdf(robot), encoding="utf-8")
+    found = read_spheres(tmp_path / "ur5.srdf").spheres
+    urdf = read_description(tmp_path / "ur5.urdf")
+    for link, balls in found.items():
+        own = [(*shape.T_link_shape[:3, 3].tolist(), *shape.size) for shape in urdf.links[link].shapes]
+        assert list(balls) == own
+    assert len(found) == len(CollisionModel.of(robot).components)

@@ -7,6 +7,7 @@ from ikde.errors import FileError
 from ikde.io.urdf_import.options import ImportOptions
 from ikde.io.urdf_import.read_urdf import read_urdf
 from ikde.model.collision_model import CollisionModel
+from ikde.solver import pair_verdicts
 from tests.urdf_texts import joint, write
 
 
@@ -134,3 +135,13 @@ def test_pairs_that_touch_often_are_said_with_what_may_help(tmp_path):
     share = float(said.split("hook - post (")[1].split("%")[0])
     # Circles of 0.2 m: they touch where 2 * 0.2 * sin(turn / 2) <= 0.17, at most 0.878 rad of 3 either way.
     assert abs(share - 100 * 0.878 / 3.0) < 10.0
+
+
+def test_what_was_never_seen_to_touch_is_not_called_proved(tmp_path, monkeypatch):
+    monkeypatch.setattr(pair_verdicts, "BOXES", 0)
+    judged = pair_verdicts._judge
+    judged.cache_clear()
+    try:
+        assert choose(tmp_path).never_touching == ()
+    finally:
+        judged.cache_clear()

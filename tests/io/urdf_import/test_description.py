@@ -43,6 +43,8 @@ def test_masses_are_read_along_the_axes_of_the_link(tmp_path):
     R = rotation_from_rpy(np.array([0, 0, 0.5]))
     own = np.array([[0.1, 0.01, 0], [0.01, 0.2, 0.02], [0, 0.02, 0.3]])
     assert (inertia.mass_kg, inertia.p_frame_com.tolist()) == (2.0, [0, 0, 0.2])
+    light = read_description(write(tmp_path, change('<mass value="2"/>', '<mass value="0"/>')))
+    assert light.links["upper"].inertia.mass_kg == 0.0
     np.testing.assert_allclose(inertia.I_com_frame, R @ own @ R.T, atol=1e-15)
     reject(tmp_path, change('<mass value="2"/>', '<mass value="-2"/>'), "link.upper.inertial", "at least 0 kg, got -2")
 

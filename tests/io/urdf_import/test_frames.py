@@ -175,3 +175,11 @@ def test_a_root_called_world_is_the_world_and_a_tool_called_tool_the_tool(tmp_pa
     assert imported.robot.tool == "tool"
     assert imported.robot.frames[0].parent == "world"
     assert load(tmp_path, ARM.replace("base_link", "world"), base="omni").robot.frames[2].name == "world_link"
+
+
+@pytest.mark.parametrize("kind", ["revolute", "continuous"])
+def test_a_held_joint_turns_what_it_carries(tmp_path, kind):
+    text = change('name="shoulder" type="revolute"', f'name="shoulder" type="{kind}"')
+    held = forward(load(tmp_path, text, hold={"shoulder": 0.7}).robot, [0.2])["tip"]
+    moved = forward(load(tmp_path, text).robot, [0.7, 0.2])["tip"]
+    np.testing.assert_allclose(held, moved, atol=1e-15)

@@ -38,3 +38,12 @@ def test_where_nothing_is_free_none_is_found():
     robot = ikde.load_robot("ur5")
     detector = replace(CollisionModel.of(robot).detector, safe_distance_m=5.0)
     assert find_free_home(CollisionModel.of(robot, detector), robot.home) is None
+
+
+def test_a_home_that_is_moved_stays_within_limits_of_many_digits():
+    robot = ikde.load_robot("ur5")
+    pan = replace(robot.joints[0], lower=0.10003, upper=0.10004, home=0.100035)
+    narrow = replace(robot, joints=(pan, *robot.joints[1:]))
+    found = find_free_home(CollisionModel.of(narrow), np.array([0.100035, -1.57, 3.1, 0.0, 0.0, 0.0]))
+    assert found[0] == 0.100035
+    assert not check(narrow, found).collision

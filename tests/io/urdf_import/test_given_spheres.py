@@ -35,6 +35,8 @@ def test_links_get_what_the_file_has_for_them_and_nothing_is_silent():
 def test_links_of_our_own_urdf_are_known_by_their_components():
     found, _ = give_spheres(make({"component_upper": BALL}), LINKS)
     assert list(found) == ["upper"]
+    found, _ = give_spheres(make({"component_upper": BALL}), {**LINKS, "component_upper": True})
+    assert list(found) == ["component_upper"]  # a link of that very name
 
 
 def test_a_file_for_another_robot_is_refused():

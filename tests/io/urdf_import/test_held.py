@@ -99,3 +99,10 @@ def test_a_mimic_that_goes_out_of_all_bounds_is_refused(tmp_path):
     text = extend(FINGERS.replace('type="prismatic"', 'type="continuous"').replace('"-2"', '"1e300"'))
     with pytest.raises(FileError, match=r"joint\.grip_mimic: it cannot be held at 1e\+299"):
         hold(tmp_path, text, hold={"grip": 0.1})
+
+
+@pytest.mark.parametrize("value", [2e5, float("inf"), float("nan")])
+def test_no_joint_is_held_farther_away_than_can_be_computed_with(tmp_path, value):
+    wheel = extend('<link name="wheel"/>' + joint("axle", "continuous", "base_link", "wheel"))
+    with pytest.raises(InputError, match=r"hold\.axle: expected a value from -inf to inf, got"):
+        hold(tmp_path, wheel, hold={"axle": value})

@@ -1,6 +1,7 @@
 """Meshes are found in the URDF's folder and in folders that are named, and nowhere else."""
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -100,3 +101,11 @@ def test_all_of_the_disk_is_never_advised(robot):
     with pytest.raises(FileError) as caught:
         find_mesh(robot, f"package:/{robot.parents[1] / 'meshes' / 'a.stl'}", ())
     assert "--package-path /," not in str(caught.value)
+
+
+def test_folders_may_be_links_and_the_one_that_we_stand_in(robot, tmp_path, monkeypatch):
+    (tmp_path / "away").symlink_to(robot.parents[1])
+    mesh = (robot.parents[1] / "meshes" / "a.stl").resolve()
+    assert find_mesh(robot, "package://arm/meshes/a.stl", (tmp_path / "away",)) == mesh
+    monkeypatch.chdir(robot.parents[1])
+    assert find_mesh(robot, "package://arm/meshes/a.stl", (Path(),)) == mesh

@@ -1,5 +1,7 @@
 """What ikde writes into its URDFs for itself: read to the bit, and refused in one line where it is wrong."""
 
+from math import cos, sin
+
 import pytest
 
 import ikde
@@ -13,6 +15,7 @@ END = """\
 <joint name="glue" type="fixed"><origin xyz="0 0 0.05" rpy="0 0 1"/>
   <parent link="fore"/><child link="component_pad"/></joint>
 """
+MOVES = '<joint name="m" type="continuous"><parent link="fore"/><child link="e"/></joint>'
 PAD = '<component name="pad" link="component_pad"/>'
 
 
@@ -27,6 +30,18 @@ def test_a_component_is_no_frame_and_stands_where_its_link_does(tmp_path):
     assert "component_pad" not in [frame.name for frame in robot.frames]
     (pad,) = [entry for entry in robot.approximations["spheres"] if entry.component == "pad"]
     assert (pad.frame, pad.spheres) == ("fore", ((0.0, 0.0, 0.05, 0.03),))
+
+
+def test_spheres_of_a_component_turn_with_its_link(tmp_path):
+    end = END.replace('<geometry><sphere radius="0.03"', '<origin xyz="0.1 0 0"/><geometry><sphere radius="0.03"')
+    robot = ikde.import_urdf(write(tmp_path, extend(f'{end}<ikde tool="tip">{PAD}</ikde>')))
+    (pad,) = [entry for entry in robot.approximations["spheres"] if entry.component == "pad"]
+    assert pad.spheres[0] == pytest.approx((0.1 * cos(1.0), 0.1 * sin(1.0), 0.05, 0.03), abs=1e-15)
+
+
+def test_joints_that_are_not_marked_stand_before_those_that_are(tmp_path):
+    robot = ikde.import_urdf(write(tmp_path, extend('<ikde tool="tip"><coordinate joint="shoulder"/></ikde>')))
+    assert robot.joint_names == ("slide", "shoulder")
 
 
 def test_a_component_is_no_tool_as_it_is_no_frame(tmp_path):
@@ -77,6 +92,7 @@ def test_the_safe_distance_is_that_of_the_detector(tmp_path):
         ('<ikde><component link="upper" name="u"/></ikde>', "expected a link at an end, on a fixed joint, got 'upper'"),
         ('<ikde><component link="gone" name="u"/></ikde>', "ikde.component: no link is called 'gone'"),
         ('<ikde><component link="tip"/></ikde>', "expected an attribute 'name'"),
+        ('<link name="e"/>' + MOVES + '<ikde><component link="e" name="e"/></ikde>', "on a fixed joint, got 'e'"),
         (
             '<ikde>\n<component link="tip" name="a&#10;b"/></ikde>',
             "arm.urdf:22 → ikde.component: expected a name of printable characters",

@@ -11,53 +11,92 @@ from ikde.io.urdf_import.options import ImportOptions
 from ikde.io.urdf_import.read_urdf import import_urdf, read_urdf
 from tests.urdf_texts import ARM, FINGERS, extend, joint, write
 
-NUMBERS = st.sampled_from(["0", "1", "-0.5", "3.2", "1e-7", "1e5", "1e300", "inf", "nan", "x", "", "0 0"])
-VECTORS = st.sampled_from(
-    ["0 0 1", "1 2 3", "0 0 0", "1e5 0 0", "1e200 1 1", "nan 0 0", "1 2", "", "a b c", "0.1 -0.2 0.3"]
-)
-SCALES = st.sampled_from(["1 1 1", "1 -1 1", "0.001 0.001 0.001", "0 1 1", "1e5 1 1", "nan 1 1"])
-LINKS = st.sampled_from(["base", "a", "b", "c", "tool", "world"])
-JOINTS = st.sampled_from(["j", "k", "m", "base_x"])
-KINDS = st.sampled_from(["revolute", "continuous", "prismatic", "fixed", "planar", "floating", "ball"])
-SHAPES = st.sampled_from(["sphere", "box", "cylinder", "capsule", "mesh", "blob"])
-MESHES = st.sampled_from(["a.stl", "b.obj", "package://arm/a.stl", "../a.stl", "file:///etc/passwd", "b.obj/"])
+SEEDS = st.integers(0, 10**6)
+WRONG = {
+    "number": ["-0.5", "1e-7", "1e5", "1e300", "inf", "nan", "x", "", "0 0", "0", "9" * 400],
+    "vector": ["1 2 3", "0 0 0", "1e5 0 0", "1e200 1 1", "nan 0 0", "1 2", "", "a b c"],
+    "scale": ["0 1 1", "1e5 1 1", "nan 1 1", "1 1"],
+    "link": ["base", "b", "nowhere", "world", ""],
+    "joint": ["j0", "j1", "nothing", "base_x"],
+    "kind": ["planar", "floating", "ball"],
+    "shape": ["blob", "mesh", "sphere"],
+    "mesh": ["a.stl", "package://arm/a.stl", "../a.stl", "file:///etc/passwd", "a.obj/"],
+    "obj": ["1 2", "v 1 1", "0", "-1", "-9", "5", "1e9", "nan", "f", "1/1", "\\", "\n", "#", "surf"],
+}
+"""What stands, seldom, where something else is expected."""
 
 
-@st.composite
-def links(draw):
-    name = draw(LINKS)
-    inside = ""
-    if draw(st.booleans()):
-        sizes = f'radius="{draw(NUMBERS)}" size="{draw(VECTORS)}" length="1" scale="{draw(SCALES)}"'
-        shape = f'<{draw(SHAPES)} {sizes} filename="{draw(MESHES)}"/>'
-        inside += f'<collision><origin rpy="{draw(VECTORS)}"/><geometry>{shape}</geometry></collision>'
-    if draw(st.booleans()):
-        moments = f'<inertia ixx="{draw(NUMBERS)}" iyy="1" izz="1" ixy="{draw(NUMBERS)}"/>'
-        inside += f'<inertial><origin xyz="{draw(VECTORS)}"/><mass value="{draw(NUMBERS)}"/>{moments}</inertial>'
-    return f'<link name="{name}">{inside}</link>'
+class _Drawn:
+    """Pieces of a URDF that are good but for a few."""
 
+    def __init__(self, seed):
+        self._rng = np.random.default_rng(seed)
+        self.links = ["base", "a", "b", "c", "tool"][: int(self._rng.integers(2, 6))]
 
-@st.composite
-def joints(draw):
-    inside = f'<origin xyz="{draw(VECTORS)}" rpy="{draw(VECTORS)}"/><axis xyz="{draw(VECTORS)}"/>'
-    if draw(st.booleans()):
-        inside += f'<limit lower="{draw(NUMBERS)}" upper="{draw(NUMBERS)}" velocity="{draw(NUMBERS)}"/>'
-    if draw(st.integers(0, 3)) == 0:
-        inside += f'<mimic joint="{draw(JOINTS)}" multiplier="{draw(NUMBERS)}" offset="{draw(NUMBERS)}"/>'
-    return joint(draw(JOINTS), draw(KINDS), draw(LINKS), draw(LINKS), inside)
+    def pick(self, *choices):
+        return str(choices[int(self._rng.integers(len(choices)))])
+
+    def of(self, kind, *good):
+        """One of the good ones, or one time in 60 a wrong one."""
+        return self.pick(*WRONG[kind]) if self._rng.random() < 1 / 60 else self.pick(*good)
+
+    def vector(self):
+        return self.of("vector", "0 0 1", "0.1 -0.2 0.3", "0 0 0.2")
+
+    def link(self, name):
+        inside = ""
+        if self._rng.random() < 0.7:
+            sizes = f'radius="{self.of("number", "0.05", 0.1)}" size="0.1 0.2 0.1" length="0.1"'
+            scale = self.of("scale", "1 1 1", "1 -1 1", "0.5 2 1")
+            shape = self.of("shape", "sphere", "box", "cylinder", "capsule", "mesh")
+            shape = f'<{shape} {sizes} scale="{scale}" filename="{self.of("mesh", "b.obj")}"/>'
+            inside += f'<collision><origin rpy="{self.vector()}"/><geometry>{shape}</geometry></collision>'
+        if self._rng.random() < 0.3:
+            inside += f'<inertial><mass value="{self.of("number", 1, 0)}"/><inertia ixx="1" iyy="1"/></inertial>'
+        return f'<link name="{self.of("link", name)}">{inside}</link>'
+
+    def joint(self, number):
+        axis, limit = self.vector(), self.of("number", 1, 2)
+        inside = f'<origin xyz="{self.vector()}" rpy="{self.vector()}"/><axis xyz="{axis}"/>'
+        if self._rng.random() < 0.8:
+            inside += f'<limit lower="{self.of("number", -1, 0)}" upper="{limit}" velocity="{self.of("number", 1)}"/>'
+        if number and self._rng.random() < 0.15:
+            inside += f'<mimic joint="{self.of("joint", "j0")}" multiplier="{self.of("number", 2)}"/>'
+        kind = self.of("kind", "revolute", "revolute", "continuous", "prismatic", "fixed" if number else "revolute")
+        parent = self.of("link", *self.links[max(0, number - 1) : number + 1])
+        return joint(f"j{number}", kind, parent, self.links[number + 1], inside)
+
+    def marks(self):
+        last = len(self.links) - 2
+        parts = [
+            f'<coordinate joint="{self.of("joint", f"j{last}")}" acceleration="{self.of("number", 3)}"/>',
+            f'<component link="{self.of("link", "glued")}" name="{self.of("link", "pad")}"/>',
+            f'<placeholder joint="{self.of("joint", "j0")}" velocity="{self.of("number", 1)}"/>',
+        ]
+        inside = "".join(part for part in parts if self._rng.random() < 0.5)
+        return f'<ikde tool="{self.of("link", self.links[-2])}">{inside}</ikde>' if self._rng.random() < 0.3 else ""
+
+    def robot(self):
+        parts = [*map(self.link, self.links), *(self.joint(k) for k in range(len(self.links) - 1)), self.marks()]
+        parts += [self.link("glued"), joint("glue", "fixed", self.links[0], "glued")]
+        return f"<robot>{''.join(parts)}</robot>"
+
+    def obj(self):
+        text = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        place = int(self._rng.integers(len(text)))
+        flaw = self.pick(*WRONG["obj"]) if self._rng.random() < 0.2 else ""
+        return text[:place] + flaw + text[place + len(flaw) :]
+
+    def options(self):
+        return ImportOptions(base=self.pick("urdf", "urdf", "fixed", "omni"), tool=self.links[-1])
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(
-    st.lists(links(), min_size=1, max_size=4, unique_by=lambda text: text[:15]),
-    st.lists(joints(), max_size=4, unique_by=lambda text: text[:16]),
-    st.sampled_from(["urdf", "fixed", "omni"]),
-    st.sampled_from([None, "a", "tool"]),
-)
-def test_a_file_of_any_pieces_is_a_robot_or_one_line(tmp_path, some_links, some_joints, base, tool):
-    write(tmp_path, "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", "b.obj")
-    path = write(tmp_path, f"<robot>{''.join([*some_links, *some_joints])}</robot>")
-    answer_or_refuse(path, ImportOptions(base=base, tool=tool))
+@given(SEEDS)
+def test_a_file_with_a_few_flaws_is_a_robot_or_one_line(tmp_path, seed):
+    drawn = _Drawn(seed)
+    write(tmp_path, drawn.obj(), "b.obj")
+    answer_or_refuse(write(tmp_path, drawn.robot()), drawn.options())
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -52,9 +52,22 @@ def test_pairs_that_always_touch_are_found_anew(arm):
     assert small.pair_lists == arm.pair_lists
 
 
+def test_a_pair_that_a_joint_joins_is_compared_again(tmp_path):
+    balls = "{upper: [{center: [0, 0, 0.3], radius: 0.05}], fore: [{center: [0, 0, 0], radius: 2}]}"
+    text = f"robot_cfg: {{kinematics: {{collision_spheres: {balls}, self_collision_ignore: {{}}}}}}"
+    robot = ikde.import_urdf(write(tmp_path, ARM), spheres=write(tmp_path, text, "spheres.yml"))
+    assert [(pair.a, pair.b) for pair in robot.adjacent] == [("upper", "fore")]
+    robot, _ = exchange_spheres(robot, make("fore", (0, 0, 0, 0.04)))
+    assert robot.adjacent == ()
+    assert ikde.CollisionModel.of(robot).pairs == (("upper", "fore"),)
+
+
 def test_a_home_that_collides_now_is_a_warning(arm):
     home = ikde.check(arm, arm.home).clearance_m
     _, notes = exchange_spheres(arm, make("fore", (0, 0, 0, 0.04 + home + 0.01)))
+    assert notes[-1] == "home collides with these spheres"
+    wide = replace(arm.detectors["spheres"], safe_distance_m=home)
+    _, notes = exchange_spheres(replace(arm, detectors={"spheres": wide}), make("fore", (0, 0, 0, 0.041)))
     assert notes[-1] == "home collides with these spheres"
 
 
