@@ -260,7 +260,7 @@ class CollisionModel:
         if not self.obstacles:
             return pack_collision(self.robot, self.detector)
         arrays, packer, is_fixed = self.own._whole
-        kept_m = self._list_kept_m()
+        kept_m = np.full(len(is_fixed), self.margin_m) if not self.margins_m else self._list_kept_m()
         kept_m[is_fixed] = -np.inf
         return arrays._replace(world=packer.pack(self.world, kept_m))
 

@@ -14,7 +14,7 @@ from ikde.model.hull import measure_normals
 from ikde.model.robot import WORLD, Robot
 from ikde.model.solids import IDENTITY, KINDS, Solid
 from ikde.model.tree import build_tree
-from ikde.model.world import Obstacle, PerObstacle, World
+from ikde.model.world import Obstacle, PerObstacle, World, find_changed
 
 CLOUD_PITCH_M = 0.04  # 171 ns a check of 1e5 points, with a field built in 16 ms; 2 cm: 122 ns, 377 ms
 GRID_PITCH_M = 0.08  # 149 ns a check in a bookshelf of 21 solids; 4 cm 238, 2 cm 298: the cache is missed
@@ -72,16 +72,15 @@ class WorldPacker:
         last = self._last
         if last is None or last.kept_m != key or len(last.obstacles) != len(obstacles) or last.whole[7] > 0.0:
             return None
-        whole, first, solids = last.whole.copy(), 0, int(last.whole[0])
+        whole, solids = last.whole.copy(), int(last.whole[0])
         rows = whole[HEADER : HEADER + SOLID_COLUMNS * solids].reshape(solids, SOLID_COLUMNS)
         places = whole[HEADER + SOLID_COLUMNS * solids :][: 3 * solids].reshape(3, solids)
-        for old, new, (own, *_) in zip(last.obstacles, obstacles, packed, strict=True):
+        for place in find_changed(last.obstacles, obstacles) or ():
+            if not _differ_by_place(last.obstacles[place], obstacles[place]):
+                return None
+            own, first = packed[place].rows, sum(len(part.rows) for part in packed[:place])
             end = first + len(own)
-            if old is not new:
-                if not _differ_by_place(old, new):
-                    return None
-                rows[first:end, 1:13], places[:, first:end] = own[:, 1:13], own[:, 10:13].T
-            first = end
+            rows[first:end, 1:13], places[:, first:end] = own[:, 1:13], own[:, 10:13].T
         return whole
 
     def _pack_obstacle(self, obstacle: Obstacle) -> PackedObstacle:
@@ -90,11 +89,12 @@ class WorldPacker:
             known = nearest(obstacle.frame, self._frames)
             message = f"no frame that stays in its place is called {obstacle.frame!r}{known}"
             raise InputError(message, ("obstacles", obstacle.name, "frame"))
-        T, rows, faces, clouds = T_world_frame @ _whole(obstacle.T_world_obstacle), [], [], []
+        T, rows, faces, clouds = obstacle.T_world_obstacle, [], [], []
+        if obstacle.frame != WORLD:
+            T = T_world_frame @ _whole(T)
         for place, solid in enumerate(obstacle.solids):
-            rows.append(
-                _solid_row(solid, T if solid.T_obstacle_solid is IDENTITY else T @ _whole(solid.T_obstacle_solid))
-            )
+            is_there = solid.T_obstacle_solid is IDENTITY
+            rows.append(_solid_row(solid, T if is_there else T[:3] @ _whole(solid.T_obstacle_solid)))
             if solid.kind == "hull":
                 faces.append((place, _faces(solid)))
             elif solid.kind == "cloud":

@@ -124,12 +124,12 @@ def read_pose(T: ArrayLike, where: tuple[str | int, ...]) -> Floats:
     pose = read_numbers(T, where)
     if pose.shape not in ((4, 4), (3, 4)):
         raise InputError(f"expected a pose [4, 4], got shape {pose.shape}", where)
-    last = pose[3:].ravel()
+    last = pose[3:].ravel().tolist()
     pose = pose[:3] + 0.0  # no -0.0: what is written and read again has the same bits
-    if not (np.abs(pose) <= MAX_MAGNITUDE).all() or not is_rotation(pose[:, :3]):
+    if not all(abs(value) <= MAX_MAGNITUDE for value in pose.ravel().tolist()) or not is_rotation(pose[:, :3]):
         raise InputError("expected a rotation and a place of finite numbers", where)
-    if len(last) and np.abs(last - [0.0, 0.0, 0.0, 1.0]).max() > TOLERANCE:
-        raise InputError(f"expected the last row 0 0 0 1, got {last.tolist()}", where)
+    if not all(abs(value - one) <= TOLERANCE for value, one in zip(last, (0.0, 0.0, 0.0, 1.0), strict=False)):
+        raise InputError(f"expected the last row 0 0 0 1, got {last}", where)
     return _frozen(pose)
 
 

@@ -19,6 +19,7 @@ from ikde.model.solids import Solid, read_pose
 from ikde.model.value import ByFields
 
 MAX_OBSTACLES = MAX_SOLIDS = 100_000
+FEW = 4  # obstacles that may have moved, before they are looked up: they may stand in another order
 Found = TypeVar("Found")
 
 
@@ -136,8 +137,9 @@ class World(ByFields):
         """The world with an obstacle at another pose [4, 4] or [3, 4], m, or at that of another library."""
         place, T = self._place(name), _read_place(T_world_obstacle)
         moved = replace(self.obstacles[place], T_world_obstacle=T)
-        world = replace(self, obstacles=(*self.obstacles[:place], moved, *self.obstacles[place + 1 :]))
-        vars(world)["_places"] = self._places
+        known = {"obstacles": (*self.obstacles[:place], moved, *self.obstacles[place + 1 :]), "_places": self._places}
+        world = object.__new__(World)  # of the same names and groups, which were looked at before
+        vars(world).update(known, switched_off=self.switched_off)
         return world
 
     def switch(self, /, **groups: bool) -> "World":
@@ -213,10 +215,24 @@ class PerObstacle(Generic[Found]):
 
     def list(self, obstacles: tuple[Obstacle, ...]) -> list[Found]:
         """Of each obstacle, in their order."""
-        make, kept = self._make, {id(old): found for old, found in zip(*self._last, strict=True)}
-        made = [kept[id(obstacle)] if id(obstacle) in kept else make(obstacle) for obstacle in obstacles]
+        make, (before, found) = self._make, self._last
+        changed = find_changed(before, obstacles)
+        if changed is None or len(changed) > FEW:
+            kept = {id(old): part for old, part in zip(before, found, strict=True)}
+            made = [kept[id(obstacle)] if id(obstacle) in kept else make(obstacle) for obstacle in obstacles]
+        else:
+            made = found.copy()
+            for place in changed:
+                made[place] = make(obstacles[place])
         self._last = obstacles, made
         return made
+
+
+def find_changed(before: tuple[Obstacle, ...], after: tuple[Obstacle, ...]) -> list[int] | None:
+    """Places at which another object stands than before; None if there are fewer or more of them."""
+    if len(before) != len(after):
+        return None
+    return [place for place, (old, new) in enumerate(zip(before, after, strict=True)) if old is not new]
 
 
 def _read_place(given: "ArrayLike | Pose") -> Floats:

@@ -11,7 +11,8 @@ from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.pack_world import find_fixed_frames
-from ikde.model.solids import Solid
+from ikde.model.robot import WORLD
+from ikde.model.solids import IDENTITY, Solid
 from ikde.model.world import Obstacle, PerObstacle
 from ikde.solver.plain import compute_components, compute_frames
 from ikde.solver.plain_world import measure_obstacle
@@ -64,14 +65,16 @@ class Watched:
         home = compute_frames(own.robot, own.robot.home)
         self._frames = {name: T for name, T in home.items() if name in find_fixed_frames(own.robot)}
 
+    def _place(self, obstacle: Obstacle, solid: Solid) -> list[float]:
+        """Where the origin of a solid is in the world, m."""
+        own, T = obstacle.T_world_obstacle, self._frames[obstacle.frame]
+        p = own[:, 3] if solid.T_obstacle_solid is IDENTITY else own[:, :3] @ solid.T_obstacle_solid[:, 3] + own[:, 3]
+        return (p if obstacle.frame == WORLD else T[:3, :3] @ p + T[:3, 3]).tolist()
+
     def list(self, obstacle: Obstacle, within_m: float) -> list[tuple[str, float]]:
         """Those that keep one distance from an obstacle, of at most `within_m`, and that distance, m."""
         T, own, found = self._frames[obstacle.frame], obstacle.T_world_obstacle, []
-        T_solids = [own[:, :3] @ solid.T_obstacle_solid[:, 3] + own[:, 3] for solid in obstacle.solids]
-        balls = [
-            ((T[:3, :3] @ p + T[:3, 3]).tolist(), _measure_ball(solid))
-            for p, solid in zip(T_solids, obstacle.solids, strict=True)
-        ]
+        balls = [(self._place(obstacle, solid), _measure_ball(solid)) for solid in obstacle.solids]
         for name, middle, radius_m, centres, radii in self.parts:
             reach_m = radius_m + within_m
             near = [

@@ -9,7 +9,7 @@ import pytest
 
 from ikde.errors import InputError
 from ikde.model.solids import make_solid
-from ikde.model.world import PerObstacle, World, make_obstacle, make_world
+from ikde.model.world import FEW, PerObstacle, World, find_changed, make_obstacle, make_world
 
 BALL = make_solid("sphere", [0.1])
 BOX = make_solid("box", [0.1, 0.2, 0.3])
@@ -108,6 +108,24 @@ def test_what_is_made_of_each_obstacle_is_made_once():
         made.clear()
         assert kept.list(obstacles) == [obstacle.name.upper() for obstacle in obstacles]
         assert made == new
+
+
+def test_what_is_made_stays_right_however_obstacles_are_moved_and_ordered():
+    """Of a few that are others, of many, and of as many that stand elsewhere in the order."""
+    first = [make_obstacle(f"o{k}", [BALL]) for k in range(2 * FEW)]
+    kept = PerObstacle(lambda obstacle: obstacle.name)
+    before, other = tuple(first), make_obstacle("other", [BOX])
+    for obstacles in (before, (other, *first[1:]), before[::-1], (*first[1:], first[0]), (other,)):
+        assert kept.list(obstacles) == [obstacle.name for obstacle in obstacles]
+    assert find_changed(before, (other, *first[1:])) == [0]
+    assert find_changed(before, (other,)) is None
+
+
+def test_a_world_whose_obstacle_has_moved_is_one_that_was_made_so(world):
+    moved, made = world.move("ball", place(2)), make_world([make_obstacle("ball", [BALL], place(2)), world["box"]])
+    assert (moved, moved.digest, hash(moved)) == (made, made.digest, hash(made))
+    assert moved.switch(tools=False).move("ball", place(1)).active == (world["ball"],)
+    assert pickle.loads(pickle.dumps(moved)) == copy.deepcopy(moved) == made
 
 
 def test_worlds_are_equal_by_value_also_those_that_travelled(world):
