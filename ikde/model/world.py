@@ -138,7 +138,7 @@ class World(ByFields):
         place, T = self._place(name), _read_place(T_world_obstacle)
         moved = replace(self.obstacles[place], T_world_obstacle=T)
         known = {"obstacles": (*self.obstacles[:place], moved, *self.obstacles[place + 1 :]), "_places": self._places}
-        world = object.__new__(World)  # of the same names and groups, which were looked at before
+        world = object.__new__(World)  # of the same names and groups, which are known to be right
         vars(world).update(known, switched_off=self.switched_off)
         return world
 

@@ -305,9 +305,16 @@ def _look_closer(problem: Problem, probe: Probe, met: _Met) -> tuple[_Met, str |
 
 
 def _search_often(problem: Problem, probe: Probe) -> SearchState:
-    """One attempt on each of many streams; attempt 0 with `near` is `near` itself, on every stream."""
+    """One attempt on each of many streams; attempt 0 with `near` is `near` itself, on every stream.
+
+    Under `auto` of `lm` alone, if that meets the target: 64 populations of `memetic` take a second.
+    """
     begin = 0 if problem.near is None else 1
     lanes = {"seed": probe.seed, "streams": range(COUNTED), "first_attempt": begin, "attempts": 1}
+    if len(problem.settings.engines) > 1:
+        found = search(problem.with_settings(method="lm"), [probe.target] * COUNTED, **lanes)
+        if (found.score[:, 0] == 0.0).any():
+            return found
     return search(problem, [probe.target] * COUNTED, **lanes)
 
 

@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 
 import ikde
+from ikde.kernels.arrays import COLLIDING
 from ikde.model.collision_model import CollisionModel
+from ikde.solver import explain
 from ikde.solver import remedies as module
+from ikde.solver.engine_table import NAMES
 from ikde.solver.hints import Probe
 from ikde.solver.remedies import Tries
 from tests.problems import problem_of
@@ -108,3 +111,14 @@ def test_of_a_pose_whose_configurations_all_collide_with_themselves_nothing_is_s
     blocked = solve(ur5, target, world_of(ball=ball(target.p_world_tool)), 0.01)
     assert (blocked.stop_reason, blocked.hint) == ("world", None)
     assert "of 8 configurations with this pose 8 in collision" in blocked.reason
+
+
+def test_what_blocks_is_counted_on_solutions_of_lm_where_that_meets_the_target():
+    """64 populations of `memetic` would take a second."""
+    target = meet(ROBOT, Q, "position")
+    model = CollisionModel.of(ROBOT).in_world(world_of(ball=ball(target.p_world_tool)))
+    problem = replace(problem_of(ROBOT), collision=model)
+    assert len(problem.settings.engines) > 1
+    found = explain._search_often(problem, Probe(target, 0, 0, 0.0))
+    assert {NAMES[engine] for engine in found.engine} == {"lm"}
+    assert found.counts[:, COLLIDING].all()
