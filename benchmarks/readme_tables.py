@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from peer_tables import CASES, format_ahead, format_arm, format_peers
+from scene_tables import format_scene_ahead, format_scene_checks, format_scene_peers
 from speed_tables import (
     format_ablation,
     format_batch,
@@ -90,6 +91,14 @@ def make_speed() -> str:
     )
 
 
+def make_scenes() -> str:
+    """Grasp poses among obstacles beside other solvers, and the check beside other checkers."""
+    peers = load("scene_peers")
+    return join(
+        format_scene_peers(peers, ADAPTERS), format_scene_ahead(peers), format_scene_checks(load("scene_checks"))
+    )
+
+
 def make_following() -> str:
     """What was measured of our methods."""
     record = load("track")
@@ -122,7 +131,7 @@ def insert(page: str, *blocks: str) -> str:
 if __name__ == "__main__":
     pages = {
         "README.md": (make_readme(),),
-        "docs/speed.md": (make_calls(), make_speed()),
+        "docs/speed.md": (make_calls(), make_speed(), make_scenes()),
         "docs/following.md": (make_following(), make_following_peers()),
         "docs/first_hour.md": (join(format_first_hour(load("first_hour"))),),
     }

@@ -7,17 +7,19 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from protocol import Answer, Setup
-from roster import ROSTER
+from protocol import Answer, Setup, Solid
+from roster import EVERY
 
 WORKER = Path(__file__).parent / "worker.py"
 THREADS = ("OMP", "OPENBLAS", "MKL", "NUMBA", "BLIS", "VECLIB_MAXIMUM")
 START_S, PREPARE_S, GRACE_S = 120.0, 300.0, 5.0
+BUSY = 20.0  # times as long on the wall as on a processor, where seconds are those of a processor
 
 
 class Lost(Exception):  # noqa: N818 - read as `raise Lost`
@@ -28,7 +30,7 @@ class Client:
     """A running worker."""
 
     def __init__(self, index: int) -> None:
-        self._index, self.entry = index, ROSTER[index]
+        self._index, self.entry = index, EVERY[index]
         self._setup: Setup | None = None
         self._start()
 
@@ -47,6 +49,16 @@ class Client:
         """Solve targets until the slice is over; a target may take its own time twice, then the worker is stopped."""
         try:
             return self._ask(slice_s + 2.0 * seconds + GRACE_S, "solve", p, R, seconds, slice_s)
+        except Lost:
+            self._setup = None
+            raise
+
+    def meet(
+        self, solids: Sequence[Solid], target: tuple[np.ndarray, np.ndarray], seconds: float, rounds: int
+    ) -> tuple[float, list[Answer]]:
+        """Load solids and solve a target among them `rounds` times: seconds of loading, and the answers."""
+        try:
+            return self._ask(BUSY * rounds * seconds + GRACE_S, "meet", solids, *target, seconds, rounds)
         except Lost:
             self._setup = None
             raise

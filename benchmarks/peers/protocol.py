@@ -7,7 +7,7 @@ library's own type) and `solve` (timed).
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +25,16 @@ TOOL_WEIGHT_M = 0.1  # m/rad: what an orientation error counts beside a position
 
 
 @dataclass(frozen=True, kw_only=True)
+class Solid:
+    """What stands around the robot: a box by its edges, or a cylinder by its radius and height along z, m."""
+
+    kind: str
+    size_m: tuple[float, ...]
+    T_world_solid: np.ndarray
+    """[4, 4]"""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Setup:
     """One case: a robot as object and as files, and what counts as reached."""
 
@@ -36,6 +46,10 @@ class Setup:
     position_tolerance_m: float
     orientation_tolerance_rad: float
     seed: int
+    clock: Callable[[], float] = time.perf_counter
+    """What time is measured by: seconds on the wall, or of the process on a processor (`time.process_time`)."""
+    check: str = "kernels"
+    """Who says that an answer of a blind one is free: `kernels`, of itself; in a world `coal` or `world kernels`."""
 
     @property
     def is_pose(self) -> bool:
@@ -53,9 +67,15 @@ class Setup:
         return self.robot.upper
 
     @cached_property
-    def checker(self) -> Checker:
-        """The sphere checker that all collision-blind peers share: ikde's own kernels."""
-        return make_checker(self.robot, self.seed)
+    def checker(self) -> "Checker | Any":
+        """The sphere checker that all collision-blind peers share."""
+        if self.check == "kernels":
+            return make_checker(self.robot, self.seed)
+        from world_checkers import CoalChecker, KernelChecker
+
+        if self.check == "coal":
+            return CoalChecker(self.robot, self.urdf, self.seed)
+        return KernelChecker(self.robot, self.seed)
 
     def inside(self, q: np.ndarray) -> bool:
         """Whether joint values [N] keep the limits."""
@@ -88,23 +108,28 @@ class Peer:
         """Load the robot; its time is recorded apart."""
         self.setup = setup
 
+    def load(self, solids: Sequence[Solid]) -> None:
+        """Put solids around the robot, in place of those before; its time is recorded apart."""
+        self.setup.checker.load(solids)
+
     def convert(self, p: np.ndarray, R: np.ndarray) -> Any:
         """A target in the library's own type, from position [3] in m and orientation [3, 3]; not timed."""
         return p, R
 
     def solve(self, target: Any, deadline: float) -> np.ndarray | None:
-        """Joint values [N] in the robot's order, free of self-collision, or None by `deadline` (`perf_counter`)."""
+        """Joint values [N] in the robot's order, free of self-collision, or None by `deadline` (`setup.clock`)."""
         raise NotImplementedError
 
     def answer(self, p: np.ndarray, R: np.ndarray, seconds: float, slice_s: float) -> list[Answer]:
         """Solve targets, positions [T, 3] and orientations [T, 3, 3], until `slice_s` have passed."""
         targets = [self.convert(a.copy(), b.copy()) for a, b in zip(p, R, strict=True)]
         answers: list[Answer] = []
-        begun = time.perf_counter()
+        clock = self.setup.clock
+        begun = clock()
         for target in targets:
-            started = time.perf_counter()
+            started = clock()
             q = self.solve(target, started + seconds)
-            ended = time.perf_counter()
+            ended = clock()
             answers.append((ended - started, None if q is None else np.array(q, dtype=float)))
             if ended - begun > slice_s:
                 break
@@ -117,7 +142,7 @@ class Peer:
             q = attempt()
             if q is not None and setup.inside(q) and checker.is_free(q):
                 return q
-            if time.perf_counter() > deadline:
+            if setup.clock() > deadline:
                 return None
 
 

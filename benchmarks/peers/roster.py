@@ -180,3 +180,104 @@ ROSTER = (
         packages=("pygmo",),
     ),
 )
+
+
+def _in_world(name: str, adapter: str, use: str, packages: tuple[str, ...], **options: Any) -> Entry:
+    return Entry(name=name, adapter=adapter, use=use, packages=packages, options=options)
+
+
+_COAL = "checked by Pinocchio's computeCollisions with the broad phase BroadPhaseManager_DynamicAABBTree..., "
+IN_SCENES = (
+    _in_world(
+        "ikde", "ikde:Single", "ikde.solve(robot, target, settings, collision=model)", ("ikde", "numpy", "numba")
+    ),
+    _in_world(
+        "EAIK, checked by coal",
+        "eaik_:AmongSolids",
+        "HPRobot(H, P).IK, branch by branch " + _COAL + "; of seven joints one is held at a random value (fixed_axes), "
+        "a lift stands at random heights",
+        ("EAIK", "pin", "coal"),
+        check="coal",
+    ),
+    _in_world(
+        "EAIK, checked by ikde's kernels",
+        "eaik_:AmongSolids",
+        "the same, checked by ikde's kernels on tables, one call from Python a branch",
+        ("EAIK", "ikde"),
+        check="world kernels",
+    ),
+    _in_world(
+        "Robotics Toolbox ik_LM",
+        "rtb:Toolbox",
+        "ets.ik_LM(T) with its defaults (Chan, k = 1, 30 x 100 iterations), tol for the tolerances, "
+        + _COAL
+        + "restarted",
+        ("roboticstoolbox-python", "pin", "coal"),
+    ),
+    _in_world(
+        "Robotics Toolbox ik_LM, tuned",
+        "rtb:Toolbox",
+        "ets.ik_LM(T, q0=random, method='chan', k=0.1, ilimit=10, slimit=1), " + _COAL + "restarted",
+        ("roboticstoolbox-python", "pin", "coal"),
+        seeds="random",
+        k=0.1,
+        ilimit=10,
+        slimit=1,
+    ),
+    _in_world(
+        "TRAC-IK",
+        "tracik:Speed",
+        "TracIK(...).ik(position, rotation, random seed), Speed, timeout 5 ms, epsilon from tolerance, "
+        + _COAL
+        + "restarted",
+        ("pytracik", "pin", "coal"),
+    ),
+    _in_world(
+        "Pinocchio, LM loop in Python",
+        "pinocchio:InPython",
+        "computeJointJacobians and log6 in a damped loop, clipped to the limits, from collision-free seeds, "
+        + _COAL
+        + "restarted",
+        ("pin", "coal"),
+    ),
+    _in_world(
+        "RoboPlan SimpleIk",
+        "roboplan_:Simple",
+        "SimpleIk.solveIk(goal, home, solution) with its defaults and our tolerances, solids in its Scene; asked again "
+        "from a collision-free start while it fails",
+        ("roboplan", "pin", "coal"),
+    ),
+    _in_world(
+        "RoboPlan SimpleIk, one call",
+        "roboplan_:Simple",
+        "the same with restarts and time without end, step_size=1, max_iters=40",
+        ("roboplan", "pin", "coal"),
+        step_size=1.0,
+        max_iters=40,
+        max_restarts=1_000_000,
+        max_time=2.0,
+    ),
+    _in_world(
+        "Drake InverseKinematics",
+        "drake:Program",
+        "position and orientation constraints, AddMinimumDistanceLowerBoundConstraint (0, influence 2 cm) of robot and "
+        "solids, SNOPT, guesses collision-free; restarted",
+        ("drake", "pin", "coal"),
+    ),
+    _in_world(
+        "mink, collision limit",
+        "mink_:Limited",
+        "solve_ik(FrameTask, ConfigurationLimit, CollisionAvoidanceLimit over the pairs and solids, daqp), dt 1, from "
+        "collision-free seeds; restarted",
+        ("mink", "mujoco", "daqp"),
+    ),
+    _in_world(
+        "Pink, collision barrier",
+        "pink_:Barrier",
+        "solve_ik(FrameTask, ConfigurationLimit, SelfCollisionBarrier of the 10 closest pairs of spheres and solids "
+        "without its pull to rest, daqp), dt 1, from collision-free seeds; restarted",
+        ("pin-pink", "pin", "daqp"),
+    ),
+)
+"""Those of benchmarks/scene_peers.py."""
+EVERY = (*ROSTER, *IN_SCENES)

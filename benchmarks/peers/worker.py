@@ -1,6 +1,7 @@
 """One peer in a process of its own, answering requests over a pipe.
 
-A request is `("prepare", setup, p, R, seconds)` or `("solve", p, R, seconds, slice_s)`; it ends when the runner does.
+A request is `("prepare", setup, p, R, seconds)`, `("solve", p, R, seconds, slice_s)` or
+`("meet", solids, p, R, seconds, rounds)`; it ends when the runner does.
 """
 
 import importlib
@@ -8,19 +9,21 @@ import os
 import sys
 import time
 import traceback
+from collections.abc import Sequence
 from importlib.metadata import version
 from multiprocessing.connection import Connection
 
 import numpy as np
-from protocol import Peer, Setup
-from roster import ROSTER, Entry
+from protocol import Answer, Peer, Setup, Solid
+from roster import EVERY, Entry
 
+SLOW_S = 0.02
 WARM_UP_S, WARM_UP_TIMES = 1.0, 64  # so many targets that what only many need is compiled as well
 
 
 def main() -> None:
     """Serve the entry of the roster named by its place, over an inherited descriptor."""
-    entry, pipe = ROSTER[int(sys.argv[1])], Connection(int(sys.argv[2]))
+    entry, pipe = EVERY[int(sys.argv[1])], Connection(int(sys.argv[2]))
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[-entry.cores :])
     started = time.perf_counter()
@@ -36,7 +39,10 @@ def main() -> None:
             task, *request = pipe.recv()
         except EOFError:
             return
-        pipe.send(prepare(peer, *request) if task == "prepare" else peer.answer(*request))
+        if task == "prepare":
+            pipe.send(prepare(peer, *request))
+        else:
+            pipe.send(meet(peer, *request) if task == "meet" else peer.answer(*request))
 
 
 def make_peer(entry: Entry) -> Peer:
@@ -58,6 +64,21 @@ def prepare(peer: Peer, setup: Setup, p: np.ndarray, R: np.ndarray, seconds: flo
         traceback.print_exception(error)
         return {"lost": f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"}
     return {"prepare_s": prepared - started, "first_s": first - prepared}
+
+
+def meet(
+    peer: Peer, solids: Sequence[Solid], p: np.ndarray, R: np.ndarray, seconds: float, rounds: int
+) -> tuple[float, list[Answer]]:
+    """Seconds of loading solids, and answers to a target among them, again and again; slow ones answer once."""
+    clock = peer.setup.clock
+    started = clock()
+    peer.load(solids)
+    load_s, answers = clock() - started, []
+    for _ in range(rounds):
+        answers += peer.answer(p[None], R[None], seconds, seconds)
+        if answers[-1][0] > SLOW_S:
+            break
+    return load_s, answers
 
 
 if __name__ == "__main__":

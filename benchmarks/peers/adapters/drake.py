@@ -1,15 +1,15 @@
 """Drake: inverse kinematics as a nonlinear program, self-collision as its distance constraint."""
 
-import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from protocol import Peer, Setup
-from pydrake.geometry import CollisionFilterDeclaration, GeometrySet
-from pydrake.math import RotationMatrix
+from protocol import Peer, Setup, Solid
+from pydrake.geometry import Box, CollisionFilterDeclaration, Cylinder, GeometrySet
+from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.inverse_kinematics import InverseKinematics
 from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
 from pydrake.solvers import SnoptSolver, SolverOptions
 from pydrake.systems.framework import DiagramBuilder
 
@@ -24,9 +24,27 @@ class Program(Peer):
     def prepare(self, setup: Setup) -> None:
         """From URDF; only the detector's pairs of links are looked at."""
         super().prepare(setup)
-        builder = DiagramBuilder()
+        self.make(())
+        self.solver, self.options = SnoptSolver(), SolverOptions()
+        # An orientation bound is 1 - cos(1e-3 rad) = 5e-7 to SNOPT, below its default of 1e-6.
+        self.options.SetOption(SnoptSolver.id(), "Major feasibility tolerance", 1e-8)
+
+    def load(self, solids: Sequence[Solid]) -> None:
+        """A plant with them; the checker is for its guesses."""
+        self.setup.checker.load(solids)
+        self.make(solids)
+
+    def make(self, solids: Sequence[Solid]) -> None:
+        """The plant, which is as it is once it is finished."""
+        setup, builder = self.setup, DiagramBuilder()
         plant, scene = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
         Parser(builder).AddModels(str(setup.urdf))
+        world, friction = plant.world_body(), CoulombFriction()
+        around = GeometrySet()
+        for k, solid in enumerate(solids):
+            shape = Box(*solid.size_m) if solid.kind == "box" else Cylinder(*solid.size_m)
+            T = RigidTransform(RotationMatrix(solid.T_world_solid[:3, :3]), solid.T_world_solid[:3, 3])
+            around.Add(plant.RegisterCollisionGeometry(world, T, shape, f"solid_{k}", friction))
         plant.Finalize()
         robot = setup.robot
         shapes = {
@@ -39,6 +57,8 @@ class Program(Peer):
         filters = CollisionFilterDeclaration().ExcludeWithin(every)
         for a, b in CollisionModel.of(robot).pairs:
             filters.AllowBetween(shapes[a], shapes[b])
+        for name in CollisionModel.of(robot).fixed_components:
+            filters.ExcludeBetween(shapes[name], around)
         scene.collision_filter_manager().Apply(filters)
         self.diagram = builder.Build()
         self.context = self.diagram.CreateDefaultContext()
@@ -46,9 +66,6 @@ class Program(Peer):
         self.tool = plant.GetFrameByName(robot.tool)
         starts = [plant.GetJointByName(name).position_start() for name in robot.joint_names]
         assert starts == list(range(len(starts)))
-        self.solver, self.options = SnoptSolver(), SolverOptions()
-        # An orientation bound is 1 - cos(1e-3 rad) = 5e-7 to SNOPT, below its default of 1e-6.
-        self.options.SetOption(SnoptSolver.id(), "Major feasibility tolerance", 1e-8)
 
     def convert(self, p: np.ndarray, R: np.ndarray) -> Any:
         """Its own rotation matrix."""
@@ -73,5 +90,5 @@ class Program(Peer):
                 q = np.clip(result.GetSolution(q_variables), setup.lower, setup.upper)
                 if setup.checker.is_free(q):
                     return q
-            if time.perf_counter() > deadline:
+            if self.setup.clock() > deadline:
                 return None

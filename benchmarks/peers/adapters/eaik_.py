@@ -1,7 +1,7 @@
 """EAIK: closed form for an arm on a fixed base, or on a mobile one that is sampled around the target."""
 
-import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numba
@@ -11,7 +11,7 @@ from protocol import Peer, Setup, random_rotation, to_matrix
 
 import ikde
 
-ARM_JOINTS = 6
+ARM_JOINTS, HELD, TURN = 6, 1000, 2.0 * np.pi
 
 
 class Fixed(Peer):
@@ -59,7 +59,70 @@ class Sampled(Peer):
             answer = solve(T)
             if choose(q, answer.Q, answer.is_LS):
                 return q
-            if time.perf_counter() > deadline:
+            if self.setup.clock() > deadline:
+                return None
+
+
+class AmongSolids(Peer):
+    """The branches one by one, checked from Python. Of a longer arm one joint, and what is before it, are drawn."""
+
+    def __init__(self, check: str) -> None:
+        self.check = check
+
+    def prepare(self, setup: Setup) -> None:
+        """Of seven joints the last that leaves a known decomposition is held, at one of many values."""
+        super().prepare(replace(setup, check=self.check))
+        robot, count = setup.robot, len(setup.robot.joints)
+        if not setup.is_pose or any(joint.kind == "prismatic" for joint in robot.joints[-7:]):
+            raise ValueError("poses of arms that turn only")
+        self.first = max(count - 7, 0)
+        self.random = np.random.default_rng(setup.seed)
+        frames = ikde.forward(robot, np.zeros(count))
+        moving = [frame for frame in robot.frames if frame.joint]
+        self.lifts = [(k, frames[frame.name][:3, :3] @ frame.axis) for k, frame in enumerate(moving[: self.first])]
+        if any(robot.joints[k].kind != "prismatic" for k, _ in self.lifts):
+            raise ValueError("what is before the arm may only lift it")
+        arm = moving[self.first :]
+        H = np.array([frames[frame.name][:3, :3] @ frame.axis for frame in arm])
+        points = [np.zeros(3), *(frames[frame.name][:3, 3] for frame in arm), frames[robot.tool][:3, 3]]
+        P = np.diff(np.array(points), axis=0)
+        self.solvers = [HPRobot(H, P)] if len(arm) == ARM_JOINTS else self.hold(H, P)
+        self.R_tool_end = frames[robot.tool][:3, :3].T.copy()
+
+    def hold(self, H: np.ndarray, P: np.ndarray) -> list[HPRobot]:
+        """Solvers for as many values of one joint."""
+        lower, upper = self.setup.lower[self.first :], self.setup.upper[self.first :]
+        for k in reversed(range(len(H))):
+            if HPRobot(H, P, fixed_axes=[(k, 0.3)]).hasKnownDecomposition():
+                values = self.random.uniform(lower[k], upper[k], HELD)
+                return [HPRobot(H, P, fixed_axes=[(k, value)]) for value in values]
+        raise ValueError("no joint leaves a known decomposition")
+
+    def convert(self, p: np.ndarray, R: np.ndarray) -> np.ndarray:
+        """A homogeneous matrix of EAIK's end effector."""
+        return to_matrix(p, R @ self.R_tool_end)
+
+    def solve(self, target: Any, deadline: float) -> np.ndarray | None:
+        """All branches; again with other values if any were drawn."""
+        setup, is_free, solvers = self.setup, self.setup.checker.is_free, self.solvers
+        lower, upper, random = setup.lower, setup.upper, self.random
+        q = np.empty(len(lower))
+        while True:
+            T = target.copy()
+            for k, axis in self.lifts:
+                q[k] = random.uniform(lower[k], upper[k])
+                T[:3, 3] -= q[k] * axis
+            solver = solvers[random.integers(len(solvers))] if len(solvers) > 1 else solvers[0]
+            answer = solver.IK(T)
+            for branch, is_approximate in zip(answer.Q, answer.is_LS, strict=True):
+                if is_approximate:
+                    continue
+                q[self.first :] = branch
+                q[q < lower] += TURN
+                q[q > upper] -= TURN
+                if (q >= lower).all() and is_free(q):
+                    return q
+            if len(solvers) == 1 or self.setup.clock() > deadline:
                 return None
 
 

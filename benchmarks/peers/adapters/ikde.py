@@ -4,10 +4,11 @@ The file is called like the library; inside the package `adapters` that hides no
 """
 
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from protocol import Answer, Peer, Setup
+from protocol import Answer, Peer, Setup, Solid
 
 import ikde
 from ikde.solver.settings import BulkOptions
@@ -18,13 +19,21 @@ class Single(Peer):
 
     def __init__(self, method: str = "auto") -> None:
         self.method, self.count = method, 0
+        self.collision: ikde.CollisionModel | None = None
 
     def prepare(self, setup: Setup) -> None:
         """Only tolerances differ from the defaults."""
         super().prepare(setup)
+        self.collision = None
         self.settings = ikde.SolveSettings.for_method(self.method).with_changes(
             position_tolerance_m=setup.position_tolerance_m, orientation_tolerance_rad=setup.orientation_tolerance_rad
         )
+
+    def load(self, solids: Sequence[Solid]) -> None:
+        """A world, with the robot in it."""
+        from world_checkers import make_solids_world
+
+        self.collision = ikde.CollisionModel.of(self.setup.robot).in_world(make_solids_world(solids))
 
     def convert(self, p: np.ndarray, R: np.ndarray) -> ikde.Target:
         """`ikde.Target`."""
@@ -33,7 +42,7 @@ class Single(Peer):
     def solve(self, target: Any, deadline: float) -> np.ndarray | None:
         """One call; the budget is in iterations, so the deadline is not looked at."""
         self.count += 1
-        result = ikde.solve(self.setup.robot, target, self.settings, seed=self.count)
+        result = ikde.solve(self.setup.robot, target, self.settings, collision=self.collision, seed=self.count)
         return result.q if result.reached else None
 
 

@@ -1,5 +1,6 @@
 """Pink: differential inverse kinematics on Pinocchio as a quadratic program, with its self-collision barrier."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +10,11 @@ import pinocchio as pin
 from pink.barriers import SelfCollisionBarrier
 from pink.limits import ConfigurationLimit, Limit, VelocityLimit
 from pink.tasks import FrameTask, PostureTask
-from protocol import Setup
+from protocol import Setup, Solid
+from world_checkers import add_solids, read_spheres
 
 import ikde
 from adapters.differential import CLEARANCE_M, Differential, Manner, Program, Span, orientation_cost
-from ikde.model.collision_model import CollisionModel
 
 CLOSEST_PAIRS = 10
 
@@ -33,8 +34,8 @@ class PinkProgram(Program):
         self.manner = manner
         self.model = pin.buildModelFromUrdf(str(urdf))
         self.data = self.model.createData()
-        geometry = self._read_spheres(robot, urdf)
-        self.collision = {"collision_model": geometry, "collision_data": geometry.createData()}
+        self.own = read_spheres(robot, self.model, urdf)
+        self.surround(())
         self.task = FrameTask(robot.tool, **manner.frame_costs)
         if manner.posture_cost:
             self.posture = PostureTask(cost=np.where(robot.is_prismatic, 0.0, manner.posture_cost))
@@ -49,16 +50,10 @@ class PinkProgram(Program):
         )
         self.bounds = {"limits": limits, "barriers": [barrier], "safety_break": False}
 
-    def _read_spheres(self, robot: ikde.Robot, urdf: Path) -> pin.GeometryModel:
-        geometry = pin.buildGeomFromUrdf(self.model, str(urdf), pin.GeometryType.COLLISION)
-        groups: dict[str, list[int]] = {}
-        for index, shape in enumerate(geometry.geometryObjects):
-            groups.setdefault(self.model.frames[shape.parentFrame].name.removeprefix("component_"), []).append(index)
-        for a, b in CollisionModel.of(robot).pairs:
-            for i in groups[a]:
-                for j in groups[b]:
-                    geometry.addCollisionPair(pin.CollisionPair(i, j))
-        return geometry
+    def surround(self, solids: Sequence[Solid]) -> None:
+        """Solids in place of those before."""
+        geometry = add_solids(self.own, solids)
+        self.collision = {"collision_model": geometry, "collision_data": geometry.createData()}
 
     def pose(self, p: np.ndarray, R: np.ndarray) -> Any:
         """Pinocchio's."""
@@ -90,3 +85,8 @@ class Barrier(Differential):
         super().prepare(setup)
         self.manner = Manner(orientation_cost=orientation_cost(setup), approach=0.5, range_gain=0.5)
         self.program = PinkProgram(setup.robot, setup.urdf, self.manner)
+
+    def load(self, solids: Sequence[Solid]) -> None:
+        """Into its collision model; the checker is for its seeds."""
+        self.setup.checker.load(solids)
+        self.program.surround(solids)

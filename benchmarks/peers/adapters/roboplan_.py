@@ -4,18 +4,19 @@ It checks the spheres of the URDF with coal, the detector's pairs alone. Before 
 configurations must be that of the checker which the others share.
 """
 
-import time
+from collections.abc import Sequence
 from itertools import combinations
 from typing import Any
 
 import numpy as np
-from protocol import Peer, Setup, to_matrix
-from roboplan.core import CartesianConfiguration, JointConfiguration, Scene, loadUrdfSceneDescription
+from protocol import Peer, Setup, Solid, to_matrix
+from roboplan.core import Box, CartesianConfiguration, Cylinder, JointConfiguration, Scene, loadUrdfSceneDescription
 from roboplan.simple_ik import SimpleIk, SimpleIkOptions
 
 from ikde.model.collision_model import CollisionModel
 
 GROUP, VERDICTS = "joints", 3000
+COMPARED = 3  # worlds whose verdicts are compared before anything is timed
 
 
 class Simple(Peer):
@@ -38,6 +39,25 @@ class Simple(Peer):
         self.scene.setRngSeed(setup.seed)
         self.home, self.start = JointConfiguration(), JointConfiguration()
         self.home.positions, self.solution = setup.robot.home, JointConfiguration()
+        self.solids, self.loaded = 0, 0
+
+    def load(self, solids: Sequence[Solid]) -> None:
+        """Geometries of its scene."""
+        scene, robot = self.scene, self.setup.robot
+        for k in range(self.solids):
+            scene.removeGeometry(f"solid_{k}")
+        fixed = [f"component_{name}" for name in CollisionModel.of(robot).fixed_components]
+        for k, solid in enumerate(solids):
+            add = scene.addBoxGeometry if solid.kind == "box" else scene.addCylinderGeometry
+            shape = Box(*solid.size_m) if solid.kind == "box" else Cylinder(*solid.size_m)
+            add(f"solid_{k}", "universe", shape, np.asfortranarray(solid.T_world_solid), np.ones(4))
+            apart = [*fixed, *(f"solid_{other}" for other in range(k))]
+            scene.setCollisions([(f"solid_{k}", name) for name in apart], False)
+        self.solids = len(solids)
+        if self.loaded < COMPARED:
+            self.setup.checker.load(solids)
+            compare_verdicts(scene, self.setup)
+        self.loaded += 1
 
     def convert(self, p: np.ndarray, R: np.ndarray) -> CartesianConfiguration:
         """A goal for the tool's frame."""
@@ -47,7 +67,7 @@ class Simple(Peer):
         """From home, then from collision-free configurations that it draws."""
         start, solution = self.home, self.solution
         while not self.solver.solveIk(target, start, solution):
-            if time.perf_counter() > deadline:
+            if self.setup.clock() > deadline:
                 return None
             self.start.positions = self.scene.randomCollisionFreePositions()
             start = self.start

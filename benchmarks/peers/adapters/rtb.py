@@ -14,8 +14,9 @@ from protocol import Peer, Setup, to_matrix
 class Toolbox(Peer):
     """As its documentation shows it, or with other options from collision-free seeds."""
 
-    def __init__(self, free_seeds: bool = False, k: float = 1.0, **options: Any) -> None:
-        self.free_seeds, self.options = free_seeds, {"method": "chan", "k": k, **options}
+    def __init__(self, free_seeds: bool = False, seeds: str = "own", k: float = 1.0, **options: Any) -> None:
+        self.seeds = "free" if free_seeds else seeds
+        self.options = {"method": "chan", "k": k, **options}
 
     def prepare(self, setup: Setup) -> None:
         """From URDF to the elementary transform sequence of the tool."""
@@ -31,7 +32,8 @@ class Toolbox(Peer):
 
     def solve(self, target: Any, deadline: float) -> np.ndarray | None:
         """Its own random starts unless a seed is given; from the start again while the answer collides."""
-        draw = self.setup.checker.draw_free if self.free_seeds else lambda: None
+        checker = self.setup.checker
+        draw = {"free": checker.draw_free, "random": checker.draw, "own": lambda: None}[self.seeds]
 
         def attempt() -> np.ndarray | None:
             answer = self.ets.ik_LM(target, q0=draw(), **self.options)
