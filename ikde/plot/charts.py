@@ -79,6 +79,9 @@ class Panel:
     marks: Sequence[float] = ()
     """Places on x where something is wrong: small triangles on the lower edge."""
     mark: str = "collision"
+    spot: tuple[float, float] | None = None
+    """A point that a ring shows."""
+    spot_label: str = ""
     title: str = ""
     """What stands above the chart, where its y axis has no room for it."""
     min_span: float = 0.0
@@ -222,6 +225,10 @@ def plot_panels(panels: Sequence[Panel], *, x: Axis, columns: int = 1, height_in
                 axes.axhline(value, color=INK, linewidth=0.9, linestyle=BOUND, label=label)
             if len(panel.marks):
                 _draw_marks(axes, panel)
+            if panel.spot is not None:
+                ring = {"marker": "o", "markersize": 8, "markerfacecolor": "none", "markeredgewidth": 1.6}
+                label = legend_name(panel.spot_label)
+                axes.plot(*panel.spot, color=pick(COLORS, 2), linestyle="none", label=label, zorder=6, **ring)
             if panel.title:
                 axes.set_title(panel.title, loc="left", fontsize=TITLE_PT, color=INK)
             _widen(axes, panel.min_span)

@@ -50,7 +50,7 @@ def plot_path(motion: TrackSummary) -> Any:
 def plot_margins(motion: TrackSummary) -> Any:
     """What is left before a limit, of the worst pair or joint: clearance, range, and share of the speed limit used."""
     times, robot = motion.trajectory.times_s, motion.robot
-    panels = [] if (clearance := _clearance_panel(motion)) is None else [clearance]
+    panels = _list_clearance_panels(motion)
     width = robot.upper - robot.lower
     counted = (width > 0.0) & np.isfinite(width) & ~np.isin(robot.joint_names, motion.trajectory.base_joints[:2])
     if counted.any():
@@ -137,18 +137,52 @@ def _speed_panels(motion: TrackSummary, x: int, heading: int) -> list[Panel]:
     return panels
 
 
-def _clearance_panel(motion: TrackSummary) -> Panel | None:
-    """Clearance at the samples, and what it is certain not to fall below between them; None without a detector."""
+def _list_clearance_panels(motion: TrackSummary) -> list[Panel]:
+    """Clearance at the samples, and what it is certain not to fall below between them; none without a detector.
+
+    In a world that to itself and that to the world, each with the moment of its least.
+    """
     collision, gaps, proof = motion.collision, motion.grade.gaps_m, motion.certificate
     if not gaps.size:
-        return None
-    lines = [Line(label="at samples", x=motion.trajectory.times_s, y=MM * gaps.min(axis=1))]
-    if proof is not None:
-        times, between = _in_steps(motion, proof.segment_m[:, None])
+        return []
+    own, times = len(collision.pairs), motion.trajectory.times_s
+    certified = None if proof is None else proof.segment_m if proof.own_m is None else proof.own_m
+    title = "clearance" if not collision.obstacles else "to itself"
+    wrong = times[(gaps[:, :own] <= collision.limit_m).any(axis=1)].tolist()
+    bounds = {"bounds": [MM * collision.limit_m], "bound": "safe distance"}
+    lines = _list_clearances(motion, gaps[:, :own].min(axis=1), certified)
+    panels = [Panel(y=Axis(label=title, unit="mm"), lines=lines, marks=wrong, **bounds)]
+    if motion.closest_obstacle is not None:
+        panels.append(_plot_world(motion, *motion.closest_obstacle))
+    return panels
+
+
+def _plot_world(motion: TrackSummary, sample: int, place: int) -> Panel:
+    """Clearance to the world, where the least room is marked, and the margin, if all keep the same."""
+    collision, times, own = motion.collision, motion.trajectory.times_s, len(motion.collision.pairs)
+    gaps = motion.grade.gaps_m[:, own:]
+    compared = np.isfinite(gaps).all(axis=0)
+    kept = np.unique(collision.extras_m[own:][compared] + collision.limit_m)
+    least = (gaps[:, compared] + collision.extras_m[own:][compared]).min(axis=1)
+    clearance_m = motion.grade.gaps_m[sample, place] + collision.extra_m(place)
+    return Panel(
+        y=Axis(label="to the world", unit="mm"),
+        lines=_list_clearances(motion, least, motion.certificate.world_m if motion.certificate else None),
+        bounds=[MM * kept[0]] if len(kept) == 1 else [],
+        bound="margin",
+        marks=times[[bool(names) for names in motion.touched]].tolist(),
+        spot=(float(times[sample]), MM * float(clearance_m)),
+        spot_label="least room of the world",
+    )
+
+
+def _list_clearances(motion: TrackSummary, sampled_m: Floats, certified_m: Floats | None) -> list[Line]:
+    """At the samples, and certified between them, if anything is."""
+    lines = [Line(label="at samples", x=motion.trajectory.times_s, y=MM * sampled_m)]
+    if certified_m is not None:
+        times, between = _in_steps(motion, np.where(np.isfinite(certified_m), certified_m, np.nan)[:, None])
         lines.append(Line(label="certified between them", x=times, y=MM * between[:, 0]))
-    wrong = motion.trajectory.times_s[[bool(names) for names in motion.colliding]].tolist()
-    y = Axis(label="clearance", unit="mm")
-    return Panel(y=y, lines=lines, bounds=[MM * collision.limit_m], bound="safe distance", marks=wrong)
+    return lines
 
 
 def _plot_arm(

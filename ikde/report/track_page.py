@@ -38,12 +38,13 @@ from ikde.report.page import (
     Table,
     Text,
 )
-from ikde.report.track import FIXED, list_figures
-from ikde.scene.drawn_motion import choose_moments, draw_motion, spread_samples
+from ikde.report.track import FIXED, gap_mm, list_figures
+from ikde.scene.drawn_motion import MAX_OBSTACLES, choose_frames, choose_moments, draw_motion
 from ikde.track.summary import TrackSummary
 
 MOMENTS, MOMENTS_DPI = 8, 110
 MAX_FRAMES = 251
+MAX_LISTED = 12  # obstacles in the table of what comes nearest
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,12 +93,13 @@ def draw_moments(motion: TrackSummary, prefix: str = "", dpi: float = MOMENTS_DP
     """The robot at eight moments, as a picture."""
     image = to_png(plot_moments(draw_motion(motion, choose_moments(motion, MOMENTS))), dpi=dpi)
     caption = f"Arm red, base blue; the path grey, what was followed of it orange. {_tell_black(motion)}"
+    caption += tell_obstacles(motion)
     return Figure(image=image, alt=f"{prefix}the robot at moments of its motion", caption=caption)
 
 
 def animate(motion: TrackSummary, frames: int = MAX_FRAMES, prefix: str = "", caption: str = "") -> Animation:
     """The motion itself."""
-    moving = make_animation(draw_motion(motion, spread_samples(motion, frames)))
+    moving = make_animation(draw_motion(motion, choose_frames(motion, frames)))
     data = json.dumps(moving, separators=(",", ":"), allow_nan=False)
     return Animation(
         data=data,
@@ -163,6 +165,8 @@ def _make_clearance(motion: TrackSummary) -> Number:
     if clearance_m is None:
         return Number("not checked", "self-collision", "no detector")
     certain = f"{length(proof.clearance_m)} certified between" if proof else ""
+    if motion.collision.obstacles and motion.closest_pair is not None:
+        certain = "; ".join(filter(None, (" and ".join(motion.closest_pair), certain)))
     return Number(length(clearance_m), "smallest clearance at samples", certain)
 
 
@@ -172,15 +176,26 @@ def _tell_black(motion: TrackSummary) -> str:
     return "What collides is black, white on a dark page."
 
 
+def tell_obstacles(motion: TrackSummary) -> str:
+    """What is drawn of a world, and what the ring is; nothing without one."""
+    count = len(motion.collision.obstacles)
+    if not count:
+        return ""
+    shown = f"The {MAX_OBSTACLES} nearest of {count:,} obstacles are" if count > MAX_OBSTACLES else "Obstacles are"
+    ring = "; the green ring is where there is the least room" if motion.closest_obstacle is not None else ""
+    return f" {shown} grey, violet where anything is too near{ring}."
+
+
 def _list_sections(motion: TrackSummary) -> list[Section]:
     moving = animate(
         motion,
-        caption=f"Play it, drag the slider, or drag in a chart below; turn the view in space. {_tell_black(motion)}",
+        caption=f"Play it, drag the slider, or drag in a chart below; turn the view in space. {_tell_black(motion)}"
+        + tell_obstacles(motion),
     )
     path = PATH if motion.trajectory.base_joints else PATH_ALONE
     groups = [
         ("Motion", [moving, draw_moments(motion)]),
-        ("Clearance and limits", [draw(replace(MARGINS, caption=_tell_margins(motion)), motion)]),
+        ("Clearance and limits", [draw(replace(MARGINS, caption=_tell_margins(motion)), motion), list_near(motion)]),
         ("Figures", [_make_measured(motion)]),
         ("Path and error", [*_tell_error(motion), _beside(draw(path, motion), draw(ERRORS, motion))]),
         ("Joints", [_beside(draw(JOINTS, motion), draw(SPEEDS, motion))]),
@@ -195,7 +210,38 @@ def _tell_margins(motion: TrackSummary) -> str:
     if motion.grade.clearance_m is None:
         return MARGINS.caption
     between = " and certified between them" if motion.certificate is not None else ""
-    return f"The smallest clearance of any pair, at the samples{between}. {MARGINS.caption}"
+    pairs = "any pair" if not motion.collision.obstacles else "any pair of components, and to any obstacle"
+    return f"The smallest clearance of {pairs}, at the samples{between}. {MARGINS.caption}"
+
+
+def list_near(motion: TrackSummary) -> Table | None:
+    """The obstacles that come nearest, and which component, when, and how near; None without a world."""
+    collision, own = motion.collision, len(motion.collision.pairs)
+    if motion.closest_obstacle is None:
+        return None
+    count = len(collision.obstacles)
+    room = motion.grade.gaps_m[:, own:].reshape(len(motion.trajectory.q), -1, count)
+    least = room.min(axis=(0, 1))
+    nearest = [k for k in np.argsort(least, kind="stable").tolist() if np.isfinite(least[k])][:MAX_LISTED]
+    rows = []
+    for k in nearest:
+        sample, component = np.unravel_index(int(np.argmin(room[:, :, k])), room.shape[:2])
+        extra_m = collision.extra_m(own + int(component) * count + k)
+        time = f"{motion.trajectory.times_s[sample]:.2f} s, sample {sample}"
+        name, asked = collision.components[component], gap_mm(collision.limit_m + extra_m)
+        rows.append((collision.obstacles[k].name, name, gap_mm(float(least[k]) + extra_m), asked, time))
+    more = f" Of {count:,} obstacles." if count > len(nearest) else ""
+    return Table(
+        columns=(
+            *Column.of("obstacle", "component"),
+            Column("clearance", "mm"),
+            Column("asked for", "mm"),
+            Column("when"),
+        ),
+        rows=tuple(rows),
+        caption="What of the world comes nearest",
+        note=f"At the samples, by plain numpy; what has the least room beyond what is asked for comes first.{more}",
+    )
 
 
 def _beside(*figures: Figure | None) -> Gallery | None:
@@ -221,12 +267,24 @@ def _make_measured(motion: TrackSummary) -> Table:
     return Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption)
 
 
+def _list_world(motion: TrackSummary) -> list[tuple[str, str]]:
+    """The world and what is kept from it, if there is one."""
+    collision = motion.collision
+    if not collision.obstacles:
+        return []
+    margins = [f"{1e3 * collision.margin_m:.6g} mm"]
+    margins += [f"{name} {1e3 * margin_m:.6g} mm" for name, margin_m in collision.margins_m]
+    digest = f"{len(collision.obstacles):,} obstacles, digest {code(collision.world.digest[:12])}"
+    return [("world", digest), ("margin", verbatim(", ".join(margins)))]
+
+
 def _make_recipe(motion: TrackSummary, command: str) -> Section:
     facts = [
         ("robot", verbatim(motion.robot.name)),
         ("base", _name_base(motion)),
         ("method", code(motion.trajectory.method)),
         ("detector", verbatim(motion.collision.name)),
+        *_list_world(motion),
         ("time between samples", f"{1e3 * motion.trajectory.path.dt_s:g} ms"),
     ]
     return Section("How it was made", (Facts(tuple(facts)), Code(command, "The same again")))

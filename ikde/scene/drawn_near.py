@@ -15,10 +15,13 @@ STEP_M = 1e-6  # of a difference
 
 
 def draw_near(
-    world: World, Ts_world: Mapping[str, Floats], robot_m: Floats, touched: Set[str]
+    world: World, Ts_world: Mapping[str, Floats], robot_m: Floats, touched: Set[str], around: float = AROUND
 ) -> tuple[DrawnObstacle, ...]:
-    """What of obstacles that count lies about the robot, whose box is `robot_m` [2, 3], in its frames `Ts_world`."""
-    room_m = AROUND * float(np.ptp(robot_m, axis=0).max())
+    """What of obstacles that count lies about the robot, whose box is `robot_m` [2, 3], in its frames `Ts_world`.
+
+    `around`: how far beyond that box, as a share of its size.
+    """
+    room_m = around * float(np.ptp(robot_m, axis=0).max())
     box_m = robot_m + np.array([[-room_m], [room_m]])
     found = []
     for obstacle in world.active[:MAX_OBSTACLES]:

@@ -36,6 +36,10 @@ class Certificate:
     room_m: Floats
     """[M] by how much more than what is asked for everything keeps: of components, that nothing touches; of obstacles,
     their margins."""
+    own_m: Floats | None = None
+    """[M] in a world, the clearance of components from one another alone."""
+    world_m: Floats | None = None
+    """[M] likewise that to obstacles; inf where nothing is compared with them."""
 
     def __repr__(self) -> str:
         return f"<Certificate: at least {1e3 * self.clearance_m:.6g} mm in {len(self.segment_m)} segments>"
@@ -54,8 +58,11 @@ def certify(collision: CollisionModel, q: Floats, drive: str = "omnidirectional"
     if len(q) < 2 or not collision.pairs:
         return None
     room = bound_all(collision, q, drive)
-    segments = (room + list_kept_m(collision)).min(axis=1)
-    return Certificate(clearance_m=float(segments.min()), segment_m=segments, room_m=room.min(axis=1))
+    clearances, own = room + list_kept_m(collision), len(collision.pairs)
+    segments, parts = clearances.min(axis=1), {}
+    if collision.obstacles:
+        parts = {"own_m": clearances[:, :own].min(axis=1), "world_m": clearances[:, own:].min(axis=1)}
+    return Certificate(clearance_m=float(segments.min()), segment_m=segments, room_m=room.min(axis=1), **parts)
 
 
 def list_kept_m(collision: CollisionModel) -> Floats:

@@ -81,6 +81,14 @@ class TrackSummary:
         touching = self.grade.gaps_m <= self.collision.limit_m
         return [{name for pair in np.flatnonzero(row) for name in pairs[pair]} for row in touching]
 
+    @cached_property
+    def touched(self) -> list[set[str]]:
+        """Obstacles that anything is too near to, for each sample."""
+        collision, pairs = self.collision, len(self.collision.pairs)
+        names = [obstacle.name for obstacle in collision.obstacles]
+        hits = self.grade.gaps_m[:, pairs:] <= collision.limit_m
+        return [{names[place % len(names)] for place in np.flatnonzero(row)} for row in hits]
+
     @property
     def closest_pair(self) -> tuple[str, str] | None:
         """What has the least room at any sample: two components, or a component and an obstacle."""
@@ -91,6 +99,19 @@ class TrackSummary:
         """Its place in the table of clearances; None where nothing was checked."""
         gaps = self.grade.gaps_m
         return int(np.argmin(gaps.min(axis=0))) if gaps.size else None
+
+    @cached_property
+    def closest_obstacle(self) -> tuple[int, int] | None:
+        """Sample and place in the table of clearances where the motion has the least room of a world.
+
+        None without a world, and where nothing is compared with it.
+        """
+        gaps, pairs = self.grade.gaps_m, len(self.collision.pairs)
+        of_world = gaps[:, pairs:]
+        if not of_world.size or not np.isfinite(of_world.min()):
+            return None
+        sample, place = np.unravel_index(int(np.argmin(of_world)), of_world.shape)
+        return int(sample), pairs + int(place)
 
     @property
     def steps(self) -> Floats:

@@ -12,6 +12,13 @@ from ikde.report import html
 from ikde.scene.drawn_motion import draw_motion
 from ikde.scene.drawn_pose import COLORS
 from tests.track.measured import make_measured
+from tests.track.worlds import TOUCHED, make_among
+
+OBSTACLES = {
+    "post": {"cylinder": {"radius": 0.05, "height": 0.4}, "position": [0.74, -0.3, 0.96]},
+    "board": {"box": [0.2, 0.3, 0.02], "position": [0.2, 0.3, 0.9]},
+    "dust": {"cloud": {"points": [[0.3, 0.45, 0.4], [0.4, 0.48, 0.5]], "radius": 0.01}},
+}
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +66,36 @@ def test_it_is_json_also_without_a_detector(qiao):
     data = make_animation(draw_motion(make_measured(qiao, detector="none"), [0, 10, 20]))
     assert json.loads(json.dumps(data)) == data
     assert data["centres_mm"] == [[], [], []]
+
+
+def test_obstacles_have_corners_edges_and_points(qiao):
+    motion = make_among(qiao, obstacles=OBSTACLES)
+    drawn = draw_motion(motion, [0, 10, 20])
+    data = make_animation(drawn)
+    assert json.loads(json.dumps(data)) == data
+    post, board, dust = (next(one for one in data["obstacles"] if one["name"] == name) for name in OBSTACLES)
+    assert (len(board["solids"][0]["corners"]), len(board["solids"][0]["faces"])) == (8, 6)
+    np.testing.assert_allclose(np.ptp(board["solids"][0]["corners"], axis=0), [200, 300, 20])
+    (solid,) = post["solids"]
+    assert len(solid["faces"]) == 2  # its round ends
+    assert (dust["solids"], dust["points"]) == ([], [[300, 450, 400], [400, 480, 500]])
+    assert data["touched"] == [[], [], []]
+
+
+def test_the_least_room_has_its_frame_if_it_is_drawn(qiao):
+    motion = make_among(qiao, obstacles=OBSTACLES)
+    sample = motion.closest_obstacle[0]
+    data = make_animation(draw_motion(motion, sorted({0, sample, 20})))
+    nearest = draw_motion(motion, [0]).nearest
+    assert data["nearest"]["frame"] == sorted({0, sample, 20}).index(sample)
+    np.testing.assert_allclose(data["nearest"]["points"], 1e3 * nearest.points_m, atol=0.5)
+    assert data["nearest"]["text"] == f"{nearest.component} - {nearest.obstacle}: {1e3 * nearest.clearance_m:.1f} mm"
+    assert make_animation(draw_motion(motion, [0 if sample else 1]))["nearest"]["frame"] == -1
+
+
+def test_touched_obstacles_are_listed_by_frame(qiao):
+    ball = {"far": {"sphere": {"radius": 0.1}, "position": [0.4, 0.3, 1.2]}, **TOUCHED}
+    motion = make_among(qiao, obstacles=ball)
+    data = make_animation(draw_motion(motion, [0, 10, 20]))
+    assert [one["name"] for one in data["obstacles"]] == ["far", "ball"]
+    assert data["touched"] == [[], [1], []]

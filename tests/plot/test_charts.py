@@ -175,3 +175,11 @@ def test_an_axis_spans_what_it_must(min_span, span):
 
 def test_a_curve_without_a_label_needs_no_legend():
     assert plot_panels([Panel(y=SECONDS, lines=[Line(label="", x=[0], y=[0])])], x=SECONDS).legends == []
+
+
+def test_a_spot_is_a_ring_with_its_name():
+    panel = Panel(y=MM, lines=[Line(label="a", x=[0, 1], y=[1, 2])], spot=(0.5, 1.5), spot_label="least")
+    figure = plot_panels([panel], x=SECONDS)
+    assert labels(figure) == ["a", "least"]
+    assert [value.tolist() for value in map(np.asarray, curves(figure)["least"].get_data())] == [[0.5], [1.5]]
+    assert labels(plot_panels([Panel(y=MM, lines=panel.lines)], x=SECONDS)) == ["a"]

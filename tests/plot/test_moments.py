@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from matplotlib.patches import Circle
+from matplotlib.patches import Circle, Polygon
 
 from ikde.plot.images import to_png
 from ikde.plot.moments import plot_moments
 from ikde.scene.drawn_motion import draw_motion
 from ikde.scene.drawn_pose import COLORS, Role
 from tests.track.measured import make_measured
+from tests.track.worlds import TOUCHED, make_among
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +60,32 @@ def test_without_a_detector_the_links_are_drawn(qiao):
 
 def test_it_becomes_a_picture(folded):
     assert to_png(plot_moments(folded), dpi=50).startswith(b"\x89PNG")
+
+
+def polygons(axes):
+    return [patch for patch in axes.patches if isinstance(patch, Polygon)]
+
+
+def test_obstacles_are_outlines_and_what_is_touched_has_a_colour_of_its_own(qiao):
+    motion = make_among(qiao)
+    sample = motion.closest_obstacle[0]
+    views = plot_moments(draw_motion(motion, sorted({0, sample}))).axes
+    for view in views:
+        assert {patch.get_edgecolor()[:3] for patch in polygons(view) if not patch.get_fill()} == {
+            to_rgb(COLORS[Role.OBSTACLE])
+        }
+        outline = max((patch.get_path().vertices for patch in polygons(view)), key=len)
+        (low, high), window = (outline.min(axis=0), outline.max(axis=0)), np.array([view.get_xlim(), view.get_ylim()])
+        assert (window[:, 0] < low).all()
+        assert (high < window[:, 1]).all()
+    (view,) = plot_moments(draw_motion(make_among(qiao, obstacles=TOUCHED), [10])).axes
+    assert to_rgb(COLORS[Role.TOUCHED]) in {patch.get_edgecolor()[:3] for patch in polygons(view)}
+
+
+def test_the_least_room_has_a_ring_at_its_moment_alone(qiao):
+    motion = make_among(qiao)
+    sample = motion.closest_obstacle[0]
+    drawn = draw_motion(motion, sorted({0, sample}))
+    views = plot_moments(drawn).axes
+    rings = [[line for line in view.lines if line.get_color() == COLORS[Role.CLOSEST]] for view in views]
+    assert [bool(ring) for ring in rings] == [kept == sample for kept in drawn.samples]

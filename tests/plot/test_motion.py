@@ -9,6 +9,7 @@ import ikde
 from ikde.plot.motion import plot_base, plot_errors, plot_joint_speeds, plot_joints, plot_margins, plot_path
 from tests.random_robots import make_frame, make_robot
 from tests.track.measured import make_measured, make_still
+from tests.track.worlds import TOUCHED, make_among
 
 
 @pytest.fixture(scope="module")
@@ -239,3 +240,39 @@ def test_without_a_detector_and_limits_there_is_no_margin(qiao):
     endless = make_robot({"s1": "revolute"}, frames, tool="a")
     joints = tuple(replace(joint, lower=-np.inf, upper=np.inf) for joint in endless.joints)
     assert plot_margins(make_still(replace(endless, joints=joints), detector="none", speed=None)) is None
+
+
+def curve(axes, label):
+    return next(line for line in axes.lines if line.get_label() == label)
+
+
+def test_in_a_world_clearance_to_itself_and_to_it_are_apart(qiao):
+    motion = make_among(qiao, 0.02)
+    own, world = plot_margins(motion).axes[:2]
+    assert (own.get_ylabel(), world.get_ylabel()) == ("to itself [mm]", "to the world [mm]")
+    alone = make_measured(qiao, amplitude=0.5)
+    np.testing.assert_allclose(curve(own, "at samples").get_ydata(), 1e3 * alone.grade.clearances_m)
+    between = curve(own, "certified between them").get_ydata()
+    np.testing.assert_allclose(between, np.repeat(1e3 * alone.certificate.segment_m, 2))
+    seen = [ikde.check(qiao, q, motion.collision) for q in motion.trajectory.q]
+    least = np.array([1e3 * min(row.clearance_m for row in one.obstacles) for one in seen])
+    np.testing.assert_allclose(curve(world, "at samples").get_ydata(), least)
+    assert (curve(world, "certified between them").get_ydata()[::2] <= np.minimum(least[:-1], least[1:]) + 1e-9).all()
+    assert levels(world) == pytest.approx([20.0])
+    (time,), (gap,) = curve(world, "least room of the world").get_data()
+    assert (time, gap) == pytest.approx((0.02 * int(np.argmin(least)), min(least)))
+
+
+def test_where_margins_differ_no_line_is_drawn_and_what_is_touched_is_marked(qiao):
+    motion = make_among(qiao, margins_m={"M": 0.001}, obstacles=TOUCHED)
+    world = plot_margins(motion).axes[1]
+    times = motion.trajectory.times_s[[bool(names) for names in motion.touched]]
+    assert 0 < len(times) < 21
+    np.testing.assert_array_equal(curve(world, "collision").get_xdata(), times)
+    assert "margin" not in [line.get_label() for line in world.lines]
+
+
+def test_a_world_that_nothing_is_compared_with_has_no_chart(qiao):
+    names = list(qiao.components("improved"))
+    motion = make_among(qiao, obstacles={"ball": {"sphere": {"radius": 0.1}, "ignore": names}})
+    assert [axes.get_ylabel() for axes in plot_margins(motion).axes][:2] == ["to itself [mm]", "range left [%]"]

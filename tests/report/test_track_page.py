@@ -7,12 +7,13 @@ import pytest
 import ikde
 from ikde.report.html import render_html
 from ikde.report.markdown import render_markdown
-from ikde.report.track_page import make_track_page
+from ikde.report.track_page import list_near, make_track_page, tell_obstacles
 from ikde.track.follow_path import grade_motion
 from ikde.track.plan import TrackPlan
 from ikde.track.summary import summarise_track
 from ikde.track.trajectory import Followed, TrackStop, TrackStopReason
 from tests.track.measured import make_measured, make_still
+from tests.track.worlds import OBSTACLES, make_among
 
 MAX_BYTES = 5_000_000
 STOP = TrackStop(sample=21, reason=TrackStopReason.SPEED_LIMIT, text="sample 21: q2 would need 3 rad/s")
@@ -118,3 +119,38 @@ def test_a_start_alone_is_shown(qiao):
 def test_it_says_how_it_was_made(page):
     code = page.sections[-1].blocks[-1]
     assert (code.text, code.caption) == ("ikde track 'my path.yaml' --out FOLDER", "The same again")
+
+
+def test_in_a_world_it_says_which_and_what_comes_nearest(qiao):
+    motion = make_among(qiao, 0.01, margins_m={"LT": 0.0})
+    page = make_page(motion)
+    clearance = next(section for section in page.sections if section.title == "Clearance and limits")
+    table = clearance.blocks[-1]
+    assert [row[0] for row in table.rows] == ["post", *[row[0] for row in table.rows][1:]]
+    assert {row[0] for row in table.rows} == set(OBSTACLES)
+    seen = [ikde.check(qiao, q, motion.collision) for q in motion.trajectory.q]
+    for name, component, gap, asked, when in table.rows:
+        rows = [row for one in seen for row in one.obstacles if row.obstacle == name]
+        best = min(rows, key=lambda row: row.clearance_m - row.margin_m)
+        assert (component, gap) == (best.component, f"{1e3 * best.clearance_m:.2f}")
+        assert asked == f"{1e3 * best.margin_m:.2f}"
+        sample = int(when.rpartition(" ")[2])
+        assert best in seen[sample].obstacles
+        assert when.startswith(f"{0.02 * sample:.2f} s")
+    facts = dict(page.sections[-1].blocks[0].items)
+    assert motion.collision.world.digest[:12] in facts["world"]
+    assert facts["margin"].count("10 mm") == 1
+    number = page.lead[-1].items[2]
+    assert number.note.startswith(f"{motion.closest_pair[0]} and {motion.closest_pair[1]}; ")
+    text = render_html(page)
+    assert text.count("Obstacles are grey, violet where anything is too near; the green ring is where") == 2
+    assert "to any obstacle, at the samples and certified" in text
+
+
+def test_of_many_obstacles_it_says_how_many_are_drawn_and_listed(qiao):
+    balls = {f"b{k}": {"sphere": {"radius": 0.01}, "position": [0.1 * k - 5, 1.5, 1.0]} for k in range(100)}
+    motion = make_among(qiao, obstacles=balls)
+    assert "The 60 nearest of 100 obstacles are grey" in tell_obstacles(motion)
+    table = list_near(motion)
+    assert table.note.endswith(" Of 100 obstacles.")
+    assert len(table.rows) == 12

@@ -4,8 +4,17 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.scene.drawn_motion import choose_moments, draw_motion, spread_samples
+from ikde.scene.drawn_motion import (
+    MAX_OBSTACLES,
+    choose_frames,
+    choose_moments,
+    draw_motion,
+    list_nearest,
+    spread_samples,
+)
+from ikde.solver.plain_world import measure_obstacle
 from tests.track.measured import make_measured
+from tests.track.worlds import TOUCHED, make_among
 
 
 @pytest.fixture(scope="module")
@@ -58,3 +67,69 @@ def test_without_a_detector_nothing_collides(qiao):
     drawn = draw_motion(make_measured(qiao, detector="none"), [0, 5])
     assert [drawn.list_colliding(frame) for frame in range(2)] == [[], []]
     assert drawn.robot.centres_m.shape == (2, 0, 3)
+
+
+@pytest.fixture(scope="module")
+def among(qiao):
+    return make_among(qiao)
+
+
+def test_obstacles_near_the_motion_are_drawn_and_far_ones_are_not(among):
+    drawn = draw_motion(among, [0, 20])
+    assert [obstacle.name for obstacle in drawn.obstacles] == ["post", "dust"]
+    assert drawn.touched == (frozenset(), frozenset())
+    box = drawn.robot.compute_box(np.eye(3))
+    corners = np.concatenate([*drawn.obstacles[0].solids[0].polygons_m, drawn.obstacles[1].solids[0].points_m])
+    assert (np.abs(corners - box.mean(axis=0)) < np.ptp(box, axis=0).max()).all()
+
+
+def test_the_moment_of_least_room_is_marked_where_it_is(qiao, among):
+    found, seen = draw_motion(among, [0]).nearest, [ikde.check(qiao, q, among.collision) for q in among.trajectory.q]
+    least = [next(row.clearance_m for row in one.obstacles if row.obstacle == "post") for one in seen]
+    assert (found.sample, found.obstacle) == (int(np.argmin(least)), "post")
+    assert found.clearance_m == pytest.approx(min(least))
+    assert found.kept_m == 0.0
+    gap = measure_obstacle(among.collision.world["post"], found.points_m)
+    np.testing.assert_allclose(gap[1], 0.0, atol=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(np.diff(found.points_m, axis=0)), gap[0], atol=1e-6)
+    assert found.component == next(row.component for row in seen[found.sample].obstacles if row.obstacle == "post")
+
+
+def test_that_moment_is_among_frames_and_views(among):
+    sample = among.closest_obstacle[0]
+    assert sample not in spread_samples(among, 4)
+    assert sorted({*spread_samples(among, 4).tolist(), sample}) == choose_frames(among, 4).tolist()
+    assert sample in choose_moments(among, 4)
+    assert len(choose_moments(among, 4)) == 4
+
+
+def test_margins_are_what_is_asked_for_there(qiao):
+    found = draw_motion(make_among(qiao, 0.02), [0]).nearest
+    assert found.kept_m == pytest.approx(0.02)
+    assert found.clearance_m == pytest.approx(draw_motion(make_among(qiao), [0]).nearest.clearance_m)
+
+
+def test_what_is_touched_is_known_by_frame(qiao):
+    motion = make_among(qiao, obstacles=TOUCHED)
+    touched = [bool(names) for names in motion.touched]
+    assert any(touched)
+    assert not all(touched)
+    drawn = draw_motion(motion, range(21))
+    assert [bool(names) for names in drawn.touched] == touched
+    assert set().union(*drawn.touched) == {"ball"}
+
+
+def test_of_many_obstacles_the_nearest_are_drawn(qiao):
+    balls = {f"b{k}": {"sphere": {"radius": 0.01}, "position": [0.1 * k - 20, 1.5, 1.0]} for k in range(300)}
+    motion = make_among(qiao, obstacles=balls)
+    chosen = [obstacle.name for obstacle in list_nearest(motion)]
+    gaps = motion.grade.gaps_m[:, len(motion.collision.pairs) :].reshape(21, -1, 300).min(axis=(0, 1))
+    assert len(chosen) == MAX_OBSTACLES
+    assert set(chosen) == {f"b{k}" for k in np.argsort(gaps)[:MAX_OBSTACLES]}
+    assert chosen == sorted(chosen, key=lambda name: int(name[1:]))
+
+
+def test_without_a_world_nothing_of_one_is_drawn(motion):
+    drawn = draw_motion(motion, [0, 5])
+    assert (drawn.obstacles, drawn.nearest) == ((), None)
+    assert choose_frames(motion, 3).tolist() == spread_samples(motion, 3).tolist()

@@ -8,6 +8,7 @@ import pytest
 from ikde.model.collision_model import CollisionModel
 from tests.random_robots import make_frame, make_robot, with_ranges
 from tests.track.measured import DT_S, make_measured, wave
+from tests.track.worlds import TOUCHED, make_among, measure_apart
 
 
 @pytest.fixture(scope="module")
@@ -140,3 +141,21 @@ def test_without_a_detector_nothing_is_said_of_collisions(qiao):
     motion = make_measured(qiao, detector="none")
     assert (motion.closest_pair, motion.certificate, motion.grade.violations.collision) == (None, None, None)
     assert not any(motion.colliding)
+
+
+def test_the_least_room_of_a_world_has_its_sample_and_place(qiao):
+    motion = make_among(qiao, obstacles={"ball": {"sphere": {"radius": 0.05}, "position": [0.74, -0.3, 0.96]}})
+    sample, place = motion.closest_obstacle
+    away = measure_apart(motion, "ball")
+    assert sample == int(np.argmin(away))
+    assert motion.collision.name_pair(place)[1] == "ball"
+    assert motion.grade.gaps_m[sample, place] == pytest.approx(away.min())
+    assert make_measured(qiao).closest_obstacle is None
+
+
+def test_what_is_touched_of_a_world_is_named_by_sample(qiao):
+    motion = make_among(qiao, obstacles=TOUCHED)
+    away = measure_apart(motion, "ball")
+    assert [names == {"ball"} for names in motion.touched] == (away <= 0.0).tolist()
+    assert 0 < sum(map(len, motion.touched)) < 21
+    assert all(touched <= names for touched, names in zip(motion.touched, motion.colliding, strict=True))

@@ -17,6 +17,7 @@ function boxOf(motion, flat) {
   motion.path_mm.forEach((p) => add(p, 20));
   motion.links_mm.flat().forEach((p) => add(p, 20));
   motion.centres_mm.forEach((row) => row.forEach((p, s) => add(p, motion.radii_mm[s])));
+  motion.obstacles.forEach((obstacle) => obstacle.solids.forEach((solid) => solid.corners.forEach((p) => add(p, 0))));
   return box;
 }
 // One scale for the flat views; those of a column share x, those of a row share z. The view in space has what is left.
@@ -62,9 +63,38 @@ function drawGround(c, view, soft) {
   for (let x = first(0); x <= high[0]; x += GRID_MM) stroke(c, [[x, low[1], 0], [x, high[1], 0]].map((p) => view.at(p)), soft, .6);
   for (let y = first(1); y <= high[1]; y += GRID_MM) stroke(c, [[low[0], y, 0], [high[0], y, 0]].map((p) => view.at(p)), soft, .6);
 }
-// Spheres and the links as capsules, far ones first.
+// Corners of the convex hull of points in a plane.
+function outline(points) {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const walk = (way) => {
+    const hull = [];
+    for (const p of way) {
+      while (hull.length > 1) {
+        const [a, b] = hull.slice(-2);
+        if ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0) break;
+        hull.pop();
+      }
+      hull.push(p);
+    }
+    return hull.slice(0, -1);
+  };
+  return [...walk(sorted), ...walk(sorted.reverse())];
+}
+const meanOf = (points) => points.reduce(sum).map((x) => x / points.length);
+// A convex solid: its outline, and the edges of the faces that are seen.
+function drawSolid(c, view, solid, color) {
+  const middle = meanOf(solid.corners), depth = view.depth(middle);
+  c.fillStyle = c.strokeStyle = color; c.lineWidth = .8;
+  const trace = (points, fill, edge) => {
+    c.beginPath(); points.forEach(([x, y], k) => (k ? c.lineTo(x, y) : c.moveTo(x, y))); c.closePath();
+    c.globalAlpha = fill; c.fill(); c.globalAlpha = edge; c.stroke();
+  };
+  trace(outline(solid.corners.map((p) => view.at(p))), solid.endless ? .08 : .2, solid.endless ? .15 : .6);
+  solid.faces.filter((face) => view.depth(meanOf(face)) > depth).forEach((face) => trace(face.map((p) => view.at(p)), .06, .45));
+}
+// Spheres, obstacles, and the links as capsules, far ones first.
 function drawBody(c, motion, view, frame, ink) {
-  const links = motion.links_mm[frame];
+  const links = motion.links_mm[frame], touched = new Set(motion.touched[frame]);
   const things = motion.centres_mm[frame].map((p, s) => ({depth: view.depth(p), draw() {
     const role = roleOf(motion, frame, motion.parts[s]);
     c.globalAlpha = role === "base" ? .3 : .55; dot(c, view.at(p), motion.radii_mm[s] * view.scale, role === "colliding" ? ink : motion.colors[role]);
@@ -73,7 +103,22 @@ function drawBody(c, motion, view, frame, ink) {
   links.slice(1).forEach((p, k) => things.push({depth: (view.depth(p) + view.depth(links[k])) / 2, draw() {
     c.globalAlpha = .9; stroke(c, [links[k], p].map((end) => view.at(end)), "#8b919b", Math.max(2, 2 * LINK_MM * view.scale));
   }}));
+  motion.obstacles.forEach((obstacle, k) => {
+    const color = motion.colors[touched.has(k) ? "obstacle that is too near" : "obstacle"];
+    obstacle.solids.forEach((solid) => things.push({depth: solid.endless ? -Infinity : view.depth(meanOf(solid.corners)),
+      draw() { drawSolid(c, view, solid, color); }}));
+    obstacle.points.forEach((p) => things.push({depth: view.depth(p), draw() {
+      const [x, y] = view.at(p); c.globalAlpha = .7; c.fillStyle = color; c.fillRect(x - .8, y - .8, 1.6, 1.6);
+    }}));
+  });
   things.sort((a, b) => a.depth - b.depth).forEach((thing) => thing.draw());
+}
+// Where there is the least room of a world: a ring, which is filled at that moment.
+function drawNearest(c, view, nearest, frame, color) {
+  const [from, to] = nearest.points.map((p) => view.at(p)), now = frame === nearest.frame;
+  c.globalAlpha = now ? 1 : .55;
+  if (now) stroke(c, [from, to], color, 2.5);
+  c.beginPath(); c.arc(...to, now ? 6 : 4, 0, 7); c.strokeStyle = color; c.lineWidth = now ? 2.5 : 1.5; c.stroke();
 }
 function drawView(c, motion, view, frame, ink, soft) {
   c.globalAlpha = 1; c.fillStyle = soft;
@@ -85,6 +130,7 @@ function drawView(c, motion, view, frame, ink, soft) {
   drawBody(c, motion, view, frame, ink);
   c.globalAlpha = 1; stroke(c, path.slice(0, motion.done[frame]), motion.colors.target, 2.2);
   dot(c, view.at(motion.links_mm[frame].at(-1)), 3.5, motion.colors.target);
+  if (motion.nearest) drawNearest(c, view, motion.nearest, frame, motion.colors["closest pair"]);
   if (path.length === 1) { c.beginPath(); c.arc(...path[0], 7, 0, 7); c.strokeStyle = motion.colors.target; c.lineWidth = 2.5; c.stroke(); }
 }
 // Lines that mark the moment in charts over time; a drag in such a chart moves all to another.
@@ -117,9 +163,11 @@ function setUpChart(svg) {
 }
 function setUp(figure) {
   const motion = JSON.parse(figure.dataset.motion);
-  const [canvas, button, slider, speed, clock] = ["canvas", "button", "input", "select", "output"].map((name) => figure.querySelector(name));
+  const [canvas, button, slider, speed, clock] = ["canvas", "button.play", "input", "select", "output"].map((name) => figure.querySelector(name));
   const last = motion.times_s.length - 1, home = [-.9, .4];
   let layout, playing = 0, fitted = 0, eye = [...home];
+  const least = figure.querySelector("button.least"), nearest = motion.nearest;
+  least.hidden = !nearest || nearest.frame < 0 || !last;
   slider.max = last; figure.querySelector(".player").hidden = !last;
   SPEEDS.forEach((times) => speed.add(new Option(`${times}×`, times, times === 1, times === 1)));
   const draw = () => {
@@ -131,7 +179,7 @@ function setUp(figure) {
     c.clearRect(0, 0, canvas.width, canvas.height);
     c.font = "12px system-ui, sans-serif"; c.lineJoin = c.lineCap = "round";
     [...layout.views, turned(layout.space, eye)].forEach((view) => drawView(c, motion, view, frame, ink, soft));
-    clock.textContent = `${motion.times_s[frame].toFixed(2)} of ${motion.duration_s.toFixed(2)} s${names.length ? ": " + names.join(", ") + " collide" : ""}`;
+    clock.textContent = `${motion.times_s[frame].toFixed(2)} of ${motion.duration_s.toFixed(2)} s${names.length ? ": " + names.join(", ") + " collide" : ""}${nearest && frame === nearest.frame ? "\n" + nearest.text : ""}`;
     slider.ariaValueText = clock.textContent;
   };
   const fit = () => {
@@ -164,6 +212,7 @@ function setUp(figure) {
   };
   const orbit = (across, up) => { eye = [eye[0] - across, Math.min(1.57, Math.max(-.2, eye[1] + up))]; draw(); };
   button.onclick = () => (playing ? stop() : play());
+  least.onclick = () => { stop(); showMoment(motion.times_s[nearest.frame]); };
   slider.oninput = () => { stop(); showMoment(motion.times_s[Number(slider.value)]); };
   canvas.onpointerdown = (event) => {
     if (event.offsetX > layout.space.left && event.offsetY > layout.space.top - LABEL) canvas.setPointerCapture(event.pointerId);
