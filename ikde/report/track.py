@@ -87,7 +87,7 @@ def _verdict(plan: TrackPlan, motion: TrackSummary) -> str:
     trajectory, graded = motion.trajectory, motion.grade
     of = f"of {trajectory.path.samples} points of {plain(plan.name)} by {plain(motion.robot.name)}"
     if trajectory.stop is not None:
-        return f"[bold red]stopped after {trajectory.reached_points} {of}[/]\n{plain(trajectory.stop.text)}"
+        return f"[bold red]stopped after {trajectory.reached_points} {of}[/]\n{plain(trajectory.stop.line)}"
     of = f"{motion.met_points} {of}"
     if not graded.accepted:
         counts = asdict(graded.violations).items()

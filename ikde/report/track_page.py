@@ -139,7 +139,7 @@ def _warn(motion: TrackSummary) -> list[Block]:
         return []
     below = "Everything below is about what was followed." if motion.started else "Nothing was followed."
     below = f"{motion.met_points} points reached. {below}"
-    return [Notice(f"**The path was not followed to its end**: {verbatim(stop.text)}. {below}")]
+    return [Notice(f"**The path was not followed to its end**: {verbatim(stop.line)}. {below}")]
 
 
 def _headline(motion: TrackSummary) -> list[Block]:

@@ -9,6 +9,7 @@ import numpy as np
 from ikde.kernels.arrays import EVALUATIONS, Floats
 from ikde.model.base_motion import base_joints
 from ikde.model.closed_form import find_still_arm
+from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import MAX_MAGNITUDE
 from ikde.model.target import Target, Targets
 from ikde.solver.branches import judge_branches
@@ -79,7 +80,7 @@ def _try_branches(problem: Problem, target: Target, blockers: Iterable[str]) -> 
         if len(without) and meets(problem.without_obstacle(name), target, without[0]):
             yield _tell_without(name)
             break
-    if len(q) and (most_m := _largest_margin(problem)) > 0.0:
+    if len(q) and (most_m := find_largest_margin(problem.collision)) > 0.0:
         need_m = -of_world.min(axis=-1)
         less_m = _round_up(float(need_m.min()), most_m)
         if meets(_lower_margins(problem, less_m), target, q[need_m.argmin()]):
@@ -109,7 +110,7 @@ def _try_removing(problem: Problem, tries: Tries, blockers: Iterable[str]) -> st
 
 def _try_less_margin(problem: Problem, tries: Tries) -> str | None:
     """By how much less margin a short search finds a solution: the least that was found."""
-    most_m = _largest_margin(problem)
+    most_m = find_largest_margin(problem.collision)
     q = None if tries.is_spent or most_m == 0.0 else tries.find(_lower_margins(problem, most_m))
     if q is None:
         return None
@@ -124,21 +125,25 @@ def _try_less_margin(problem: Problem, tries: Tries) -> str | None:
     return _tell_less(_round_up(less_m, most_m))
 
 
-def _largest_margin(problem: Problem) -> float:
+def find_largest_margin(model: CollisionModel) -> float:
     """The largest of what the caller keeps from obstacles, m; else of their own."""
-    model = problem.collision
     kept = max([model.margin_m, *(margin_m for _, margin_m in model.margins_m)])
     return kept or max(obstacle.margin_m for obstacle in model.obstacles)
 
 
-def _lower_margins(problem: Problem, less_m: float) -> Problem:
-    """The same question with all margins of the caller lower, if there are any; else with those of obstacles."""
-    model, world = problem.collision, problem.collision.world
+def lower_margins(model: CollisionModel, less_m: float) -> CollisionModel:
+    """The same among obstacles with all margins of the caller lower, if there are any; else with those of obstacles."""
+    world = model.world
     own = {name: max(margin_m - less_m, 0.0) for name, margin_m in model.margins_m}
     if not (model.margin_m or any(margin_m for _, margin_m in model.margins_m)):
         lower = tuple(replace(one, margin_m=max(one.margin_m - less_m, 0.0)) for one in world.obstacles)
         world = replace(world, obstacles=lower)
-    return replace(problem, collision=model.own.in_world(world, max(model.margin_m - less_m, 0.0), own))
+    return model.own.in_world(world, max(model.margin_m - less_m, 0.0), own)
+
+
+def _lower_margins(problem: Problem, less_m: float) -> Problem:
+    """The same question with lower margins."""
+    return replace(problem, collision=lower_margins(problem.collision, less_m))
 
 
 def _measure_need(problem: Problem, q: Floats) -> float:

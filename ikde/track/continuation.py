@@ -20,6 +20,7 @@ from ikde.track.diagnosis import (
     tell_uncertified,
 )
 from ikde.track.follower import Follower, Rollout
+from ikde.track.remedies import advise
 from ikde.track.rollouts import choose_rollout
 from ikde.track.settings import ContinuationSettings
 from ikde.track.starts import MORE_DRAWS, draw_starts, settle_start
@@ -76,12 +77,14 @@ class Continuation:
             found = self._from_any_start(end)
         else:
             found = self._certified(settle_start(self.follower.plan, start)[None], end)
-        if found.stop or found.last == self.follower.path.samples:
+        if found.stop:
+            return replace(found, stop=advise(found, found.stop, end))
+        if found.last == self.follower.path.samples:
             return found
         if found.last == end and beyond is not None:
             return replace(found, stop=tell_out_of_reach(self.follower, *beyond))
         static = self._solve(found.last + 1) if self.follower.plan.limits.ranges else None
-        return replace(found, stop=explain_stop(found, static))
+        return replace(found, stop=advise(found, explain_stop(found, static), end))
 
     def _from_any_start(self, end: int) -> Rollout:
         """The best rollout from starts of its own; from more of them if none of the first leads to the end."""

@@ -55,9 +55,8 @@ def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackSt
         reason = TrackStopReason.BUDGET
         off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
         text = f"no configuration was found in {result.attempts} attempts; the best is off by {off}"
-    if result.stop_reason == StopReason.WORLD and result.hint:
-        text = f"{text}; {result.hint}"
-    return TrackStop(sample=sample, reason=reason, text=f"{tell_when(follower, sample)}: {text}", pair=pair)
+    hint = result.hint if result.stop_reason == StopReason.WORLD else None
+    return TrackStop(sample=sample, reason=reason, text=f"{tell_when(follower, sample)}: {text}", pair=pair, hint=hint)
 
 
 def tell_too_far(follower: Follower, sample: int = 0, where: str = "every start") -> TrackStop:

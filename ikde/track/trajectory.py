@@ -44,9 +44,16 @@ class TrackStop:
     text: str
     """One line: what happened."""
     pair: tuple[str, str] | None = None
-    """The components in the way."""
+    """The components in the way, or a component and an obstacle."""
     limit: str | None = None
     """Whose limit is in the way: a joint by name, `the base`, `wheels`, or the frame of a largest distance."""
+    hint: str | None = None
+    """What was tried among obstacles and helped; None where nothing was tried, or nothing helped."""
+
+    @property
+    def line(self) -> str:
+        """What happened, and what would help, in one line."""
+        return f"{self.text}; {self.hint}" if self.hint else self.text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

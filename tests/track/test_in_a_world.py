@@ -7,22 +7,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.track.certify import certify
 from ikde.track.certify_world import compute_room
-
-SAMPLES = 20
-Y = np.linspace(0.0, 0.2, SAMPLES + 1)
-SHELF = {
-    "board": {"box": [0.6, 2.0, 0.03], "position": [1.0, 0.2, 0.8]},
-    "top": {"box": [0.6, 2.0, 0.03], "position": [1.0, 0.2, 1.15]},
-    "back": {"box": [0.03, 2.0, 2.0], "position": [1.35, 0.2, 1.0]},
-}
-
-
-def make_path():
-    return ikde.ToolPath.through(np.column_stack([np.full_like(Y, 0.9), Y, np.full_like(Y, 0.9)]), dt_s=0.02)
-
-
-def place(obstacles, margin_m=0.0, **margins_m):
-    return ikde.CollisionModel.of("qiao2021").in_world(ikde.load_world({"obstacles": obstacles}), margin_m, margins_m)
+from tests.track.shelf import SHELF, make_path, place
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +39,7 @@ def test_an_obstacle_on_the_path_is_named_with_its_sample(alone):
     assert motion.stop.reason == "collision"
     assert motion.stop.pair[1] == "ball"
     assert motion.stop.sample == motion.reached_points + 1
-    assert "ball" in motion.stop.text
+    assert "ball" in motion.stop.line
     assert motion.certificate.is_free  # what was followed
 
 
@@ -62,7 +47,7 @@ def test_a_first_pose_in_an_obstacle_is_refused_with_what_would_help():
     ball = place({"ball": {"sphere": {"radius": 0.1}, "position": [0.9, 0.0, 0.9]}})
     motion = ikde.follow_path("qiao2021", make_path(), collision=ball)
     assert (motion.stop.sample, len(motion.q)) == (0, 0)
-    assert "ball" in motion.stop.text
+    assert "ball" in motion.stop.line
 
 
 def test_verdicts_on_a_given_motion(alone):
