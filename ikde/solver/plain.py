@@ -10,10 +10,12 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import WORLD, FreeSpheres, Pairs, Robot, SphereRow
+from ikde.solver.plain_cloud import find_cloud_gaps
 from ikde.solver.plain_world import Alike, list_alike
 
 
@@ -180,6 +182,11 @@ def _compute_world_gaps(collision: CollisionModel, q: Floats, components: Mappin
     firsts = np.cumsum([0, *(len(own) for _, own in components.values())])[:-1]
     P, nearest = centres.reshape(-1, 3), np.full((count, centres.size // (3 * len(radii)), len(components)), np.inf)
     for group in groups:
+        if group.solid is not None and group.solid.kind == "cloud":
+            for place, owner in enumerate(group.owners):
+                gaps = _measure_cloud(group, place, P, radii, firsts, less_m[:, owner] > -np.inf)
+                nearest[owner] = np.minimum(nearest[owner], gaps)
+            continue
         for owners, distances in group.measure(P):
             gaps = distances.reshape(len(owners), -1, len(radii)) - radii
             gaps = np.minimum.reduceat(gaps, firsts, axis=-1)
@@ -187,6 +194,22 @@ def _compute_world_gaps(collision: CollisionModel, q: Floats, components: Mappin
             each, gaps = owners[starts], np.minimum.reduceat(gaps, starts, axis=0)
             nearest[each] = np.minimum(nearest[each], gaps)
     return (nearest.transpose(1, 2, 0) - less_m).reshape(*several, len(components) * count)
+
+
+def _measure_cloud(
+    group: Alike, place: int, P: Floats, radii: Floats, firsts: Ints, compared: NDArray[np.bool_]
+) -> Floats:
+    """Gaps of components [K, C] to a cloud, of spheres at `P` [K S, 3] in the world, m; inf of those not compared."""
+    counts, configurations = np.diff(np.append(firsts, len(radii))), len(P) // len(radii)
+    component = np.repeat(np.arange(len(firsts)), counts)
+    groups = (np.arange(configurations)[:, None] * len(firsts) + component).ravel()
+    wanted = np.tile(compared[component], configurations)
+    own = ((P - group.p[place]) @ group.R[place])[wanted]
+    less = np.tile(radii, configurations)[wanted] + group.sizes[place, 0, 0]
+    assert group.solid is not None
+    assert group.solid.points is not None
+    gaps = find_cloud_gaps(group.solid.points, own, less, groups[wanted], configurations * len(firsts))
+    return gaps.reshape(configurations, len(firsts))
 
 
 @lru_cache(maxsize=64)
