@@ -2,7 +2,7 @@
 
 Exact, and nothing is shared with the cells of the kernels (`model/pack_world.py`, `kernels/world_grades.py`). Of each
 group of spheres only the smallest gap is asked for. A box is left out if all of it is farther than a point that is
-known; of each box one point is looked at before the boxes inside it are.
+known; of each box one point is measured before the boxes inside it are.
 """
 
 import weakref
