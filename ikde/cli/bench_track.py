@@ -1,14 +1,16 @@
 """`ikde bench track`: ways to follow the same tool paths side by side, as one page."""
 
 import gc
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import JsonOption, note_unchecked, read_choices, repeat_command
+from ikde.cli.options import JsonOption, LengthUnit, note_unchecked, read_choices, repeat_command
 from ikde.cli.output import print_json, print_written
 from ikde.cli.progress import show_benchmark
+from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 
 if TYPE_CHECKING:
     from ikde.track.spec import TrackMethod
@@ -27,10 +29,15 @@ def bench_track(
     drive: Annotated[
         str | None, typer.Option(help="differential or omnidirectional, instead of what the files say.")
     ] = None,
+    world: WorldOption = None,
+    margin: MarginOption = None,
+    unit: Annotated[LengthUnit, typer.Option("--unit", help="Unit of lengths in --margin.")] = LengthUnit.m,
     quick: Annotated[bool, typer.Option("--quick", help="2 seeds and 5 starts instead of 10 and 100.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Follow tool paths by the paper's methods and ikde's, and show them beside one another.
+    """Follow tool paths by the paper's methods and ikde's, and show them beside one another, perhaps in a world.
+
+    `typical` goes on whatever it hits, `optimized` is free at samples: what each breaks is counted.
 
     Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
     """
@@ -44,15 +51,21 @@ def bench_track(
     gc.enable()
     wanted, budget = read_choices(methods, METHODS, "--methods"), QUICK if quick else FULL
     chosen: list[TrackMethod] = [method for method in METHODS if method in wanted]
-    given = {"methods": methods, "drive": drive, "quick": quick or None}
+    in_metres = unit if unit != LengthUnit.m else None
+    given = {"methods": methods, "drive": drive, "world": world, "margin": margin, "unit": in_metres}
     plans = [load_track(path).with_changes(drive=drive) for path in tracks]  # type: ignore[arg-type]
+    placed = (place_in_world(plan.collision, world, margin, unit) for plan in plans)
+    files = {"world_file": str(world)} if world is not None else {}
+    plans = [replace(plan, collision=collision, **files) for plan, collision in zip(plans, placed, strict=True)]
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
         with note_compile(lambda: name_work("tracks", *(plan.collision for plan in plans)), "a minute or two"):
             compared = [compare_methods(plan, chosen, budget, progress) for plan in plans]
         progress.begin("page")
-        page = make_comparison_page(compared, budget, repeat_command(["bench", "track", *map(str, tracks)], given))
+        page = make_comparison_page(
+            compared, budget, repeat_command(["bench", "track", *map(str, tracks)], {**given, "quick": quick or None})
+        )
         data = compare_json(compared, budget)
         files = write_report(out, {RESULTS: format_results(data), "report.html": render_html(page)})
     if as_json:

@@ -11,7 +11,7 @@ from ikde import __version__
 from ikde.report.numbers import count_of, significant
 from ikde.report.page import Animation, Block, Cell, Code, Column, Figure, Gallery, Page, Section, Table, Text
 from ikde.report.track import MM, gap_mm, singular
-from ikde.report.track_page import BASE, ERRORS, JOINTS, MARGINS, PATH, SPEEDS, animate, draw, draw_moments
+from ikde.report.track_page import BASE, ERRORS, JOINTS, MARGINS, PATH, SPEEDS, animate, draw, draw_moments, tell_world
 from ikde.track.comparison import Compared, TrackBudget
 from ikde.track.summary import TrackSummary
 
@@ -154,6 +154,8 @@ def make_ends_table(compared: Sequence[Compared]) -> Table:
 def _make_task(one: Compared) -> Section:
     blocks: list[Block] = [_make_stops(one)] if any(m.trajectory.stop for m in one.motions.values()) else []
     shown = {method: motion for method, motion in one.motions.items() if motion.started}
+    if shown and (told := tell_world(next(iter(shown.values())))):
+        blocks.append(Text(told))
     blocks.append(_beside(shown, lambda motion, prefix: animate(motion, FRAMES, prefix)))
     blocks.append(_beside(shown, lambda motion, prefix: draw_moments(motion, prefix, DPI)))
     for title, drawings in DRAWINGS:
@@ -174,5 +176,5 @@ def _beside(
 
 def _make_stops(one: Compared) -> Block:
     stops = [(name, motion.trajectory.stop) for name, motion in one.motions.items()]
-    lines = [f"- **{NAMES[name]}** stops: {stop.text}" for name, stop in stops if stop is not None]
+    lines = [f"- **{NAMES[name]}** stops: {stop.line}" for name, stop in stops if stop is not None]
     return Text("\n".join(lines))

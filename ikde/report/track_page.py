@@ -21,7 +21,7 @@ from ikde.plot.motion import (
     plot_path,
 )
 from ikde.report.markup import code, verbatim
-from ikde.report.numbers import length, seconds
+from ikde.report.numbers import count_of, length, seconds
 from ikde.report.page import (
     Animation,
     Block,
@@ -267,6 +267,13 @@ def _make_measured(motion: TrackSummary) -> Table:
     return Table(columns=columns, rows=tuple(list_figures(motion)), caption=caption)
 
 
+def tell_world(motion: TrackSummary) -> str:
+    """The world, what is kept from it, and how it is drawn, in words; nothing without one."""
+    facts = _list_world(motion)
+    kept = ", ".join(f"{name} of {value}" for name, value in facts)
+    return f"In a {kept}.{tell_obstacles(motion)}" if facts else ""
+
+
 def _list_world(motion: TrackSummary) -> list[tuple[str, str]]:
     """The world and what is kept from it, if there is one."""
     collision = motion.collision
@@ -274,7 +281,7 @@ def _list_world(motion: TrackSummary) -> list[tuple[str, str]]:
         return []
     margins = [f"{1e3 * collision.margin_m:.6g} mm"]
     margins += [f"{name} {1e3 * margin_m:.6g} mm" for name, margin_m in collision.margins_m]
-    digest = f"{len(collision.obstacles):,} obstacles, digest {code(collision.world.digest[:12])}"
+    digest = f"{count_of(len(collision.obstacles), 'obstacle')}, digest {code(collision.world.digest[:12])}"
     return [("world", digest), ("margin", verbatim(", ".join(margins)))]
 
 

@@ -78,7 +78,7 @@ def bound_all(collision: CollisionModel, q: Floats, drive: str) -> Floats:
     if not collision.obstacles:
         return own
     world = bound_world(collision, q, drive)
-    return np.concatenate([own, world.reshape(len(own), -1)], axis=1)
+    return np.concatenate([own, world.reshape(len(own), int(np.prod(world.shape[1:])))], axis=1)
 
 
 def bound_segments(collision: CollisionModel, q: Floats) -> Floats:

@@ -83,7 +83,17 @@ def compare_methods(
     progress.begin(f"{plan.name}: random starts")
     ends = count_dead_ends(plan, [method for method in methods if method in STARTED_ANYWHERE], budget.starts, progress)
     about = {"name": plan.name, "file": plan.file, "points": plan.path.samples, "dt_s": plan.path.dt_s}
+    about["world"] = _name_world(plan)
     return Compared(plan=plan, motions=motions, data={**about, "runs": runs, "dead_ends": ends})
+
+
+def _name_world(plan: TrackPlan) -> dict[str, Any] | None:
+    """The world by its file and digest, and what is kept from it, m; None without one."""
+    model = plan.collision
+    if not model.obstacles:
+        return None
+    kept = {"margin_m": model.margin_m, "margins_m": dict(model.margins_m)}
+    return {"file": plan.world_file, "digest": model.world.digest, **kept}
 
 
 def find_start(plan: TrackPlan) -> Floats | None:

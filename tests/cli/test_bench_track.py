@@ -68,3 +68,22 @@ def test_a_drive_without_wheels_has_no_limit_of_theirs(refuse, spec):
     spec.write_text(SPEC + "limits: {wheel_speed: 5}\n")
     words = refuse("bench", "track", spec, "--drive", "omnidirectional")
     assert "drive: an omnidirectional drive has no wheels, but short limits their speed" in words
+
+
+def test_methods_are_compared_in_a_world(cli, spec, tmp_path, monkeypatch):
+    monkeypatch.setattr(tracks, "QUICK", tracks.TrackBudget(seeds=1, starts=1))
+    world, out = tmp_path / "world.yaml", tmp_path / "page"
+    world.write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [0.9, 0.2, 1.3]}}")
+    told = ("--quick", "--methods", "continuation", "--world", world, "--margin", "5", "--unit", "mm")
+    outcome = cli("bench", "track", spec, *told, "--out", out)
+    assert outcome.code == 0, outcome
+    (track,) = json.loads((out / "results.json").read_text(encoding="utf-8"))["tracks"]
+    kept = track["world"]
+    assert (kept["file"], kept["margin_m"], len(kept["digest"])) == (str(world), 0.005, 64)
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert f"In a world of 1 obstacle, digest <code>{kept['digest'][:12]}</code>, margin of 5 mm." in page
+    assert f"--world {world} --margin 5 --unit mm --quick --out FOLDER" in page
+
+
+def test_a_margin_without_a_world_is_refused(refuse, spec):
+    assert "a margin needs a --world" in refuse("bench", "track", spec, "--margin", "1")

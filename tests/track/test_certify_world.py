@@ -8,7 +8,7 @@ import pytest
 import ikde
 from ikde.model.base_motion import find_wheels, step_base
 from ikde.model.collision_model import CollisionModel
-from ikde.track.certify import certify, list_kept_m
+from ikde.track.certify import bound_all, certify, list_kept_m
 from ikde.track.certify_world import bound_world, compute_room, find_middle, measure_steps, reach_radii
 
 DENSE = 100
@@ -133,3 +133,11 @@ def test_what_is_ignored_does_not_count(qiao, rng):
     floor = {"half_space": {}, "position": [0, 0, 3], "ignore": names}
     model = CollisionModel.of(qiao).in_world(ikde.load_world({"obstacles": {"floor": floor}}))
     assert (bound_world(model, drive(qiao, rng, 2, 0.1, True), "differential") == np.inf).all()
+
+
+@pytest.mark.parametrize("samples", [0, 1])
+def test_without_a_segment_there_is_nothing_to_bound(qiao, samples):
+    ball = {"sphere": {"radius": 0.1}, "position": [3, 0, 1]}
+    model = CollisionModel.of(qiao).in_world(ikde.load_world({"obstacles": {"ball": ball}}))
+    q = np.tile(qiao.home, (samples, 1))
+    assert bound_all(model, q, "differential").shape == (0, len(model.all_pairs))
