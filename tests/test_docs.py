@@ -19,6 +19,7 @@ LEAST = {
     "dt_s": 0.02,
     "path": {"waypoints": [{"position": [1, 0, 0.9]}, {"position": [1, 0.1, 0.9]}]},
 }
+HALL = "obstacles: {cart: {box: [0.3, 0.5, 0.2]}, wall: {box: [0.1, 9, 2], position: [5, 0, 1]}}"
 WELD = "x,y,z,qw,qx,qy,qz\n900,0,900,0,1,0,0\n900,100,900,0,1,0,0\n900,200,1000,0,1,0,0\n"
 
 
@@ -45,6 +46,7 @@ def load_track(text, folder):
     file = folder / "example.yaml"
     file.write_text(text + (yaml.safe_dump(missing) if missing else ""), encoding="utf-8")
     (folder / "weld.csv").write_text(WELD, encoding="utf-8")
+    (folder / "hall.yaml").write_text(HALL, encoding="utf-8")
     return ikde.load_track(file)
 
 

@@ -25,7 +25,8 @@ def make_animation(motion: DrawnMotion) -> dict[str, Any]:
     """
     robot, path = motion.robot, motion.path_m
     shown = np.unique(np.linspace(0, len(path) - 1, min(len(path), MAX_PATH_POINTS)).round().astype(int))
-    names = [obstacle.name for obstacle in motion.obstacles]
+    listed = [(obstacle, None) for obstacle in motion.obstacles] + [*motion.moved]
+    names = [obstacle.name for obstacle, _ in listed]
     return {
         "times_s": motion.times_s.round(4).tolist(),
         "duration_s": round(motion.duration_s, 4),
@@ -38,14 +39,17 @@ def make_animation(motion: DrawnMotion) -> dict[str, Any]:
         "components": list(robot.components),
         "roles": [[list(COLORS).index(role) for role in roles] for roles in robot.roles],
         "colors": dict(COLORS),
-        "obstacles": [_list_solids(obstacle) for obstacle in motion.obstacles],
+        "obstacles": [_list_solids(obstacle, poses) for obstacle, poses in listed],
         "touched": [[k for k, name in enumerate(names) if name in touched] for touched in motion.touched],
         "nearest": _find_nearest(motion),
     }
 
 
-def _list_solids(obstacle: DrawnObstacle) -> dict[str, Any]:
-    """An obstacle by its name, its convex solids by corners and the faces whose edges are drawn, clouds by points."""
+def _list_solids(obstacle: DrawnObstacle, poses: Floats | None) -> dict[str, Any]:
+    """An obstacle by its name, its convex solids by corners and the faces whose edges are drawn, clouds by points.
+
+    Of what moves these are in its own frame, and `poses` [F, 12] are rotations row by row and places in mm, else null.
+    """
     solids, points = [], [np.empty((0, 3))]
     for solid in obstacle.solids:
         if solid.polygons_m:
@@ -56,7 +60,11 @@ def _list_solids(obstacle: DrawnObstacle) -> dict[str, Any]:
             points.append(solid.points_m)
     cloud = np.concatenate(points)
     thinned = cloud[:: max(1, -(-len(cloud) // MAX_POINTS))]
-    return {"name": obstacle.name, "solids": solids, "points": _to_whole_mm(thinned)}
+    known = {"name": obstacle.name, "solids": solids, "points": _to_whole_mm(thinned)}
+    if poses is None:
+        return {**known, "poses": None}
+    rows = np.concatenate([poses[:, :, :3].reshape(-1, 9), 1e3 * poses[:, :, 3]], axis=1)
+    return {**known, "poses": rows.round(4).tolist()}
 
 
 def list_edged(solid: DrawnSolid) -> list[Floats]:

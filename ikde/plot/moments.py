@@ -71,7 +71,8 @@ def _list_directions() -> Floats:
 
 def _find_window(motion: DrawnMotion, view: Floats) -> Floats:
     """Lower and upper corner [2, 2] of what all views show."""
-    solids = [solid for obstacle in motion.obstacles for solid in obstacle.solids]
+    frames = [motion.list_obstacles(frame) for frame in range(len(motion.samples) if motion.moved else 1)]
+    solids = [solid for obstacles in frames for obstacle in obstacles for solid in obstacle.solids]
     ends = [P @ view[:2].T for solid in solids for P in solid.polygons_m]
     points = np.concatenate([motion.path_m @ view[:2].T, motion.robot.compute_box(view[:2]), *ends])
     return np.array([points.min(axis=0) - MARGIN_M, points.max(axis=0) + MARGIN_M])
@@ -106,7 +107,7 @@ def _draw_robot(axes: Any, motion: DrawnMotion, frame: int, view: Floats) -> Non
         look = {"facecolor": COLORS[roles[sphere]], "edgecolor": "white", "linewidth": 0.35, "alpha": 0.62}
         axes.add_patch(Circle(centres[sphere, :2], float(robot.radii_m[sphere]), zorder=2 + rank, **look))
     depths = np.sort(centres[:, 2])
-    for obstacle in motion.obstacles:
+    for obstacle in motion.list_obstacles(frame):
         color = COLORS[Role.TOUCHED if obstacle.name in motion.touched[frame] else Role.OBSTACLE]
         for solid in obstacle.solids:
             _draw_solid(axes, solid, view, color, depths)

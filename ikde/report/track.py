@@ -212,7 +212,8 @@ def _world_json(motion: TrackSummary, file: str | None) -> dict[str, Any]:
         return {}
     room_m = None if proof is None else float(proof.room_m.min())
     margins = {"margin_m": collision.margin_m, "margins_m": dict(collision.margins_m)}
-    return {"world": {"file": file, "digest": collision.world.digest, **margins, "certified_room_m": room_m}}
+    known = {"file": file, "digest": collision.world.digest, "moving": sorted(motion.trajectory.moving)}
+    return {"world": {**known, **margins, "certified_room_m": room_m}}
 
 
 def _is_prismatic(motion: TrackSummary, name: str) -> bool:

@@ -182,8 +182,9 @@ def tell_obstacles(motion: TrackSummary) -> str:
     if not count:
         return ""
     shown = f"The {MAX_OBSTACLES} nearest of {count:,} obstacles are" if count > MAX_OBSTACLES else "Obstacles are"
+    moved = "; those that move are drawn where they are at each moment" * bool(motion.trajectory.moving)
     ring = "; the green ring is where there is the least room" if motion.closest_obstacle is not None else ""
-    return f" {shown} grey, violet where anything is too near{ring}."
+    return f" {shown} grey, violet where anything is too near{moved}{ring}."
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:
@@ -282,7 +283,8 @@ def _list_world(motion: TrackSummary) -> list[tuple[str, str]]:
     margins = [f"{1e3 * collision.margin_m:.6g} mm"]
     margins += [f"{name} {1e3 * margin_m:.6g} mm" for name, margin_m in collision.margins_m]
     digest = f"{count_of(len(collision.obstacles), 'obstacle')}, digest {code(collision.world.digest[:12])}"
-    return [("world", digest), ("margin", verbatim(", ".join(margins)))]
+    moving = verbatim(", ".join(sorted(motion.trajectory.moving)))
+    return [("world", digest), ("margin", verbatim(", ".join(margins))), *([("what moves", moving)] if moving else [])]
 
 
 def _make_recipe(motion: TrackSummary, command: str) -> Section:

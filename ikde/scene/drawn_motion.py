@@ -1,17 +1,18 @@
 """A motion as plain data to draw: the robot at some of its samples, and the path; lengths in m, world frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
+from ikde.model.solids import IDENTITY
 from ikde.model.world import Obstacle, World
 from ikde.scene.drawn_near import draw_near, reach_obstacle
 from ikde.scene.drawn_pose import DrawnRobot, Role, draw_robot
-from ikde.scene.drawn_world import DrawnObstacle
+from ikde.scene.drawn_world import DrawnObstacle, draw_solid
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.track.summary import TrackSummary
 
@@ -52,10 +53,16 @@ class DrawnMotion:
     """[F], the smallest there is; inf where nothing is compared."""
     obstacles: tuple[DrawnObstacle, ...] = ()
     """What of a world is near, if the motion is in one."""
+    moved: tuple[tuple[DrawnObstacle, Floats], ...] = ()
+    """What moves, drawn in a frame of its own, and its poses [F, 3, 4]."""
     touched: tuple[frozenset[str], ...] = ()
     """[F] names of obstacles that are too near."""
     nearest: Nearest | None = None
     """In a world, where there is the least room of all samples, drawn or not."""
+
+    def list_obstacles(self, frame: int) -> tuple[DrawnObstacle, ...]:
+        """All that is drawn of a world in a frame, what moves where it is then."""
+        return (*self.obstacles, *(obstacle.place(poses[frame]) for obstacle, poses in self.moved))
 
     def list_colliding(self, frame: int) -> list[str]:
         """Names of the components that collide in frame 0 .. F - 1, sorted."""
@@ -77,6 +84,7 @@ def draw_motion(motion: TrackSummary, samples: Sequence[int] | NDArray[np.intp])
         path_m=trajectory.path.p_world_tool,
         clearances_m=motion.grade.clearances_m[chosen] if is_checked else np.full(len(chosen), np.inf),
         obstacles=_draw_obstacles(motion),
+        moved=_draw_moving(motion, chosen),
         touched=tuple(frozenset(motion.touched[sample]) for sample in chosen),
         nearest=_find_nearest(motion),
     )
@@ -102,7 +110,19 @@ def _draw_obstacles(motion: TrackSummary) -> tuple[DrawnObstacle, ...]:
     points = np.concatenate([shown, trajectory.path.p_world_tool])
     box_m = np.array([points.min(axis=0), points.max(axis=0)])
     still = compute_frames(collision.robot, trajectory.q[0])
-    return draw_near(World(obstacles=list_nearest(motion)), still, box_m, set(), AROUND)
+    standing = (obstacle for obstacle in list_nearest(motion) if obstacle.name not in trajectory.moving)
+    return draw_near(World(obstacles=tuple(standing)), still, box_m, set(), AROUND)
+
+
+def _draw_moving(motion: TrackSummary, samples: NDArray[np.intp]) -> tuple[tuple[DrawnObstacle, Floats], ...]:
+    """What moves, and where it is at some samples."""
+    drawn, trajectory = [], motion.trajectory
+    for name, moves in trajectory.moving.items():
+        solids = tuple(draw_solid(solid, IDENTITY, np.zeros((2, 3))) for solid in motion.collision.world[name].solids)
+        R, p = moves.place(trajectory.times_s[samples])
+        poses = np.concatenate([R, p[:, :, None]], axis=2)
+        drawn.append((DrawnObstacle(name=name, solids=solids, is_on=True), poses))
+    return tuple(drawn)
 
 
 def _find_nearest(motion: TrackSummary) -> Nearest | None:
@@ -112,14 +132,17 @@ def _find_nearest(motion: TrackSummary) -> Nearest | None:
     collision, (sample, place) = motion.collision, motion.closest_obstacle
     q, (name, of_world) = motion.trajectory.q[sample], collision.name_pair(place)
     gaps_m, extra_m = motion.grade.gaps_m[sample], collision.extra_m(place)
-    spheres = draw_robot(collision, q, gaps_m).list_spheres(name)
+    spheres, obstacle = draw_robot(collision, q, gaps_m).list_spheres(name), collision.world[of_world]
+    if of_world in motion.trajectory.moving:
+        R, p = motion.trajectory.moving[of_world].place(motion.trajectory.times_s[[sample]])
+        obstacle = replace(obstacle, T_world_obstacle=np.column_stack([R[0], p[0]]))
     return Nearest(
         sample=sample,
         component=name,
         obstacle=of_world,
         clearance_m=float(gaps_m[place]) + extra_m,
         kept_m=collision.limit_m + extra_m,
-        points_m=reach_obstacle(collision.world[of_world], spheres, compute_frames(collision.robot, q)),
+        points_m=reach_obstacle(obstacle, spheres, compute_frames(collision.robot, q)),
     )
 
 

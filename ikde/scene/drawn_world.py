@@ -1,7 +1,7 @@
 """Obstacles as plain data to draw: polygons and points, lengths in m, world frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -40,6 +40,14 @@ class DrawnObstacle:
     """False if its group is off."""
     is_touched: bool = False
     """True if the robot is nearer than is asked for."""
+
+    def place(self, T: Floats) -> "DrawnObstacle":
+        """The same, drawn in a frame of its own, at a pose [3, 4]."""
+        solids = []
+        for solid in self.solids:
+            polygons = tuple(P @ T[:, :3].T + T[:, 3] for P in solid.polygons_m)
+            solids.append(replace(solid, polygons_m=polygons, points_m=solid.points_m @ T[:, :3].T + T[:, 3]))
+        return replace(self, solids=tuple(solids))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -18,6 +18,7 @@ from ikde.model.tree import build_tree
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import compute_orientation_errors
 from ikde.track.certify_world import bound_world
+from ikde.track.moving import Around
 from ikde.track.path import ToolPath
 from ikde.track.travel import chain_of, list_centres, max_radius
 
@@ -50,14 +51,17 @@ class Certificate:
         return bool(self.room_m.min() > 0.0)
 
 
-def certify(collision: CollisionModel, q: Floats, drive: str = "omnidirectional") -> Certificate | None:
+def certify(
+    collision: CollisionModel, q: Floats, drive: str = "omnidirectional", around: Around | None = None
+) -> Certificate | None:
     """Bound the clearance of the motion through `q` [M + 1, N]; None without a pair or a segment: not checked.
 
-    `drive`: of a base, which moves on arcs if it is `differential`; it matters in a world alone.
+    `drive`: of a base, which moves on arcs if it is `differential`; it matters in a world alone. `around`: what of the
+    world moves.
     """
     if len(q) < 2 or not collision.pairs:
         return None
-    room = bound_all(collision, q, drive)
+    room = bound_all(collision, q, drive, around)
     clearances, own = room + list_kept_m(collision), len(collision.pairs)
     segments, parts = clearances.min(axis=1), {}
     if collision.obstacles:
@@ -72,12 +76,12 @@ def list_kept_m(collision: CollisionModel) -> Floats:
     return kept
 
 
-def bound_all(collision: CollisionModel, q: Floats, drive: str) -> Floats:
+def bound_all(collision: CollisionModel, q: Floats, drive: str, around: Around | None = None) -> Floats:
     """Lower bound of what each of `all_pairs` keeps beyond what is asked for [M, P + C O], m."""
     own = bound_pairs(collision, q)
     if not collision.obstacles:
         return own
-    world = bound_world(collision, q, drive)
+    world = bound_world(collision, q, drive, around)
     return np.concatenate([own, world.reshape(len(own), int(np.prod(world.shape[1:])))], axis=1)
 
 

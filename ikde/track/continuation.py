@@ -10,6 +10,7 @@ from ikde.model.robot import MAX_MAGNITUDE
 from ikde.solver.compile_note import name_work, note_compile
 from ikde.solver.result import SolveResult
 from ikde.solver.solve import solve
+from ikde.solver.standing import find_standing_obstacles
 from ikde.track.certify import bound_all
 from ikde.track.diagnosis import (
     explain_stop,
@@ -20,6 +21,7 @@ from ikde.track.diagnosis import (
     tell_uncertified,
 )
 from ikde.track.follower import Follower, Rollout
+from ikde.track.moving import place_at
 from ikde.track.remedies import advise
 from ikde.track.rollouts import choose_rollout
 from ikde.track.settings import ContinuationSettings
@@ -119,14 +121,18 @@ class Continuation:
 
     def _is_possible(self, sample: int) -> bool:
         """Whether any configuration meets it; the solver, which keeps the ranges, is not asked if they don't count."""
-        return not self.follower.plan.limits.ranges or self._solve(sample).reached
+        static = self._solve(sample) if self.follower.plan.limits.ranges else None
+        return static is None or static.reached
 
-    def _solve(self, sample: int) -> SolveResult:
-        """What the solver says about one sample by itself."""
+    def _solve(self, sample: int) -> SolveResult | None:
+        """What the solver says about one sample by itself; None where what moves touches what no joint moves."""
         if sample not in self.solved:
             plan = self.follower.plan
             target, settings = plan.path.targets()[sample], plan.limits.tolerances
-            self.solved[sample] = solve(plan.robot, target, settings, collision=plan.collision, freeze=plan.frozen)
+            model = place_at(plan.collision, plan.moving, sample * plan.path.dt_s)
+            if plan.moving and any(pair.touches for pair in find_standing_obstacles(model)):
+                return None
+            self.solved[sample] = solve(plan.robot, target, settings, collision=model, freeze=plan.frozen)
         return self.solved[sample]
 
     def _find_out_of_reach(self) -> tuple[int, float] | None:
@@ -144,7 +150,8 @@ class Continuation:
 def cut_at_doubt(rollout: Rollout) -> Rollout:
     """The same up to the first segment that may touch on its way."""
     follower = rollout.follower
-    bounds = bound_all(follower.collision, rollout.q, follower.plan.base_drive)
+    around = follower.around(0, len(rollout.q))
+    bounds = bound_all(follower.collision, rollout.q, follower.plan.base_drive, around)
     doubtful = next((k for k, bound in enumerate(bounds.min(axis=1, initial=np.inf)) if not bound > 0.0), None)
     if doubtful is None:
         return rollout

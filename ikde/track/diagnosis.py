@@ -13,7 +13,6 @@ from ikde.model.bounds import find_bounds
 from ikde.model.pack import pack_robot
 from ikde.model.robot import MAX_MAGNITUDE
 from ikde.solver.digits import at_least
-from ikde.solver.plain import compute_gaps
 from ikde.solver.result import SolveResult, StopReason
 from ikde.track.drive import max_steps
 from ikde.track.follower import Follower, Rollout
@@ -104,7 +103,7 @@ def _try(follower: Follower, rollout: Rollout, scale: Floats | float = 1.0) -> F
     q, step = np.zeros_like(rollout.rows[0]), np.zeros(follower.size)
     status, _, _ = track_sample(
         pack_robot(follower.robot),
-        follower.collision.arrays,
+        follower.arrays_at(sample),
         follower.drive,
         follower.track,
         follower.target,
@@ -126,7 +125,7 @@ def _without_collision(rollout: Rollout) -> TrackStop | None:
     found = _try(follower.with_track(reach=-np.inf), rollout) if pairs else None
     if found is None:
         return None
-    gaps = compute_gaps(follower.collision, found[0])
+    gaps = follower.compute_gaps(found[0], sample)
     worst = int(np.argmin(gaps))
     if gaps[worst] > follower.track.margin:
         return None

@@ -16,6 +16,7 @@ from ikde.track.certify import certify, measure_deviation
 from ikde.track.continuation import follow_continuation
 from ikde.track.follower import Follower, make_follower
 from ikde.track.limits import MotionLimits
+from ikde.track.moving import Around
 from ikde.track.optimized import follow_optimized
 from ikde.track.path import ToolPath
 from ikde.track.plan import TrackPlan
@@ -100,7 +101,9 @@ def follow_plan(plan: TrackPlan) -> Trajectory:
 def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
     """The motion with what the judge and the certificate say about it."""
     robot, path, limits, drive, q = plan.robot, plan.path, plan.limits, plan.base_drive, followed.q
-    graded = verify_track(plan.collision, path, q, drive=drive, limits=limits)
+    moving = plan.make_moving()
+    around = None if moving is None else Around(moving, path.times_s[: len(q)])
+    graded = verify_track(plan.collision, path, q, drive=drive, limits=limits, moving=moving)
     deviation_m, deviation_rad = measure_deviation(robot, path, q, drive)
     v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
     return Trajectory(
@@ -118,7 +121,8 @@ def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,
         grade=graded,
-        certificate=certify(plan.collision, q, drive),
+        certificate=certify(plan.collision, q, drive, around),
+        moving=plan.moving,
         deviation_m=deviation_m,
         deviation_rad=deviation_rad,
     )

@@ -6,14 +6,16 @@ from typing import Any, Self
 
 import numpy as np
 
-from ikde.kernels.arrays import DRIFT, DriveArrays, Floats, TargetArrays, TrackArrays
+from ikde.kernels.arrays import DRIFT, CollisionArrays, DriveArrays, Floats, TargetArrays, TrackArrays
 from ikde.kernels.tracking import make_sample, track_span
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.robot import MAX_MAGNITUDE, Robot
 from ikde.solver.engines.pool import rotation_length_m
+from ikde.solver.plain import compute_gaps
 from ikde.track.drive import pack_drive
 from ikde.track.limits import MotionLimits
+from ikde.track.moving import Around, MovingWorld
 from ikde.track.path import ToolPath
 from ikde.track.plan import TrackPlan
 from ikde.track.trajectory import TrackStop
@@ -35,6 +37,8 @@ class Follower:
     track: TrackArrays
     target: TargetArrays
     room: Any
+    moving: MovingWorld | None = None
+    """Obstacles that are elsewhere from sample to sample."""
 
     @property
     def robot(self) -> Robot:
@@ -50,6 +54,21 @@ class Follower:
     def path(self) -> ToolPath:
         """The plan's."""
         return self.plan.path
+
+    def arrays_at(self, sample: int) -> CollisionArrays:
+        """What is compared at a sample; where obstacles move, until this is called again."""
+        return self.collision.arrays if self.moving is None else self.moving.set_sample(sample)
+
+    def compute_gaps(self, q: Floats, sample: int) -> Floats:
+        """Of all pairs [P + C O] at `q` [N] at a sample, as `compute_gaps`."""
+        gaps = compute_gaps(self.collision, q)
+        if self.moving is not None:
+            gaps[len(self.collision.pairs) :] = self.moving.compute_gaps(q[None], self.path.times_s[[sample]])[0]
+        return gaps
+
+    def around(self, first: int, count: int) -> Around | None:
+        """What moves about so many samples from the `first` on; None where nothing does."""
+        return None if self.moving is None else Around(self.moving, self.path.times_s[first : first + count])
 
     @property
     def size(self) -> int:
@@ -129,10 +148,18 @@ class Rollout:
         return seconds
 
     def _run(self, first: int, last: int) -> int:
+        if self.follower.moving is None or last <= first:
+            return self._run_among(self.follower.collision.arrays, first, last)
+        for sample in range(first, last):
+            if self._run_among(self.follower.arrays_at(sample + 1), sample, sample + 1) == sample:
+                return sample
+        return last
+
+    def _run_among(self, collision: CollisionArrays, first: int, last: int) -> int:
         follower = self.follower
         reached, _ = track_span(
             pack_robot(follower.robot),
-            follower.collision.arrays,
+            collision,
             follower.drive,
             follower.track,
             follower.target,
@@ -157,6 +184,7 @@ def make_follower(plan: TrackPlan) -> Follower:
         drive=drive,
         track=pack_track(plan.collision, plan.limits),
         target=pack_targets(plan.path.targets()),
+        moving=plan.make_moving(),
         room=make_sample(pack_robot(robot), plan.collision.arrays, len(robot.joints), len(drive.largest)),
     )
 

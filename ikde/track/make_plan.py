@@ -10,6 +10,7 @@ from ikde.errors import InputError, nearest
 from ikde.formats.entries import UnitsEntry
 from ikde.formats.error_path import prefix_errors
 from ikde.formats.margins import read_margins
+from ikde.formats.poses import read_orientation, read_position
 from ikde.formats.robot_entries import read_collision, to_si, with_ranges
 from ikde.kernels.arrays import Floats
 from ikde.model.base_motion import find_wheels, usual_drive
@@ -20,6 +21,7 @@ from ikde.solver.joints import joints_outside
 from ikde.solver.standing import refuse_touching
 from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path
+from ikde.track.moving import ObjectMotion
 from ikde.track.plan import TrackPlan
 from ikde.track.spec import LimitsEntry, TrackSpec
 from ikde.track.starts import settle_start
@@ -63,6 +65,7 @@ def make_plan(
         seed=spec.seed,
         file=file,
         world_file=spec.world,
+        moving=_read_moving(spec),
     )
     if plan.start is not None:
         settle_start(plan, plan.start)
@@ -85,6 +88,27 @@ def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld 
         model = collision.in_world(world, *read_margins(margin, spec.units.length_m))
         refuse_touching(model)
     return model
+
+
+def _read_moving(spec: TrackSpec) -> dict[str, ObjectMotion]:
+    """How obstacles move, in m; poses without an orientation are not given."""
+    if spec.moving and spec.world is None:
+        raise InputError("what moves is an obstacle of a `world`: name one", ("moving",))
+    moving = {}
+    for name, entry in spec.moving.items():
+        with prefix_errors("moving", name):
+            poses = []
+            for k, place in enumerate(entry.poses):
+                with prefix_errors("poses", k):
+                    p, given = (
+                        read_position("position", place.position, spec.units),
+                        read_orientation(place, spec.units),
+                    )
+                    if "axis_world_tool" in given:
+                        raise InputError("expected rpy or quat_wxyz: an axis leaves a turn open", ("axis",))
+                    poses.append(np.column_stack([given.get("R_world_tool", np.eye(3)), p]))
+            moving[name] = ObjectMotion(times_s=np.array(entry.times_s), T_world_object=np.array(poses))
+    return moving
 
 
 def _read_drive(spec: TrackSpec, robot: Robot) -> Drive:

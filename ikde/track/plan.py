@@ -13,6 +13,7 @@ from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.problem import Freeze, make_problem
 from ikde.solver.settings import SolveSettings, check_seed
 from ikde.track.limits import MotionLimits
+from ikde.track.moving import Moving, MovingWorld, check_moving, place_at
 from ikde.track.path import ToolPath
 from ikde.track.settings import TrackSettings, check_method
 from ikde.track.spec import TrackMethod
@@ -47,12 +48,19 @@ class TrackPlan:
     """The file it was read from, for the record only."""
     world_file: str | None = None
     """That of the world, as it was named there, likewise."""
+    moving: Moving = field(default_factory=dict)
+    """Obstacles of the world that move; the collision model has them where they are at the start."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "seed", check_seed(self.seed))
         check_method(self.method, self.settings)
         find_wheels(self.robot, self.drive)
         self.limits.check(self.robot)
+        check_moving(self.collision, self.moving, self.path.duration_s)
+        if self.moving and self.method != "continuation":
+            message = f"obstacles that move need the method continuation, {self.method} does not know them"
+            raise InputError(message, ("moving",))
+        object.__setattr__(self, "collision", place_at(self.collision, self.moving, 0.0))
         if self.base_drive == "differential" and not base_carries(self.collision):
             message = "a base on arcs must carry all that can collide; say omnidirectional, or leave out the rest"
             raise InputError(message, ("detector",))
@@ -101,6 +109,10 @@ class TrackPlan:
     def base_drive(self) -> Drive:
         """How the base moves: `typical` ignores the drive, every joint moves independently."""
         return "omnidirectional" if self.method == "typical" else self.drive
+
+    def make_moving(self) -> MovingWorld | None:
+        """The obstacles that move, made ready; None where none does."""
+        return MovingWorld.of(self.collision, self.moving, self.path.times_s)
 
     def settings_of(self, kind: type[Settings]) -> Settings:
         """The settings of a method: the plan's own if they are of this kind, else the usual ones."""

@@ -58,14 +58,18 @@ def _try_less_margin(rollout: Rollout, end: int) -> str | None:
 
 def _go_on(rollout: Rollout, model: CollisionModel, end: int) -> Rollout:
     """The same rollout among other obstacles, followed on from its last sample."""
-    plan, track = replace(rollout.follower.plan, collision=model), rollout.follower.track
+    plan, track = rollout.follower.plan, rollout.follower.track
+    moving = {name: motion for name, motion in plan.moving.items() if name in model.world}
+    plan = replace(plan, collision=model, moving=moving)
     return replace(rollout.copy(), follower=make_follower(plan).with_track(margin=track.margin)).resume(end)
 
 
 def _certify(rollout: Rollout, other: Rollout) -> int:
     """The last sample up to which what `other` adds to a rollout is certified, too."""
     follower, first = other.follower, rollout.last
-    room = bound_all(follower.collision, other.q[first:], follower.plan.base_drive).min(axis=1, initial=math.inf)
+    around = follower.around(first, len(other.q) - first)
+    room = bound_all(follower.collision, other.q[first:], follower.plan.base_drive, around)
+    room = room.min(axis=1, initial=math.inf)
     return first + next((k for k, least in enumerate(room) if not least > 0.0), len(room))
 
 

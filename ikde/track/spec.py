@@ -175,6 +175,15 @@ class LimitsEntry(Entry):
     """Accepted error of its orientation, at every sample."""
 
 
+class MotionEntry(Entry):
+    """How an obstacle moves: straight and at constant speed from pose to pose."""
+
+    times_s: Annotated[list[Number], Field(min_length=2, max_length=100_000)]
+    """When it is at each pose, s: ascending, from the path's start to its end."""
+    poses: Annotated[list[AnyTarget], Field(min_length=2, max_length=100_000)]
+    """Where it is then, in the world: `position`, and perhaps one of `rpy`, `quat_wxyz`; or [x, y, z]."""
+
+
 class TrackSpec(Entry):
     """A track: a path for the tool, and how the robot is to follow it."""
 
@@ -206,6 +215,8 @@ class TrackSpec(Entry):
     """What is in the way: a world file, a cuRobo scene or a MoveIt planning scene, relative to the track file."""
     margin: MarginChoice | None = None
     """Distance to keep from the world; `10,gripper=0`: that of a component in its place."""
+    moving: dict[Name, MotionEntry] = {}
+    """Obstacles of the world that move meanwhile."""
     ranges: dict[Name, Interval] = {}
     """Joint ranges instead of the robot's: joint: [lower, upper]."""
     start: dict[Name, Number] | None = None

@@ -1,6 +1,6 @@
 """What a track gives back, as plain data: joint values, the base's twist, figures, and why it stopped."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -9,6 +9,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.robot import Drive
 from ikde.track.certify import Certificate
 from ikde.track.limits import MotionLimits
+from ikde.track.moving import Moving
 from ikde.track.path import ToolPath
 from ikde.track.verify_track import TrackGrade, Violations
 
@@ -111,6 +112,8 @@ class Trajectory:
     """[M] distance of the tool from the path half-way between samples."""
     deviation_rad: Floats
     """[M] the same of its orientation, of what the path asks for."""
+    moving: Moving = field(default_factory=dict)
+    """Obstacles that moved meanwhile."""
 
     def __repr__(self) -> str:
         text = f"{self.method}, {self.drive}, {self.reached_points} of {self.path.samples} points"

@@ -17,6 +17,7 @@ from ikde.model.robot import Robot
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import Bools, compute_orientation_errors
 from ikde.track.limits import MotionLimits
+from ikde.track.moving import MovingWorld
 from ikde.track.path import ToolPath
 
 AT_ONCE = 256  # configurations whose clearances are computed together: more do not fit into the cache
@@ -115,9 +116,17 @@ class TrackGrade:
 
 
 def verify_track(
-    collision: CollisionModel, path: ToolPath, q: Floats, *, drive: str, limits: MotionLimits
+    collision: CollisionModel,
+    path: ToolPath,
+    q: Floats,
+    *,
+    drive: str,
+    limits: MotionLimits,
+    moving: MovingWorld | None = None,
 ) -> TrackGrade:
     """Grade the joint values `q` [M + 1, N] of the samples 0 .. M, M <= K, against path and limits.
+
+    `moving`: obstacles that are elsewhere from sample to sample.
 
     Raises `InputError` for limits that do not fit the robot.
     """
@@ -137,6 +146,8 @@ def verify_track(
         v, omega, across = base_twist(q[:-1, base], q[1:, base], dt_s)
     wheels = wheel_speeds(robot.wheels, v, omega) if robot.wheels else np.full((len(v), 2), np.nan)
     gaps = np.concatenate([compute_gaps(collision, q[k : k + AT_ONCE]) for k in range(0, len(q) or 1, AT_ONCE)])
+    if moving is not None and len(q):
+        gaps[:, len(collision.pairs) :] = moving.compute_gaps(q, path.times_s[: len(q)])
     centre = frames[limits.center][:, :3, 3] if limits.center else np.full((len(q), 3), np.nan)
     distance = np.linalg.norm(tool[:, :3, 3] - centre, axis=1)
     driven = np.where(np.isin(np.arange(q.shape[1]), base[:2]), v[:, None], speeds)

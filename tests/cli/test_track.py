@@ -90,6 +90,18 @@ def test_options_replace_the_world_and_the_margin_of_the_file(cli, spec, tmp_pat
     assert (other["file"], other["margin_m"]) == (str(tmp_path / "other.yaml"), 0.02)
 
 
+def test_the_summary_and_the_page_name_what_moves(cli, spec, tmp_path):
+    (tmp_path / "far.yaml").write_text("obstacles: {ball: {sphere: {radius: 0.05}}, can: {sphere: {radius: 0.05}}}")
+    ways = {name: {"times_s": [0, 1], "poses": [[x, 0, 1], [x, 1, 1]]} for name, x in (("ball", 2), ("can", 3))}
+    spec.write_text(f"{SPEC}world: far.yaml\nmoving: {json.dumps(ways)}\n")
+    outcome = cli("track", spec, "--out", tmp_path / "a", "--json")
+    assert outcome.code == 0, outcome
+    assert outcome.data["world"]["moving"] == ["ball", "can"]
+    page = (tmp_path / "a" / "report.html").read_text(encoding="utf-8")
+    assert "those that move are drawn where they are at each moment" in page
+    assert "ball, can" in page
+
+
 def test_a_margin_that_makes_it_always_touch_is_refused(refuse, spec, tmp_path):
     (tmp_path / "floor.yaml").write_text("obstacles: {floor: {half_space: {}, position: [0, 0, -0.1]}}")
     spec.write_text(SPEC + "world: floor.yaml\n")

@@ -116,6 +116,65 @@ def test_a_world_that_is_wrong_is_one_line_with_its_place(tmp_path, keys, world,
     assert complaint(f"{GOOD}{keys}\n", tmp_path).startswith(message)
 
 
+MOVING = """world: world.yaml
+moving:
+  wall:
+    times_s: [0, 1, 2]
+    poses: [[9000, 0, 0], {position: [9000, 500, 0], rpy: [0, 0, 90]}, {position: [9, 0, 0], quat_wxyz: [1, 0, 0, 0]}]
+"""
+
+
+def test_obstacles_move_in_the_units_of_the_file(tmp_path):
+    (tmp_path / "world.yaml").write_text(WALL)
+    (tmp_path / "track.yaml").write_text(GOOD + MOVING)
+    plan = load_track(tmp_path / "track.yaml")
+    motion = plan.moving["wall"]
+    assert motion.times_s.tolist() == [0.0, 1.0, 2.0]
+    np.testing.assert_allclose(motion.T_world_object[:, :, 3], [[9, 0, 0], [9, 0.5, 0], [0.009, 0, 0]])
+    turned = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    np.testing.assert_allclose(motion.T_world_object[:, :, :3], [np.eye(3), turned, np.eye(3)], atol=1e-15)
+    np.testing.assert_allclose(plan.collision.world["wall"].T_world_obstacle[:, 3], [9, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("world: world.yaml\n", "", "track.yaml:14 → moving: what moves is an obstacle of a `world`: name one"),
+        ("  wall:", "  wal:", "track.yaml:16 → moving.wal: no obstacle that counts is called 'wal' (did you mean"),
+        ("[0, 1, 2]", "[0, 2, 1]", "track.yaml:17 → moving.wall.times_s[2]: expected a later time than 2 s, got 1"),
+        (
+            "[0, 1, 2]",
+            "[0, 1, 1.5]",
+            "track.yaml:17 → moving.wall.times_s: wall is known from 0 to 1.5 s, the path lasts",
+        ),
+        ("[0, 1, 2]", "[0.5, 1, 2]", "track.yaml:17 → moving.wall.times_s: wall is known from 0.5 to 2 s, the path"),
+        (
+            "[0, 1, 2]",
+            "[0, 2]",
+            "track.yaml:17 → moving.wall.times_s: expected a pose a time, two at least, got 2 and 3",
+        ),
+        ("[0, 1, 2]", "[0]", "track.yaml:17 → moving.wall.times_s: expected"),
+        ("rpy: [0, 0, 90]", "axis: [0, 0, 1]", "track.yaml:18 → moving.wall.poses[1].axis: expected rpy or quat_wxyz"),
+        (
+            "rpy: [0, 0, 90]",
+            "rpy: [0, 0, 180]",
+            "track.yaml:18 → moving.wall.poses[1]: half a turn from the orientation",
+        ),
+        ("quat_wxyz: [1, 0, 0, 0]", "quat_wxyz: [0, 0, 0, 0]", "track.yaml:18 → moving.wall.poses[2].quat_wxyz: "),
+        ("    times_s: [0, 1, 2]\n", "", "track.yaml:16 → moving.wall.times_s: this key is missing"),
+        (
+            "moving:",
+            "method: optimized\nmoving:",
+            "track.yaml:16 → moving: obstacles that move need the method continuation",
+        ),
+    ],
+)
+def test_a_motion_of_an_obstacle_that_is_wrong_is_one_line(tmp_path, old, new, message):
+    (tmp_path / "world.yaml").write_text(WALL)
+    assert old in MOVING
+    assert complaint(GOOD + MOVING.replace(old, new), tmp_path).startswith(message)
+
+
 def test_a_mapping_is_the_same_track(tmp_path):
     (tmp_path / "track.yaml").write_text(GOOD)
     a, b = load_track(tmp_path / "track.yaml"), load_track(yaml.safe_load(GOOD))

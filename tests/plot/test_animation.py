@@ -12,7 +12,7 @@ from ikde.report import html
 from ikde.scene.drawn_motion import draw_motion
 from ikde.scene.drawn_pose import COLORS
 from tests.track.measured import make_measured
-from tests.track.worlds import TOUCHED, make_among
+from tests.track.worlds import TOUCHED, make_among, make_passing
 
 OBSTACLES = {
     "post": {"cylinder": {"radius": 0.05, "height": 0.4}, "position": [0.74, -0.3, 0.96]},
@@ -99,3 +99,12 @@ def test_touched_obstacles_are_listed_by_frame(qiao):
     data = make_animation(draw_motion(motion, [0, 10, 20]))
     assert [one["name"] for one in data["obstacles"]] == ["far", "ball"]
     assert data["touched"] == [[], [1], []]
+
+
+def test_what_moves_has_its_poses_by_frame(qiao):
+    data = make_animation(draw_motion(make_passing(qiao), [0, 20]))
+    post, ball = data["obstacles"]
+    assert (post["name"], post["poses"], ball["name"]) == ("post", None, "ball")
+    np.testing.assert_allclose(np.linalg.norm(ball["solids"][0]["corners"], axis=1), 100.0, atol=1.0)
+    turn = np.eye(3).ravel().tolist()
+    np.testing.assert_allclose(ball["poses"], [[*turn, 1500, -500, 1000], [*turn, 1500, 500, 1000]])

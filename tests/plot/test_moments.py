@@ -12,7 +12,7 @@ from ikde.plot.moments import plot_moments
 from ikde.scene.drawn_motion import draw_motion
 from ikde.scene.drawn_pose import COLORS, Role
 from tests.track.measured import make_measured
-from tests.track.worlds import TOUCHED, make_among
+from tests.track.worlds import TOUCHED, make_among, make_passing
 
 
 @pytest.fixture(scope="module")
@@ -89,3 +89,12 @@ def test_the_least_room_has_a_ring_at_its_moment_alone(qiao):
     views = plot_moments(drawn).axes
     rings = [[line for line in view.lines if line.get_color() == COLORS[Role.CLOSEST]] for view in views]
     assert [bool(ring) for ring in rings] == [kept == sample for kept in drawn.samples]
+
+
+def test_what_moves_stands_elsewhere_in_each_view(qiao):
+    views = plot_moments(draw_motion(make_passing(qiao), [0, 20])).axes
+    outlines = [max((patch.get_path().vertices for patch in polygons(view)), key=len) for view in views]
+    assert np.linalg.norm(outlines[1].mean(axis=0) - outlines[0].mean(axis=0)) > 0.5
+    for view, outline in zip(views, outlines, strict=True):
+        assert view.get_xlim()[0] < outline[:, 0].min()
+        assert outline[:, 0].max() < view.get_xlim()[1]

@@ -14,7 +14,7 @@ from ikde.scene.drawn_motion import (
 )
 from ikde.solver.plain_world import measure_obstacle
 from tests.track.measured import make_measured
-from tests.track.worlds import TOUCHED, make_among
+from tests.track.worlds import TOUCHED, make_among, make_passing
 
 
 @pytest.fixture(scope="module")
@@ -133,3 +133,28 @@ def test_without_a_world_nothing_of_one_is_drawn(motion):
     drawn = draw_motion(motion, [0, 5])
     assert (drawn.obstacles, drawn.nearest) == ((), None)
     assert choose_frames(motion, 3).tolist() == spread_samples(motion, 3).tolist()
+
+
+def test_what_moves_is_drawn_where_it_is(qiao):
+    motion = make_passing(qiao)
+    drawn = draw_motion(motion, [0, 10, 20])
+    assert [obstacle.name for obstacle in drawn.obstacles] == ["post"]
+    ((ball, poses),) = drawn.moved
+    assert ball.name == "ball"
+    np.testing.assert_allclose(poses[:, :, 3], [[1.5, -0.5, 1], [1.5, 0, 1], [1.5, 0.5, 1]], atol=1e-12)
+    for frame, y in enumerate((-0.5, 0.0, 0.5)):
+        there = drawn.list_obstacles(frame)[-1]
+        points = np.concatenate(there.solids[0].polygons_m)
+        np.testing.assert_allclose(np.linalg.norm(points - [1.5, y, 1.0], axis=1), 0.1, atol=1e-12)
+
+
+def test_the_least_room_is_where_what_moves_was(qiao):
+    motion = make_passing(qiao, [[0.74, -1.0, 0.96], [0.74, -0.1, 0.96]])
+    found = draw_motion(motion, [0]).nearest
+    assert found.obstacle == "ball"
+    assert found.sample > 0
+    _, (p,) = motion.trajectory.moving["ball"].place(np.array([0.02 * found.sample]))
+    away = np.linalg.norm(found.points_m - p, axis=1)
+    assert away[1] == pytest.approx(0.1, abs=1e-5)
+    radius = away[0] - 0.1 - found.clearance_m
+    assert 0.04 < radius < 0.27  # of the sphere that is nearest

@@ -1,5 +1,7 @@
 """A motion of the 9-DoF robot, made up and measured: the base drives on arcs while the arm waves, without a search."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ikde.model.base_motion import step_base
@@ -34,10 +36,12 @@ def make_measured(robot, *, steps=20, amplitude=0.05, stop=None, orientation="ax
         R_world_tool=None if orientation == "free" else tool[rows, :3, :3],
     )
     collision = CollisionModel.of(robot, changes.pop("detector", None))
+    moving = changes.pop("moving", {})
     limits = MotionLimits.of(robot, **changes)
     plan = TrackPlan.of(robot, path, drive=drive, limits=limits, collision=collision)
+    plan = replace(plan, moving=moving)
     followed = Followed(q=q, stop=stop, seconds=np.full(steps, 2e-5), search_seconds=0.25)
-    return summarise_track(collision, grade_motion(plan, followed))
+    return summarise_track(plan.collision, grade_motion(plan, followed))
 
 
 def make_still(robot, **changes):

@@ -5,6 +5,7 @@ import numpy as np
 import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_components
+from ikde.track.moving import ObjectMotion
 from tests.track.measured import make_measured
 
 OBSTACLES = {
@@ -24,6 +25,14 @@ def make_among(robot, margin_m=0.0, obstacles=None, margins_m=None, **changes):
     world = ikde.load_world({"obstacles": OBSTACLES if obstacles is None else obstacles})
     model = CollisionModel.of(robot).in_world(world, margin_m, margins_m)
     return make_measured(robot, detector=model, **{"amplitude": 0.5, **changes})
+
+
+def make_passing(robot, places=((1.5, -0.5, 1), (1.5, 0.5, 1))):
+    """The waving motion beside a post, while a ball passes from one place to another in 0.4 s."""
+    obstacles = {"ball": {"sphere": {"radius": 0.1}}, "post": OBSTACLES["post"]}
+    poses = [np.column_stack([np.eye(3), p]) for p in places]
+    moving = {"ball": ObjectMotion(times_s=np.array([0.0, 0.4]), T_world_object=np.array(poses))}
+    return make_among(robot, obstacles=obstacles, moving=moving)
 
 
 def measure_apart(motion, name):

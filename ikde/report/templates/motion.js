@@ -7,6 +7,12 @@ const VIEWS = [
   {name: "top: x, y", flat: (p) => [p[0], p[1]], depth: (p) => p[2], column: 0, row: 1},
 ];
 const sum = (a, b) => a.map((x, k) => x + b[k]), minus = (a, b) => a.map((x, k) => x - b[k]);
+// Where an obstacle is in a frame: its points, if it moves in a frame of its own.
+function placer(obstacle, frame) {
+  if (!obstacle.poses) return (p) => p;
+  const T = obstacle.poses[frame];
+  return (p) => [0, 1, 2].map((k) => T[3 * k] * p[0] + T[3 * k + 1] * p[1] + T[3 * k + 2] * p[2] + T[9 + k]);
+}
 function boxOf(motion, flat) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   const add = (p, r) => {
@@ -17,7 +23,10 @@ function boxOf(motion, flat) {
   motion.path_mm.forEach((p) => add(p, 20));
   motion.links_mm.flat().forEach((p) => add(p, 20));
   motion.centres_mm.forEach((row) => row.forEach((p, s) => add(p, motion.radii_mm[s])));
-  motion.obstacles.forEach((obstacle) => obstacle.solids.forEach((solid) => solid.corners.forEach((p) => add(p, 0))));
+  motion.obstacles.forEach((obstacle) => (obstacle.poses ?? [0]).forEach((_, frame) => {
+    const place = placer(obstacle, frame);
+    obstacle.solids.forEach((solid) => solid.corners.forEach((p) => add(place(p), 0)));
+  }));
   return box;
 }
 // One scale for the flat views; those of a column share x, those of a row share z. The view in space has what is left.
@@ -105,9 +114,12 @@ function drawBody(c, motion, view, frame, ink) {
   }}));
   motion.obstacles.forEach((obstacle, k) => {
     const color = motion.colors[touched.has(k) ? "obstacle that is too near" : "obstacle"];
-    obstacle.solids.forEach((solid) => things.push({depth: solid.endless ? -Infinity : view.depth(meanOf(solid.corners)),
-      draw() { drawSolid(c, view, solid, color); }}));
-    obstacle.points.forEach((p) => things.push({depth: view.depth(p), draw() {
+    const place = placer(obstacle, frame);
+    obstacle.solids.forEach((own) => {
+      const solid = {...own, corners: own.corners.map(place), faces: own.faces.map((face) => face.map(place))};
+      things.push({depth: solid.endless ? -Infinity : view.depth(meanOf(solid.corners)), draw() { drawSolid(c, view, solid, color); }});
+    });
+    obstacle.points.map(place).forEach((p) => things.push({depth: view.depth(p), draw() {
       const [x, y] = view.at(p); c.globalAlpha = .7; c.fillStyle = color; c.fillRect(x - .8, y - .8, 1.6, 1.6);
     }}));
   });
