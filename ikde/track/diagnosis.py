@@ -52,10 +52,20 @@ def tell_static(follower: Follower, sample: int, result: SolveResult) -> TrackSt
     reason, text = OF_SOLVER.get(result.stop_reason), result.reason
     if reason is None:
         reason = TrackStopReason.BUDGET
-        off = f"{1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
-        text = f"no configuration was found in {result.attempts} attempts; the best is off by {off}"
+        off = f"the best is off by {1e3 * result.position_error_m:.3g} mm and {result.orientation_error_rad:.3g} rad"
+        if result.collision and result.closest_pair is not None and _meets(follower, result):
+            pair = result.closest_pair
+            off = f"in the best of them {pair[0]} and {pair[1]} collide"
+        text = f"no configuration was found in {result.attempts} attempts; {off}"
     hint = result.hint if result.stop_reason == StopReason.WORLD else None
     return TrackStop(sample=sample, reason=reason, text=f"{tell_when(follower, sample)}: {text}", pair=pair, hint=hint)
+
+
+def _meets(follower: Follower, result: SolveResult) -> bool:
+    """Whether an answer is within the tolerances of the path."""
+    limits = follower.plan.limits
+    near = result.position_error_m <= limits.position_error_m
+    return near and result.orientation_error_rad <= limits.orientation_error_rad
 
 
 def tell_too_far(follower: Follower, sample: int = 0, where: str = "every start") -> TrackStop:

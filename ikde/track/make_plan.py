@@ -91,7 +91,7 @@ def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld 
 
 
 def _read_moving(spec: TrackSpec) -> dict[str, ObjectMotion]:
-    """How obstacles move, in m; poses without an orientation are not given."""
+    """How obstacles move, in m; poses that give no orientation are those of the world."""
     if spec.moving and spec.world is None:
         raise InputError("what moves is an obstacle of a `world`: name one", ("moving",))
     moving = {}
@@ -100,10 +100,8 @@ def _read_moving(spec: TrackSpec) -> dict[str, ObjectMotion]:
             poses = []
             for k, place in enumerate(entry.poses):
                 with prefix_errors("poses", k):
-                    p, given = (
-                        read_position("position", place.position, spec.units),
-                        read_orientation(place, spec.units),
-                    )
+                    p = read_position("position", place.position, spec.units)
+                    given = read_orientation(place, spec.units)
                     if "axis_world_tool" in given:
                         raise InputError("expected rpy or quat_wxyz: an axis leaves a turn open", ("axis",))
                     poses.append(np.column_stack([given.get("R_world_tool", np.eye(3)), p]))

@@ -9,7 +9,7 @@ from ikde.kernels.arrays import Floats
 from ikde.solver.joints import joints_outside
 from ikde.solver.plain import compute_frames
 from ikde.solver.problem import make_problem
-from ikde.solver.result import SolveResult
+from ikde.solver.result import SolveResult, StopReason
 from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings
 from ikde.solver.solve import solve, solve_many
@@ -27,11 +27,13 @@ def draw_starts(plan: TrackPlan, draws: int = DRAWS) -> tuple[Floats, SolveResul
     """Starts [S, N], all different and within (18), and what the solver says about the first pose."""
     robot, target, seed = plan.robot, plan.path.targets()[0], plan.seed
     question = {"collision": plan.collision, "freeze": plan.frozen}
-    first = solve(robot, target, EXACT, seed=seed, **question)
-    if not first.reached:
-        return np.empty((0, len(robot.joints))), first
+    first, nothing = solve(robot, target, EXACT, seed=seed, **question), np.empty((0, len(robot.joints)))
+    if not first.reached and first.stop_reason != StopReason.BUDGET:
+        return nothing, first
     bulk = BulkOptions(threads=1, explain=False)
     rows = solve_many(robot, [target] * draws, EXACT, seed=seed, bulk=bulk, **question)
+    if not (first.reached or rows.reached.any()):  # other random numbers may find what the first did not
+        return nothing, first
     found = [rows.q[rows.reached]]
     rng = np.random.default_rng(seed)
     quick = EXACT.with_changes(restarts=NEAR_RESTARTS, method="lm")

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import ikde
 from ikde.model.bounds import find_bounds
 from ikde.model.collision_model import CollisionModel
+from ikde.solver.result import StopReason
 from ikde.track import diagnosis
 from ikde.track.diagnosis import CHECKS, explain_stop, first_out_of_reach, tell_static
 from ikde.track.follow_path import follow_path
@@ -202,3 +204,16 @@ def test_a_step_that_keeps_a_limit_does_not_blame_it(monkeypatch, check):
     rollout = follow([[0, 0.002, 0]] * 3, frozen=("q6",), **limits)
     monkeypatch.setattr(diagnosis, "_try", lambda *_: (rollout.q[2], rollout.steps[2]))
     assert check(replace(rollout, last=1)) is None
+
+
+def test_a_best_answer_that_collides_names_the_pair_and_one_that_is_off_by_how_much():
+    follower = follower_of(robot(), make_line([0.9, 0, 1.0], [0.9, 0, 3.0], 20))
+    known = {"stop_reason": StopReason.BUDGET, "blocking_pairs": {}, "attempts": 320, "orientation_error_rad": 0.0}
+    known |= {"collision": True, "closest_pair": ("M", "L2"), "hint": None, "reason": None}
+    stop = tell_static(follower, 7, SimpleNamespace(**known, position_error_m=0.0))
+    assert stop.text.endswith("no configuration was found in 320 attempts; in the best of them M and L2 collide")
+    assert stop.pair == ("M", "L2")
+    for changes in ({"position_error_m": 0.1}, {"position_error_m": 0.0, "collision": None}):
+        stop = tell_static(follower, 7, SimpleNamespace(**{**known, **changes}))
+        assert "the best is off by" in stop.text
+        assert stop.pair is None

@@ -1,12 +1,16 @@
 """Starts: at the first pose, free, all different; and given ones, moved a little or refused."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from ikde.errors import InputError
 from ikde.model.target import Target
 from ikde.solver.forward import forward
+from ikde.solver.result import StopReason
 from ikde.solver.verify import verify
+from ikde.track import starts as module
 from ikde.track.starts import draw_starts, settle_start
 from tests.track.paper_tasks import plan_of
 from tests.track.tracks import TASKS, load_task, make_line, robot
@@ -82,3 +86,22 @@ def test_starts_that_are_refused():
         with pytest.raises(InputError, match=words) as caught:
             settle_start(make(path, freeze=freeze), start)
         assert caught.value.where == ("start",)
+
+
+@pytest.mark.parametrize("reason", [StopReason.BUDGET, StopReason.WORLD])
+def test_where_attempts_were_spent_other_random_numbers_are_tried(monkeypatch, reason):
+    """A first answer that is none proves nothing if it only ran out of attempts."""
+    none = SimpleNamespace(reached=False, stop_reason=reason)
+    monkeypatch.setattr(module, "solve", lambda *_, **__: none)
+    plan = make(make_line([0.9, 0.2, 1.0], [0.9, 0.3, 1.0], 5))
+    starts, first = draw_starts(plan)
+    assert first is none
+    assert bool(len(starts)) == (reason == StopReason.BUDGET)
+
+
+def test_where_those_find_nothing_either_no_further_are_tried(monkeypatch):
+    none = SimpleNamespace(reached=False, stop_reason=StopReason.BUDGET)
+    monkeypatch.setattr(module, "solve", lambda *_, **__: none)
+    monkeypatch.setattr(module, "solve_many", lambda *_, **__: SimpleNamespace(reached=np.zeros(16, dtype=bool)))
+    starts, first = draw_starts(make(make_line([0.9, 0.2, 1.0], [0.9, 0.3, 1.0], 5)))
+    assert (starts.shape, first) == ((0, 9), none)
