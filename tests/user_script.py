@@ -74,6 +74,9 @@ motion: ikde.Trajectory = ikde.run_track(track)
 ikde.write_trajectory("motion", motion)
 path = ikde.ToolPath(p_world_tool=np.zeros((5, 3)), dt_s=0.1)
 ikde.follow_path(robot, path, limits=ikde.MotionLimits.of(robot), settings=ikde.ContinuationSettings())
+among_obstacles = ikde.follow_path("ur5", path, collision=world)
+hint: str | None = among_obstacles.stop.hint if among_obstacles.stop else None
+room_m: float | None = float(among_obstacles.certificate.room_m.min()) if among_obstacles.certificate else None
 ikde.follow_path(robot, path, method="foo")  # type: ignore[arg-type]
 ikde.follow_path(robot, path, method="optimized", settings=ikde.OptimizedSettings())
 ikde.follow_path("ur5", path, method="typical", settings=ikde.TypicalSettings())

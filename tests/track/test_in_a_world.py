@@ -27,6 +27,14 @@ def test_a_path_through_a_shelf_is_followed_and_certified(alone):
     np.testing.assert_allclose(motion.clearance_m, seen.clearance_m)
 
 
+def test_a_world_alone_is_kept_from_without_a_margin():
+    world = ikde.load_world({"obstacles": SHELF})
+    motion = ikde.follow_path("qiao2021", make_path(), collision=world)
+    again = ikde.follow_path("qiao2021", make_path(), collision=place(SHELF))
+    np.testing.assert_array_equal(motion.q, again.q)
+    assert motion.certificate.world_m.min() > 0.0
+
+
 def test_a_world_that_is_far_changes_no_bit(alone):
     far = place({"ball": {"sphere": {"radius": 0.1}, "position": [0, 0, 50]}})
     np.testing.assert_array_equal(ikde.follow_path("qiao2021", make_path(), collision=far).q, alone.q)

@@ -78,10 +78,12 @@ def test_what_is_certified_no_farther_is_said_to_go_no_farther(stopped, monkeypa
     assert "to the end" in advise(rollout, stopped.stop, samples).hint
     with monkeypatch.context() as patch:
         patch.setattr(
-            remedies, "bound_all", lambda model, q, drive: np.where(np.arange(len(q) - 1) < 2, 1.0, 0.0)[:, None]
+            remedies,
+            "bound_all",
+            lambda model, q, drive, around: np.where(np.arange(len(q) - 1) < 2, 1.0, 0.0)[:, None],
         )
         assert f"without can it goes on to sample {first + 2}" in advise(rollout, stopped.stop, samples).hint
-        patch.setattr(remedies, "bound_all", lambda model, q, drive: np.zeros((len(q) - 1, 1)))
+        patch.setattr(remedies, "bound_all", lambda model, q, drive, around: np.zeros((len(q) - 1, 1)))
         assert advise(rollout, stopped.stop, samples) is stopped.stop
 
 
