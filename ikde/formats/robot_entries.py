@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from ikde.errors import InputError, nearest
 from ikde.formats.entries import DetectorEntry, DetectorPartsEntry, UnitsEntry
-from ikde.model.collision_model import CollisionModel, check_detector
+from ikde.model.collision_model import CollisionModel
+from ikde.model.detectors import check_detector
 from ikde.model.robot import MAX_MAGNITUDE, Detector, Joint, Robot
 
 

@@ -17,7 +17,7 @@ from ikde.formats.robot_entries import make_detector
 from ikde.io.schema import as_file_error, place_errors
 from ikde.io.sphere_entries import SourcedEntry, SphereRowEntry, to_spheres
 from ikde.io.yaml_file import Document, Where
-from ikde.model.collision_model import MAX_PAIRS
+from ikde.model.detectors import MAX_PAIRS
 from ikde.model.robot import (
     NO_DETECTOR,
     WORLD,

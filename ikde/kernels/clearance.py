@@ -64,11 +64,17 @@ def find_colliding_pair(collision, bounds, centres):
 
 @inline_kernel
 def find_own_pair(collision, bounds, centres):
-    """Index of the first pair of components within the safe distance, or -1.
+    """Index of the first pair of components within the safe distance, or -1."""
+    return find_pair_from(collision, bounds, centres, 0)
+
+
+@inline_kernel
+def find_pair_from(collision, bounds, centres, first):
+    """The same of the pairs from `first` on.
 
     From coarse to fine: both bounding spheres, the spheres of one against the bounding sphere of the other, all.
     """
-    for pair in range(collision.pairs.shape[0]):
+    for pair in range(first, collision.pairs.shape[0]):
         a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
         x, y, z, reach = bounds[b, 0], bounds[b, 1], bounds[b, 2], collision.bounds[b, 3] + collision.safe_distance
         dx, dy, dz, limit = bounds[a, 0] - x, bounds[a, 1] - y, bounds[a, 2] - z, collision.bounds[a, 3] + reach

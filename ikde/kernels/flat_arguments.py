@@ -30,8 +30,10 @@ Turns = tuple[Floats, Floats, Any, Floats]
 
 
 SOLID_COLUMNS, GRID_COLUMNS = 21, 7  # of a world
-HEADER = 10
-"""Sizes: solids, components, obstacles, faces, points, clouds, cells of clouds, cells, entries, unbounded solids."""
+HEADER = 11
+"""Sizes: solids, components, obstacles, faces, points, clouds, cells of clouds, cells, entries, unbounded solids; and
+how many pairs of components, the last ones, are those of what is attached, which no written kernel knows."""
+ATTACHED_PAIRS = 10
 
 
 class Terms(NamedTuple):

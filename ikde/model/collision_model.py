@@ -1,10 +1,8 @@
 """What may collide with what: the pairs of components that are compared, and the distance that is still safe."""
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import combinations
 from typing import Any, Union
 
 import numpy as np
@@ -13,17 +11,15 @@ from numpy.typing import NDArray
 from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import CollisionArrays, Floats, Ints, read_only
 from ikde.model.arguments import RobotLike, read_robot
-from ikde.model.names import check_printable
+from ikde.model.carried import carry
+from ikde.model.detectors import check_detector, list_left_out
 from ikde.model.numbers import is_number
 from ikde.model.pack import pack_collision
 from ikde.model.pack_world import WorldPacker, find_fixed_frames
 from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, Spheres
 from ikde.model.spheres import Sphere, expand_rows
 from ikde.model.tree import build_tree
-from ikde.model.world import NOTHING, Obstacle, World
-
-NAMED = 3  # pairs in a message that is about many
-MAX_PAIRS, MAX_SPHERE_PAIRS = 50_000, 2_000_000  # of components in a list, and of spheres that a detector compares
+from ikde.model.world import NOTHING, Attached, Obstacle, World
 
 FIELDS = ("robot", "detector", "world", "margin_m", "margins_m")
 CollisionChoice = Union[str, Detector, World, "CollisionModel", None]
@@ -106,6 +102,19 @@ class CollisionModel:
         """The same without a world: what is prepared for a robot depends on no world."""
         return self if self.world is NOTHING else CollisionModel(robot=self.robot, detector=self.detector)
 
+    @cached_property
+    def laden(self) -> "CollisionModel":
+        """That of the robot with what is attached to it as parts of its own, without a world; `own` if nothing is.
+
+        Nothing is written or compiled for it: its pairs stand behind the robot's own.
+        """
+        return _lade(self.own, self.world.attached) if self.world.attached else self.own
+
+    @property
+    def is_in_world(self) -> bool:
+        """Whether more is compared than the robot with itself: something stands around, or is attached."""
+        return bool(self.obstacles or self.world.attached)
+
     def in_world(
         self, world: World, margin_m: float = 0.0, margins_m: Mapping[str, float] | None = None
     ) -> "CollisionModel":
@@ -124,18 +133,19 @@ class CollisionModel:
             raise InputError(f"expected a World, got {quoted(world)}", ("world",))
         if not self.pairs:
             raise InputError("a world needs a detector: without spheres nothing can be compared with it", ("world",))
-        given = {} if margins_m is None else margins_m
+        own, given = self.own, {} if margins_m is None else margins_m
+        known = _lade(own, world.attached).components if world.attached else own.components
         if not isinstance(given, Mapping):
             raise InputError(f"expected distances by component, got {quoted(given)}", ("margins_m",))
         for name, value in (("", margin_m), *given.items()):
-            if name and name not in self.components:
-                raise InputError(f"no component is called {name!r}{nearest(name, self.components)}", ("margin", name))
+            if name and name not in known:
+                raise InputError(f"no component is called {name!r}{nearest(name, known)}", ("margin", name))
             if not (is_number(value) and 0.0 <= value <= MAX_MAGNITUDE):
                 where = ("margin", name) if name else ("margin",)
                 most = f", up to {MAX_MAGNITUDE:g} m" if is_number(value) and value > 0.0 else " m"
                 raise InputError(f"expected a distance of at least 0{most}, got {quoted(value)}", where)
+        _check_touching(world, own.components)
         kept = tuple((name, float(value)) for name, value in given.items())
-        own = self.own
         model = CollisionModel(
             robot=own.robot, detector=own.detector, world=world, margin_m=float(margin_m), margins_m=kept
         )
@@ -145,7 +155,8 @@ class CollisionModel:
 
     def kept_m(self, component: str) -> float:
         """The distance that a component keeps from an obstacle, beside the obstacle's own margin, m."""
-        return dict(self.margins_m).get(component, self.margin_m)
+        own_m = next((thing.obstacle.margin_m for thing in self.world.attached if thing.name == component), 0.0)
+        return dict(self.margins_m).get(component, self.margin_m) + own_m
 
     @property
     def name(self) -> str:
@@ -160,34 +171,27 @@ class CollisionModel:
     @property
     def rows(self) -> tuple[Spheres, ...]:
         """Rows of spheres of all components, compared or not; none without a detector."""
+        if self.laden is not self:
+            return self.laden.rows
         return self.robot.approximations[self.detector.spheres] if self.detector else ()
 
     @cached_property
     def pairs(self) -> Pairs:
         """Pairs of components that are compared; none without a detector."""
-        if self.own is not self:
-            return self.own.pairs
+        if self.laden is not self:
+            return self.laden.pairs
         return self.robot.pair_lists[self.detector.pairs] if self.detector else ()
 
     @property
     def left_out_pairs(self) -> tuple[LeftOutPair, ...]:
         """All other pairs of components, and why they are left out; none without a detector."""
-        if self.detector is None:
-            return ()
-        compared = {frozenset(pair) for pair in self.pairs}
-        reasons = {frozenset((pair.a, pair.b)): pair.reason for pair in self.robot.neighbours}
-        unlisted = f"not in the pair list {self.detector.pairs}"
-        return tuple(
-            LeftOutPair(a=a, b=b, reason=reasons.get(frozenset((a, b)), unlisted))
-            for a, b in combinations(self.robot.components(self.detector.spheres), 2)
-            if frozenset((a, b)) not in compared
-        )
+        return () if self.detector is None else list_left_out(self.laden.robot, self.detector)
 
     @cached_property
     def spheres(self) -> tuple[Sphere, ...]:
         """All spheres of its components, compared or not, each on its body; none without a detector."""
-        if self.own is not self:
-            return self.own.spheres
+        if self.laden is not self:
+            return self.laden.spheres
         if self.detector is None:
             return ()
         return tuple(expand_rows(self.robot, build_tree(self.robot), self.detector.spheres))
@@ -195,15 +199,15 @@ class CollisionModel:
     @cached_property
     def components(self) -> tuple[str, ...]:
         """Of the spheres, in their order; with a world they are all packed, else those that have a pair."""
-        if self.own is not self:
-            return self.own.components
+        if self.laden is not self:
+            return self.laden.components
         return tuple(dict.fromkeys(sphere.component for sphere in self.spheres))
 
     @cached_property
     def fixed_components(self) -> tuple[str, ...]:
         """Those that no joint moves: they are not compared with a world, which does not move either."""
-        if self.own is not self:
-            return self.own.fixed_components
+        if self.laden is not self:
+            return self.laden.fixed_components
         bodies = {sphere.component: sphere.body for sphere in self.spheres}
         return tuple(name for name, body in bodies.items() if body == 0)
 
@@ -257,9 +261,9 @@ class CollisionModel:
     @cached_property
     def arrays(self) -> CollisionArrays:
         """Packed for the kernels."""
-        if not self.obstacles:
+        if not self.is_in_world:
             return pack_collision(self.robot, self.detector)
-        arrays, packer, is_fixed = self.own._whole
+        arrays, packer, is_fixed = self.laden._whole
         kept_m = np.full(len(is_fixed), self.margin_m) if not self.margins_m else self._list_kept_m()
         kept_m[is_fixed] = -np.inf
         return arrays._replace(world=packer.pack(self.world, kept_m))
@@ -269,13 +273,19 @@ class CollisionModel:
         """All components packed; what packs worlds for them; and which no joint moves [C]."""
         arrays = pack_collision(self.robot, self.detector, every=True)
         is_fixed = np.array([name in self.fixed_components for name in self.components], dtype=bool)
-        packer = WorldPacker(self.components, find_fixed_frames(self.robot), float(arrays.bounds[:, 3].max()))
+        reach_m = float(arrays.bounds[:, 3].max())
+        packer = WorldPacker(self.components, find_fixed_frames(self.robot), reach_m, self._attached_pairs)
         return arrays, packer, is_fixed
+
+    @cached_property
+    def _attached_pairs(self) -> int:
+        """How many of the pairs, the last ones, no written kernel knows; only of what `_lade` makes are there some."""
+        return 0
 
     def _list_kept_m(self) -> Floats:
         """The distance that each component keeps [C], m."""
-        others = dict(self.margins_m)
-        return np.array([others.get(name, self.margin_m) for name in self.components], dtype=float)
+        others, own_m = dict(self.margins_m), {thing.name: thing.obstacle.margin_m for thing in self.world.attached}
+        return np.array([others.get(c, self.margin_m) + own_m.get(c, 0.0) for c in self.components], dtype=float)
 
 
 @lru_cache(maxsize=64)
@@ -284,54 +294,23 @@ def _with_detector(robot: Robot, name: str) -> CollisionModel:
     return CollisionModel(robot=robot, detector=robot.detectors[name])
 
 
-def check_detector(robot: Robot, detector: Detector, where: tuple[str | int, ...]) -> None:
-    """Raise `InputError` unless the detector's names exist, and it compares pairs that its approximation describes."""
-    if not isinstance(detector, Detector):
-        raise InputError(f"expected a Detector, got {quoted(detector)}", where)
-    for key, what, name, known in (
-        ("spheres", "approximation", detector.spheres, robot.approximations),
-        ("pairs", "pair list", detector.pairs, robot.pair_lists),
-    ):
-        if name not in known:
-            raise InputError(f"no {what} is called {name!r}{nearest(name, known)}", (*where, key))
-    check_printable(detector.name, (*where, "name"))
-    if detector.name == NO_DETECTOR:
-        raise InputError(f"{NO_DETECTOR!r} is taken: it stands for no detector at all", where or ("name",))
-    distance = detector.safe_distance_m
-    if not (is_number(distance) and 0.0 <= distance <= MAX_MAGNITUDE):
-        raise InputError(f"expected a distance of at least 0, up to {MAX_MAGNITUDE:g} m", (*where, "safe_distance"))
-    described = robot.components(detector.spheres)
-    if not described:
-        raise InputError(f"this detector compares nothing: {detector.spheres!r} has no spheres", (*where, "spheres"))
-    collision = CollisionModel(robot=robot, detector=detector)
-    if not collision.pairs:
-        raise InputError(f"this detector compares nothing: {_explain_no_pairs(collision)}", (*where, "pairs"))
-    for component in {c for pair in collision.pairs for c in pair}:
-        if component not in described:
-            raise InputError(
-                f"the approximation {detector.spheres!r} has no component {component!r}", (*where, "pairs")
-            )
-    _check_size(collision, where)
+@lru_cache(maxsize=16)
+def _lade(own: CollisionModel, attached: tuple[Attached, ...]) -> CollisionModel:
+    """The same object for the same things at the same places: what is known of it is found once."""
+    assert own.detector is not None
+    laden = CollisionModel(robot=carry(own.robot, own.detector, attached), detector=own.detector)
+    vars(laden)["_attached_pairs"] = len(laden.pairs) - len(own.pairs)
+    return laden
 
 
-def _check_size(collision: CollisionModel, where: tuple[str | int, ...]) -> None:
-    """Comparing takes time with every pair, also where a file is only shown."""
-    pairs = collision.pairs
-    if len(pairs) > MAX_PAIRS:
-        raise InputError(f"expected at most {MAX_PAIRS:,} pairs of components, got {len(pairs):,}", (*where, "pairs"))
-    spheres: Counter[str] = Counter()
-    for row in collision.rows:
-        spheres[row.component] += row.count
-    compared = sum(spheres[a] * spheres[b] for a, b in pairs)
-    if compared > MAX_SPHERE_PAIRS:
-        message = f"expected at most {MAX_SPHERE_PAIRS:,} pairs of spheres to compare, got {compared:,}"
-        raise InputError(message, (*where, "spheres"))
-
-
-def _explain_no_pairs(collision: CollisionModel) -> str:
-    left_out = collision.left_out_pairs
-    if not left_out:
-        return f"{collision.rows[0].component!r} is the only component"
-    named = ", ".join(f"{pair.a} - {pair.b} ({pair.reason})" for pair in left_out[:NAMED])
-    more = f" and {len(left_out) - NAMED} more" if len(left_out) > NAMED else ""
-    return f"{'the only pair is' if len(left_out) == 1 else f'all {len(left_out)} pairs are'} left out: {named}{more}"
+def _check_touching(world: World, components: tuple[str, ...]) -> None:
+    """Raise `InputError` for what may be touched and is nothing, or two things."""
+    known = (*components, *world.names, *(thing.name for thing in world.attached))
+    for thing in world.attached:
+        for name in thing.may_touch:
+            if name not in known:
+                message = f"no component and no obstacle is called {name!r}{nearest(name, known)}"
+                raise InputError(message, ("attached", thing.name, "may_touch"))
+            if name in components and name in world.names:
+                message = f"{name!r} is a component and an obstacle: give one of them another name"
+                raise InputError(message, ("attached", thing.name, "may_touch"))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats, Ints
-from ikde.kernels.flat_arguments import GRID_COLUMNS, HEADER, SOLID_COLUMNS, unpack_world
+from ikde.kernels.flat_arguments import ATTACHED_PAIRS, GRID_COLUMNS, HEADER, SOLID_COLUMNS, unpack_world
 from ikde.model.hull import measure_normals
 from ikde.model.robot import WORLD, Robot
 from ikde.model.solids import IDENTITY, KINDS, Solid
@@ -51,9 +51,12 @@ class Packed(NamedTuple):
 class WorldPacker:
     """Packs worlds for a robot; one that differs from the last by where obstacles are costs what those cost."""
 
-    def __init__(self, components: Sequence[str], frames: Mapping[str, Floats], reach_m: float) -> None:
-        """As `pack_world`."""
+    def __init__(
+        self, components: Sequence[str], frames: Mapping[str, Floats], reach_m: float, attached_pairs: int = 0
+    ) -> None:
+        """As `pack_world`; `attached_pairs`: the last pairs of components, which no written kernel knows."""
         self._components, self._frames, self._reach_m = components, frames, reach_m
+        self._attached_pairs = attached_pairs
         self._parts = PerObstacle(self._pack_obstacle)
         self._last: Packed | None = None
 
@@ -63,6 +66,7 @@ class WorldPacker:
         whole = self._move(world.active, key, packed)
         if whole is None:
             whole = _join_obstacles(packed, _list_asked(world, self._components, kept_m), self._reach_m)
+            whole[ATTACHED_PAIRS] = self._attached_pairs
         whole.setflags(write=False)
         self._last = Packed(world.active, key, whole)
         return whole
@@ -248,6 +252,9 @@ def _list_asked(world: World, components: Sequence[str], kept_m: Floats) -> Floa
                 message = f"no component is called {name!r}{nearest(name, components)}"
                 raise InputError(message, ("obstacles", obstacle.name, "ignore", place))
             asked[list(components).index(name), owner] = -np.inf
+    for thing in world.attached:
+        allowed = [obstacle.name in thing.may_touch for obstacle in world.active]
+        asked[list(components).index(thing.name), allowed] = -np.inf
     return asked
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ikde.errors import ErrorList, InputError, nearest
 from ikde.model.base_motion import find_planar_base
-from ikde.model.collision_model import check_detector
+from ikde.model.detectors import check_detector
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
 from ikde.model.robot import (

@@ -4,7 +4,8 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Generic, TypeVar, cast
+from importlib import import_module
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,9 +47,38 @@ class Obstacle(ByFields):
         return f"<Obstacle {self.name}: {len(self.solids)} solids ({', '.join(kinds)}) at {place} m in {self.frame}>"
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Attached(ByFields):
+    """An object that a frame of the robot holds: spheres that are compared as one more component of the robot."""
+
+    obstacle: Obstacle
+    """What it is, and where it stood when it was picked up."""
+    frame: str
+    """The frame of the robot that holds it."""
+    T_frame_object: Floats
+    """[3, 4]; rotation and m, read-only."""
+    spheres: Floats
+    """[n, 4] centre in the object's frame and radius, m; read-only."""
+    protrusion_m: float | None
+    """How far the spheres stand out of the object at most, m; None of spheres that were given."""
+    may_touch: tuple[str, ...] = ()
+    """Components of the robot, obstacles and other attached objects that it may touch."""
+
+    @property
+    def name(self) -> str:
+        """The object's."""
+        return self.obstacle.name
+
+    def __repr__(self) -> str:
+        fat = "given" if self.protrusion_m is None else f"{1e3 * self.protrusion_m:.3g} mm beyond it at most"
+        touch = f", may touch {', '.join(self.may_touch)}" if self.may_touch else ""
+        return f"<Attached {self.name} to {self.frame}: {len(self.spheres)} spheres, {fat}{touch}>"
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class World(ByFields):
-    """Obstacles by name, in their order. It stays as it is: `add`, `move`, `remove` and `switch` give another one.
+    """Obstacles by name, in their order, and what the robot holds. It stays as it is: `add`, `move`, `remove`,
+    `switch`, `attach` and `detach` give another one.
 
     Equal are two of the same numbers and names, to the bit, also after pickling or copying.
 
@@ -59,6 +89,8 @@ class World(ByFields):
     obstacles: tuple[Obstacle, ...] = ()
     switched_off: frozenset[str] = field(default_factory=frozenset)
     """Groups that do not count."""
+    attached: tuple[Attached, ...] = ()
+    """What frames of the robot hold, in the order in which it was picked up: no obstacles any more."""
 
     def __post_init__(self) -> None:
         found: dict[str, Obstacle] = {}
@@ -72,6 +104,13 @@ class World(ByFields):
                 raise InputError(f"expected an obstacle of a World, got {quoted(obstacle)}", ("obstacles", place))
             if found.setdefault(obstacle.name, obstacle) is not obstacle or len(found) <= place:
                 raise InputError(f"two obstacles are called {obstacle.name!r}", ("obstacles", obstacle.name))
+        object.__setattr__(self, "attached", tuple(self.attached))
+        for thing in self.attached:
+            if not isinstance(thing, Attached):
+                raise InputError(f"expected what World.attach makes, got {quoted(thing)}", ("attached",))
+            if found.setdefault(thing.name, thing.obstacle) is not thing.obstacle or thing.name in self.names:
+                message = f"{thing.name!r} is attached to {thing.frame}, and another object has its name"
+                raise InputError(message, ("attached", thing.name))
         known = dict.fromkeys(self.groups)
         for group in self.switched_off:
             if not isinstance(group, str) or group not in known:
@@ -105,6 +144,10 @@ class World(ByFields):
             for solid in obstacle.solids:
                 sha.update(repr((solid.kind, solid.size_m)).encode() + solid.T_obstacle_solid.tobytes())
                 sha.update(b"" if solid.points is None else solid.points.tobytes())
+        for thing in self.attached:
+            margin_m, touch = thing.obstacle.margin_m, thing.may_touch
+            sha.update(repr(("attached", thing.name, thing.frame, margin_m, touch, len(thing.spheres))).encode())
+            sha.update(thing.T_frame_object.tobytes() + thing.spheres.tobytes())
         return sha.hexdigest()
 
     def __getitem__(self, name: str) -> Obstacle:
@@ -121,17 +164,23 @@ class World(ByFields):
 
     def __repr__(self) -> str:
         off = f", off: {', '.join(sorted(self.switched_off))}" if self.switched_off else ""
-        return f"<World of {len(self)} obstacles{off}>"
+        held = ", ".join(f"{thing.name} to {thing.frame}" for thing in self.attached)
+        return f"<World of {len(self)} obstacles{off}{f', attached: {held}' if held else ''}>"
 
     def add(self, *obstacles: Obstacle) -> "World":
         """The world with further obstacles."""
-        return make_world((*self.obstacles, *obstacles), self.switched_off)
+        return make_world((*self.obstacles, *obstacles), self.switched_off, self.attached)
 
     def remove(self, *names: str) -> "World":
         """The world without some obstacles; a group of which none is left is forgotten: what is added to it counts."""
         gone = {self._place(name) for name in names}
-        left = World(obstacles=tuple(o for place, o in enumerate(self.obstacles) if place not in gone))
-        return replace(left, switched_off=self.switched_off & set(left.groups))
+        left = tuple(o for place, o in enumerate(self.obstacles) if place not in gone)
+        off = self.switched_off & {o.group for o in left if o.group is not None}
+        held = tuple(
+            replace(thing, may_touch=tuple(name for name in thing.may_touch if name not in names))
+            for thing in self.attached
+        )
+        return World(obstacles=left, switched_off=off, attached=held)
 
     def move(self, name: str, T_world_obstacle: "ArrayLike | Pose") -> "World":
         """The world with an obstacle at another pose [4, 4] or [3, 4], m, or at that of another library."""
@@ -153,6 +202,45 @@ class World(ByFields):
         off = (self.switched_off - groups.keys()) | {group for group, on in groups.items() if not on}
         return replace(self, switched_off=frozenset(off))
 
+    def attach(self, name: str, to: str | None = None, **how: Any) -> "World":
+        """The world in which a frame of the robot holds an obstacle, from now on one of the robot's components.
+
+        Its solids become spheres that hold all of it; by how much these stand out of it is said (`attached`). They are
+        compared with all components of the robot but those of the body that holds them, at the safe distance, and
+        with the obstacles that are left, at the obstacle's own margin beside the others. Nothing is compiled for it.
+
+        Args:
+            name: of an obstacle that counts.
+            to: a frame of the robot that a joint moves; None: the tool, by `robot`.
+            **how: where it is held and what it may touch:
+                robot, q: the robot and the joint values [N], m and rad, at which it is picked up from where it stands;
+                without `q`, at home. What it touches of the robot there is refused unless it may be touched.
+                T_frame_object: its pose [4, 4] in the frame, m, in place of that.
+                may_touch: names of components, obstacles and attached objects that it may touch; what the obstacle
+                itself is allowed to touch (`ignore`) is added.
+                spheres: [n, 4] centre in the object's frame and radius, m, in place of the own cover.
+                protrusion_m: how far spheres of the own cover may stand out of it, m; None: 5 mm, or as much more as
+                up to 128 spheres take.
+
+        Raises:
+            InputError: for what is attached already, an unknown obstacle or frame, a frame that no joint moves, clouds
+                and half-spaces, and for what would touch the robot where it is picked up.
+        """
+        return import_module("ikde.solver.attach").attach(self, name, to, **how)  # on floors above this one
+
+    def detach(self, name: str, T_world_object: "ArrayLike | Pose | None" = None, **where: Any) -> "World":
+        """The world in which an attached object is an obstacle again.
+
+        Args:
+            name: of what is attached.
+            T_world_object: where it is put [4, 4], m; None: where the robot holds it, or where it was picked up.
+            **where: `robot` and `q`, the joint values [N] at which it is let go; nothing: where it was picked up.
+
+        Raises:
+            InputError: for what is not attached, or joint values without a robot.
+        """
+        return import_module("ikde.solver.attach").detach(self, name, T_world_object, **where)
+
     @cached_property
     def _places(self) -> dict[str, int]:
         """Where each name stands."""
@@ -161,13 +249,18 @@ class World(ByFields):
     def _place(self, name: str) -> int:
         place = self._places.get(name) if isinstance(name, str) else None
         if place is None:
+            held = [thing.frame for thing in self.attached if thing.name == name]
+            if held:
+                raise InputError(f"{name!r} is no obstacle now: it is attached to {held[0]}", ("obstacle",))
             raise InputError(f"no obstacle is called {name!r}{nearest(str(name), self.names)}", ("obstacle",))
         return place
 
 
-def make_world(obstacles: Iterable[Obstacle], switched_off: Iterable[str] = ()) -> World:
+def make_world(
+    obstacles: Iterable[Obstacle], switched_off: Iterable[str] = (), attached: Iterable[Attached] = ()
+) -> World:
     """A world whose names are known to be right; raises `InputError`."""
-    world = World(obstacles=tuple(obstacles), switched_off=frozenset(switched_off))
+    world = World(obstacles=tuple(obstacles), switched_off=frozenset(switched_off), attached=tuple(attached))
     if len(world) > MAX_OBSTACLES:
         raise InputError(f"expected at most {MAX_OBSTACLES:,} obstacles, got {len(world):,}", ("obstacles",))
     count = sum(len(obstacle.solids) for obstacle in world)

@@ -168,17 +168,18 @@ def lay_out(problem: Problem, kind: str, engine: str) -> Sequence[Any]:
 
 
 class Layouts:
-    """The same of one robot's questions in any world: all but the world is laid out once."""
+    """The same of one robot's questions in any world: all but the world is laid out once for what it carries."""
 
     def __init__(self, kind: str) -> None:
         self._kind = kind
-        self._kept: dict[str, Sequence[Any]] = {}
+        self._kept: dict[str, tuple[CollisionModel, Sequence[Any]]] = {}
 
     def lay_out(self, problem: Problem, engine: str) -> Sequence[Any]:
         """What stays of an engine's call in the world of a problem, which is that of the first one but for that."""
+        laden = problem.collision.laden
         kept = self._kept.get(engine)
-        if kept is None:
+        if kept is None or kept[0] is not laden:
             numbers, whole, *others = lay_out(problem, self._kind, engine)
-            kept = self._kept[engine] = *exchange_world(numbers, whole, np.empty(0)), *others
-        numbers, whole, *others = kept
+            kept = self._kept[engine] = laden, (*exchange_world(numbers, whole, np.empty(0)), *others)
+        numbers, whole, *others = kept[1]
         return *exchange_world(numbers, whole, problem.collision.arrays.world), *others

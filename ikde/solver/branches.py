@@ -115,7 +115,7 @@ def judge(problem: Problem, asked: Asked) -> Judged:
     if not problem.collision.pairs:
         return Judged(q=q, is_own=found.is_own, missing=found.missing, outside=outside, colliding=colliding, own=pairs)
     motions, moved = (
-        find_motions(problem.collision.own, tuple(joints)),
+        find_motions(problem.collision.laden, tuple(joints)),
         (slack[tested][:, joints], _seen_by_tool(found.is_own[tested], tolerances[0]), tolerances[1]),
     )
     room = motions.bound_m(*moved)

@@ -94,7 +94,7 @@ def compute_components(
     """Spheres of every component, in the world, for `q` [..., N] or the frames there; none without a detector."""
     Ts_world = compute_frames(collision.robot, q) if Ts_world is None else Ts_world
     found = {}
-    for name, (parts, radii) in _list_parts(collision.own).items():
+    for name, (parts, radii) in _list_parts(collision.laden).items():
         points = []
         for part in parts:
             if isinstance(part, SphereRow):
@@ -223,6 +223,9 @@ def list_world(collision: CollisionModel) -> tuple[tuple[Alike, ...], Floats]:
         if name in collision.fixed_components:
             less_m[component] = -np.inf
         less_m[component, [name in obstacle.ignore for obstacle in obstacles]] = -np.inf
+    for thing in collision.world.attached:
+        allowed = [obstacle.name in thing.may_touch for obstacle in obstacles]
+        less_m[collision.components.index(thing.name), allowed] = -np.inf
     return list_alike(obstacles, frames), less_m
 
 

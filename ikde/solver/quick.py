@@ -44,7 +44,7 @@ class Quick(Ask):
         """The same among obstacles; raises `InputError` for what always touches one."""
         refuse_touching(collision)
         problem = replace(self._problem, collision=collision)
-        plan = self.plan._replace(size=self.plan.size + len(collision.obstacles))
+        plan = self.plan._replace(size=self.plan.size + len(collision.counted) - len(collision.own.pairs))
         return Quick(problem, plan, self.ways, partial(self._layouts.lay_out, problem))
 
     @cached_property
@@ -88,7 +88,7 @@ def find_quick(
 ) -> Quick | None:
     """The quick way of a question, or None: without a plan, or on tables, where engine and grader would share code."""
     collision = CollisionModel.of(robot, choice)
-    if collision.obstacles:
+    if collision.is_in_world:
         quick = find_quick(robot, settings, method, collision.own, kind)
         return quick and quick.in_world(collision)
     chosen = choose_settings(settings, method)

@@ -16,6 +16,8 @@ from ikde.model.solids import IDENTITY, Solid
 from ikde.model.world import Obstacle, PerObstacle
 from ikde.solver.plain import compute_components, compute_frames
 from ikde.solver.plain_world import measure_obstacle
+from ikde.solver.touching import CONFIGURATIONS as TRIED
+from ikde.solver.touching import find_always_touching
 
 CONFIGURATIONS = 8
 SAME_M, CLOSE_M = 1e-9, 0.02
@@ -41,7 +43,7 @@ def find_standing_obstacles(collision: CollisionModel) -> tuple[StandingObstacle
     """
     widest_m = max([collision.limit_m, collision.margin_m, *dict(collision.margins_m).values()])
     found, pairs, count = [], len(collision.pairs), len(collision.obstacles)
-    for place, standing in enumerate(_find_standing(collision.own, widest_m).list(collision.obstacles)):
+    for place, standing in enumerate(_find_standing(collision.laden, widest_m).list(collision.obstacles)):
         for name, distance_m in standing:
             obstacle = collision.obstacles[place]
             extra_m = collision.extra_m(pairs + collision.components.index(name) * count + place)
@@ -145,24 +147,46 @@ def _draw(collision: CollisionModel) -> np.ndarray:
 
 
 def find_model(robot: RobotLike, choice: CollisionChoice) -> CollisionModel:
-    """The collision model of a choice; raises `InputError` also for what always touches an obstacle."""
+    """The collision model of a choice; raises `InputError` also for what always touches an obstacle, and for what is
+    attached and always touches the robot.
+    """
     model = CollisionModel.of(robot, choice)
-    if model.obstacles:
+    if model.is_in_world:
         refuse_touching(model)
     return model
 
 
+@lru_cache(maxsize=64)
+def _list_touched(laden: CollisionModel, name: str) -> tuple[str, ...]:
+    """Components that an attached object touches in every configuration that is tried."""
+    touching = find_always_touching(laden)
+    return () if touching is None else tuple(a if b == name else b for a, b in touching.pairs if name in (a, b))
+
+
 def refuse_touching(collision: CollisionModel) -> None:
-    """Raise `InputError` where a component always touches an obstacle: no configuration would be free."""
+    """Raise `InputError` where a component always touches an obstacle, or an attached object the robot: no
+    configuration would be free.
+    """
+    for thing in collision.world.attached:
+        touched = _list_touched(collision.laden, thing.name)
+        if touched:
+            may_touch = ", ".join((*thing.may_touch, *touched))
+            raise InputError(
+                f"{thing.name} touches {', '.join(touched)} in each of {TRIED:,} random configurations, so "
+                f"nothing is free of it; if that is meant, write may_touch: [{may_touch}]",
+                ("attached", thing.name),
+            )
     touching = [pair for pair in find_standing_obstacles(collision) if pair.touches]
     if not touching:
         return
     first = touching[0]
     ignored = ", ".join(pair.component for pair in touching if pair.obstacle == first.obstacle)
     margin_m = collision.kept_m(first.component) + collision.world[first.obstacle].margin_m
+    held = first.component in (thing.name for thing in collision.world.attached)
+    line = f"may_touch: [{first.obstacle}]` for it" if held else f"ignore: [{ignored}]` there"
     asked = f", and {1e3 * margin_m:,.6g} mm are asked for" if first.clearance_m > 0.0 else ""
     raise InputError(
         f"{first.component} is {1e3 * first.clearance_m:.4g} mm from {first.obstacle} in every configuration{asked}, "
-        f"so nothing is free of it; if that is meant, write `ignore: [{ignored}]` there",
+        f"so nothing is free of it; if that is meant, write `{line}",
         ("world", first.obstacle),
     )

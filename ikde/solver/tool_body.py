@@ -74,7 +74,7 @@ def _list_carriers(robot: Robot) -> dict[str, str]:
 def rule_out_by_tool(problem: Problem, targets: Targets) -> Ints:
     """Index of `world` in `STOP_REASONS` for targets [T] at which the tool's body is too near an obstacle, else -1."""
     ruled_out = np.full(len(targets), -1)
-    if problem.collision.obstacles and find_tool_body(problem.collision.own) is not None:
+    if problem.collision.obstacles and find_tool_body(problem.collision.laden) is not None:
         for first in range(0, len(targets), CHUNK):
             some = slice(first, first + CHUNK)
             ruled_out[some][(measure_shortage(problem, targets[some]) > 0.0).any(axis=(1, 2))] = _WORLD
@@ -87,7 +87,7 @@ def measure_shortage(problem: Problem, targets: Targets) -> Floats:
     At or below 0 it is not proved to be too near.
     """
     collision, settings = problem.collision, problem.settings
-    body, (groups, less_m) = find_tool_body(collision.own), list_world(collision)
+    body, (groups, less_m) = find_tool_body(collision.laden), list_world(collision)
     assert body is not None
     middle, room = _place(body.centres, targets)
     room = room + settings.position_tolerance_m + ROUNDING
@@ -114,7 +114,7 @@ def _place(centres: Floats, targets: Targets) -> tuple[Floats, Floats]:
 def tell_tool_body(problem: Problem, target: Target) -> tuple[str, dict[tuple[str, str], int]]:
     """One line why a target that is ruled out so has no solution; and the obstacles in the way."""
     collision = problem.collision
-    body, short_m = find_tool_body(collision.own), measure_shortage(problem, Targets.of([target]))[0]
+    body, short_m = find_tool_body(collision.laden), measure_shortage(problem, Targets.of([target]))[0]
     assert body is not None
     worst = [divmod(place, short_m.shape[1]) for place in np.argsort(-short_m, axis=None, kind="stable").tolist()]
     found: dict[str, str] = {}
