@@ -64,6 +64,8 @@ world: ikde.World = ikde.load_world("kitchen.yaml")
 notes = ikde.read_world("kitchen.yaml").notes
 among = ikde.CollisionModel.of("ur5").in_world(world.remove("lamp"), 0.005, {"wrist_3": 0.0})
 result = ikde.solve("ur5", (0.4, 0.2, 0.3), collision=among)
+held: ikde.World = world.attach("can", "tool", robot="ur5", q=np.zeros(6), may_touch=["top"])
+print(held.attached[0].protrusion_m, held.detach("can", robot="ur5", q=np.ones(6)).names, held.detach("can").digest)
 files: tuple[Path, ...] = ikde.write_world(world, "copy.yaml", ["a note"])
 
 batch = ikde.load_batch("batch.yaml")

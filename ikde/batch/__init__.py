@@ -1,1 +1,1 @@
-"""Floor 5: many solves: what a run file says, and how it runs, stops and goes on."""
+"""Floor 6: many solves: what a run file says, and how it runs, stops and goes on."""

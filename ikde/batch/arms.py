@@ -54,7 +54,7 @@ def make_arm(name: str, robot: Robot, entry: SolveEntry, units: UnitsEntry, worl
     with nullcontext() if world is None else world.errors():
         if world is None and entry.margin is not None:
             raise InputError("a margin needs a world to be kept from", ("margin",))
-        if world is not None and world.world.obstacles:
+        if world is not None and (world.world.obstacles or world.world.attached):
             margins = str(entry.margin) if entry.margin is not None else None
             collision = collision.in_world(world.world, *read_margins(margins, units.length_m))
         problem = make_problem(
@@ -74,7 +74,7 @@ def describe_arm(arm: Arm) -> dict[str, Any]:
     problem, names = arm.problem, arm.problem.robot.joint_names
     start, model = dict(zip(names, problem.lower, strict=True)), problem.collision
     place: dict[str, dict[str, Any]] = {} if arm.world is None else {"world": {"name": arm.world}}
-    if model.obstacles:
+    if model.is_in_world:
         kept = {"margin_m": model.margin_m, "margins_m": dict(model.margins_m)}
         place["world"] |= {"digest": model.world.digest, **kept}
     return as_plain(

@@ -90,7 +90,8 @@ def _graded(rows: SolveResults, grader: Detector) -> Columns:
 def place_grader(collision: CollisionModel, grader: Detector) -> CollisionModel:
     """A grader in the world of an arm, with its margins; raises `InputError` for what the grader's spheres lack."""
     own = CollisionModel(robot=collision.robot, detector=grader)
-    if not collision.obstacles:
+    if not collision.is_in_world:
         return own
-    margins_m = {name: margin_m for name, margin_m in collision.margins_m if name in own.components}
+    known = {*own.components, *(thing.name for thing in collision.world.attached)}
+    margins_m = {name: margin_m for name, margin_m in collision.margins_m if name in known}
     return own.in_world(collision.world, collision.margin_m, margins_m)

@@ -7,7 +7,7 @@ from ikde.cli.candidates import DEFAULT_ROBOT
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.output import layout, print_json, print_result
 from ikde.cli.robot_choice import ToolOption, read_whole
-from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
+from ikde.cli.world_options import AttachOption, MarginOption, Pick, WorldOption, place_in_world
 
 
 def check(
@@ -19,6 +19,7 @@ def check(
     safe_distance: options.SafeDistanceOption = None,
     world: WorldOption = None,
     margin: MarginOption = None,
+    attach: AttachOption = None,
     unit: options.UnitOption = options.LengthUnit.m,
     angles: options.AnglesOption = options.AngleUnit.rad,
     convention: options.ConventionOption = None,
@@ -38,7 +39,7 @@ def check(
     model = read_whole(robot, tool)
     values = options.read_q(model, q, unit, angles, convention)
     collision = options.read_collision(model, detector, pairs, safe_distance, unit)
-    collision = place_in_world(collision, world, margin, unit)
+    collision = place_in_world(collision, world, margin, unit, Pick(attach, values))
     result = check_configuration(model, values, collision)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)

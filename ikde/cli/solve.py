@@ -12,7 +12,7 @@ from ikde.cli.options import of_robot, of_search, of_target
 from ikde.cli.output import layout, print_json, print_note, print_result, working
 from ikde.cli.robot_choice import ToolOption, hold_at, read_robot
 from ikde.cli.startup import skip_blas_probe
-from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
+from ikde.cli.world_options import AttachOption, MarginOption, Pick, WorldOption, place_in_world
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
 if TYPE_CHECKING:
@@ -110,6 +110,7 @@ def solve(
     safe_distance: options.SafeDistanceOption = None,
     world: WorldOption = None,
     margin: MarginOption = None,
+    attach: AttachOption = None,
     seed: SeedOption = 0,
     count: CountOption = 1,
     rank: RankOption = "motion",
@@ -144,7 +145,7 @@ def solve(
     target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
     checked = options.read_collision(model, detector, pairs, safe_distance, unit)
-    checked = place_in_world(checked, world, margin, unit)
+    checked = place_in_world(checked, world, margin, unit, Pick(attach, start))
     convention_offsets(model, convention)  # a wrong name is found before the search
     frozen = options.read_freeze(model, freeze, unit, angles, convention)
     weighed = None if weights is None else parse_weights(model, weights)

@@ -13,7 +13,7 @@ import typer
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
 from ikde.cli.output import Working, layout, print_json, print_result, print_written, working
-from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
+from ikde.cli.world_options import AttachOption, MarginOption, Pick, WorldOption, place_in_world
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -39,6 +39,7 @@ def track(
     ] = None,
     world: WorldOption = None,
     margin: MarginOption = None,
+    attach: AttachOption = None,
     unit: Annotated[LengthUnit, instead("--unit", help="Unit of lengths in --start and --margin.")] = LengthUnit.m,
     angles: Annotated[AngleUnit, instead("--angles", help="Unit of angles in --start.")] = AngleUnit.rad,
     convention: Annotated[
@@ -62,10 +63,19 @@ def track(
     gc.enable()
     plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
-    plan = replace(plan, collision=place_in_world(plan.collision, world, margin, unit))
+    picked = Pick(attach, plan.start if begin is None else begin)
+    plan = replace(plan, collision=place_in_world(plan.collision, world, margin, unit, picked))
     plan = plan if world is None else replace(plan, world_file=str(world))
     plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
-    given = {"method": method, "drive": drive, "seed": seed, "start": start, "world": world, "margin": margin}
+    given = {
+        "method": method,
+        "drive": drive,
+        "seed": seed,
+        "start": start,
+        "world": world,
+        "margin": margin,
+        "attach": attach,
+    }
     units = {"unit": unit if unit != LengthUnit.m else None, "angles": angles if angles != AngleUnit.rad else None}
     command = repeat_command(["track", str(spec)], {**given, **units, "convention": convention})
     with open_folder(out) if out else nullcontext():

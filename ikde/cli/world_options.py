@@ -1,13 +1,15 @@
 """Options of commands that mind a world, and how they become a collision model."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from ikde.cli.options import LengthUnit, of_collision
 from ikde.cli.output import print_note
 
 if TYPE_CHECKING:
+    from ikde.kernels.arrays import Floats
     from ikde.model.collision_model import CollisionModel
+    from ikde.model.world import World
 
 WorldOption = Annotated[
     Path | None,
@@ -20,20 +22,36 @@ MarginOption = Annotated[
         help="Distance to keep from the world, in --unit; C=D is that of a component in its place, as in 10,gripper=0.",
     ),
 ]
+AttachOption = Annotated[
+    str | None,
+    of_collision(
+        metavar="OBJECT=FRAME,..",
+        help="Objects of the world that the robot holds, picked up where they stand, with the robot at the values that "
+        "the command knows (--near, --q, --start), else home. mug=tool:table+finger: what it may touch.",
+    ),
+]
 NAMED = 3  # pairs in a note
 NEAR_M = 0.02  # a gap that could be asked for as a margin
 
 
+class Pick(NamedTuple):
+    """What is typed to be attached, and the joint values [N] at which it is picked up; None: home."""
+
+    text: str | None = None
+    q: "Floats | None" = None
+
+
 def place_in_world(
-    collision: "CollisionModel", world: Path | None, margin: str | None, unit: LengthUnit
+    collision: "CollisionModel", world: Path | None, margin: str | None, unit: LengthUnit, pick: Pick = Pick()
 ) -> "CollisionModel":
-    """The robot in the world of a file; stderr says how it was read, and what is near whatever joints do.
+    """The robot in the world of a file; stderr says how it was read, what is near whatever joints do, and what it
+    holds.
 
     A world and margins that `collision` has already are kept where no others are given.
     """
     from ikde.errors import InputError
 
-    if world is None and margin is None:
+    if world is None and margin is None and pick.text is None:
         return collision
     from ikde.formats.margins import read_margins
     from ikde.formats.units import LENGTHS_M
@@ -44,16 +62,21 @@ def place_in_world(
     margin_m, margins_m = kept if margin is None else read_margins(margin, LENGTHS_M[unit])
     if world is None:
         if collision.world is NOTHING:
-            raise InputError("a margin needs a --world to be kept from", ("margin",))
-        model = collision.in_world(collision.world, margin_m, margins_m)
+            what = (
+                "a margin needs a --world to be kept from" if margin is not None else "expected a --world to pick from"
+            )
+            raise InputError(what, ("margin" if margin is not None else "attach",))
+        model = collision.in_world(_pick_up(collision, collision.world, pick), margin_m, margins_m)
         refuse_touching(model)
+        _note_held(model, pick)
         return model
     from ikde.io.world_file import read_world
 
     found = read_world(world)
     with found.errors():
-        model = collision.in_world(found.world, margin_m, margins_m)
+        model = collision.in_world(_pick_up(collision, found.world, pick), margin_m, margins_m)
         refuse_touching(model)
+    _note_held(model, pick)
     for note in found.notes:
         print_note(f"ikde: {note}")
     near = [pair for pair in find_standing_obstacles(model) if pair.clearance_m <= NEAR_M]
@@ -63,3 +86,22 @@ def place_in_world(
         more = f" and {len(near) - NAMED} more" if len(near) > NAMED else ""
         print_note(f"ikde: as near in every configuration: {named}{more}")
     return model
+
+
+def _pick_up(collision: "CollisionModel", world: "World", pick: Pick) -> "World":
+    """The world after all that is typed has been picked up."""
+    from ikde.formats.attached import read_attached
+
+    for held in [] if pick.text is None else read_attached(pick.text):
+        robot = collision.robot
+        known = {"q": robot.home if pick.q is None else pick.q, "may_touch": held.may_touch}
+        world = world.attach(held.name, held.frame, robot=robot, **known)
+    return world
+
+
+def _note_held(model: "CollisionModel", pick: Pick) -> None:
+    """Say how what was picked up is compared."""
+    for thing in model.world.attached if pick.text is not None else ():
+        out_mm = 1e3 * (thing.protrusion_m or 0.0)
+        spheres = f"{len(thing.spheres)} spheres, up to {out_mm:.3g} mm beyond it"
+        print_note(f"ikde: {thing.frame} holds {thing.name}: {spheres}")

@@ -1,1 +1,1 @@
-"""Floor 4: what all files that users write and get share: entries, tables, units, errors in place, whole files."""
+"""Floor 5: what all files that users write and get share: entries, tables, units, errors in place, whole files."""

@@ -1,1 +1,1 @@
-"""Floor 2: what a robot, a target and a detector are, and how they become arrays."""
+"""Floor 3: what a robot, a target and a detector are, and how they become arrays."""

@@ -1,18 +1,18 @@
 """A world of obstacles, as values: named, posed, each with a margin of its own. Worlds never become types or text."""
 
 import hashlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
-from typing import Any, Generic, TypeVar, cast
+from typing import Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import Floats
-from ikde.model.arguments import Pose, find_matrix
+from ikde.model.arguments import Pose, RobotLike, find_matrix
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE, WORLD
@@ -202,7 +202,18 @@ class World(ByFields):
         off = (self.switched_off - groups.keys()) | {group for group, on in groups.items() if not on}
         return replace(self, switched_off=frozenset(off))
 
-    def attach(self, name: str, to: str | None = None, **how: Any) -> "World":
+    def attach(
+        self,
+        name: str,
+        to: str | None = None,
+        *,
+        robot: RobotLike | None = None,
+        q: ArrayLike | Mapping[str, float] | None = None,
+        T_frame_object: "ArrayLike | Pose | None" = None,
+        may_touch: Iterable[str] = (),
+        spheres: ArrayLike | None = None,
+        protrusion_m: float | None = None,
+    ) -> "World":
         """The world in which a frame of the robot holds an obstacle, from now on one of the robot's components.
 
         Its solids become spheres that hold all of it; by how much these stand out of it is said (`attached`). They are
@@ -212,34 +223,43 @@ class World(ByFields):
         Args:
             name: of an obstacle that counts.
             to: a frame of the robot that a joint moves; None: the tool, by `robot`.
-            **how: where it is held and what it may touch:
-                robot, q: the robot and the joint values [N], m and rad, at which it is picked up from where it stands;
-                without `q`, at home. What it touches of the robot there is refused unless it may be touched.
-                T_frame_object: its pose [4, 4] in the frame, m, in place of that.
-                may_touch: names of components, obstacles and attached objects that it may touch; what the obstacle
-                itself is allowed to touch (`ignore`) is added.
-                spheres: [n, 4] centre in the object's frame and radius, m, in place of the own cover.
-                protrusion_m: how far spheres of the own cover may stand out of it, m; None: 5 mm, or as much more as
-                up to 128 spheres take.
+            robot: the robot, its name or the path of its file.
+            q: the joint values [N], m and rad, or by name, at which it is picked up from where it stands; None: home.
+                What it touches of the robot there is refused unless it may be touched.
+            T_frame_object: its pose [4, 4] in the frame, m, in place of that.
+            may_touch: names of components, obstacles and attached objects that it may touch; what the obstacle is
+                allowed to touch (`ignore`) is added.
+            spheres: [n, 4] centre in the object's frame and radius, m, in place of ikde's own.
+            protrusion_m: how far ikde's own may stand out of it, m; None: 5 mm, or as much more as up to 128 take.
 
         Raises:
             InputError: for what is attached already, an unknown obstacle or frame, a frame that no joint moves, clouds
                 and half-spaces, and for what would touch the robot where it is picked up.
         """
-        return import_module("ikde.solver.attach").attach(self, name, to, **how)  # on floors above this one
+        where = {"robot": robot, "q": q, "T_frame_object": T_frame_object}
+        how = {"may_touch": may_touch, "spheres": spheres, "protrusion_m": protrusion_m}
+        return import_module("ikde.solver.attach").attach(self, name, to, **where, **how)  # on a floor above this one
 
-    def detach(self, name: str, T_world_object: "ArrayLike | Pose | None" = None, **where: Any) -> "World":
+    def detach(
+        self,
+        name: str,
+        T_world_object: "ArrayLike | Pose | None" = None,
+        *,
+        robot: RobotLike | None = None,
+        q: ArrayLike | Mapping[str, float] | None = None,
+    ) -> "World":
         """The world in which an attached object is an obstacle again.
 
         Args:
             name: of what is attached.
             T_world_object: where it is put [4, 4], m; None: where the robot holds it, or where it was picked up.
-            **where: `robot` and `q`, the joint values [N] at which it is let go; nothing: where it was picked up.
+            robot: the robot that holds it.
+            q: the joint values [N], m and rad, or by name, at which it is let go; None: where it was picked up.
 
         Raises:
             InputError: for what is not attached, or joint values without a robot.
         """
-        return import_module("ikde.solver.attach").detach(self, name, T_world_object, **where)
+        return import_module("ikde.solver.attach").detach(self, name, T_world_object, robot=robot, q=q)
 
     @cached_property
     def _places(self) -> dict[str, int]:

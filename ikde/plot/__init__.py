@@ -1,1 +1,1 @@
-"""Floor 7: figures. Matplotlib is imported only when something is drawn."""
+"""Floor 8: figures. Matplotlib is imported only when something is drawn."""

@@ -108,3 +108,39 @@ def test_batches_take_no_such_option(refuse, write, command):
     error = refuse(*command, "--world", write(FREE))
     assert "--world" in error
     assert error.count("\n") == 1
+
+
+HELD = """obstacles:
+  cup: {sphere: {radius: 0.03}, position: [0.45, 0, 0.9]}
+  wall: {box: [0.1, 2, 2], position: [2, 0, 1]}
+"""
+
+
+def test_what_the_robot_holds_is_picked_up_where_it_is_and_compared(cli, write, tmp_path):
+    write(HELD)
+    known = "--robot", FILE, "--world", tmp_path / "world.yaml"
+    outcome = cli("check", *known, "--attach", "cup=tip", "--json")
+    assert (outcome.code, outcome.err) == (0, "ikde: tip holds cup: 1 spheres, up to 0 mm beyond it\n")
+    assert {"floor", "post", "arm"} == {pair["a"] for pair in outcome.data["pairs"] if pair["b"] == "cup"}
+    assert [row["obstacle"] for row in outcome.data["obstacles"]] == ["wall"]
+    place = "--position", "0.3", "0.2", "0.8", "--near", "turn=0.1 shoulder=0.5 reach=0.2"
+    assert cli("solve", *known, *place, "--attach", "cup=tip:wall").code == 0
+    assert cli("solve", *known, *place, "--attach", "cup=tip", "--margin", "0.01,cup=0").code == 0
+
+
+@pytest.mark.parametrize(
+    ("attach", "message"),
+    [
+        ("cap=tip", "no obstacle is called 'cap' (did you mean 'cup'?)"),
+        ("cup=tup", "has no frame 'tup'"),
+        ("cup=tip,cup=tip", "'cup' is attached to tip already: detach it first"),
+        ("cup=tip:wal", "no component and no obstacle is called 'wal' (did you mean 'wall'?)"),
+        ("cup", "expected OBJECT=FRAME or OBJECT=FRAME:T+T, got 'cup'"),
+    ],
+)
+def test_what_cannot_be_held_is_refused_in_one_line(cli, write, tmp_path, attach, message):
+    write(HELD)
+    outcome = cli("check", "--robot", FILE, "--world", tmp_path / "world.yaml", "--attach", attach)
+    assert (outcome.code, outcome.err.count("\n")) == (2, 1)
+    assert message in outcome.err
+    assert cli("check", "--robot", FILE, "--attach", attach).err.endswith("attach: expected a --world to pick from\n")
