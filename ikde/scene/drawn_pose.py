@@ -37,6 +37,7 @@ class Role(StrEnum):
     LINK = "link"
     OBSTACLE = "obstacle"
     TOUCHED = "obstacle that is too near"
+    HELD = "held object"
 
 
 COLORS: Mapping[Role, str] = {  # as the paper draws it: arm red, platform blue, collisions black
@@ -48,6 +49,7 @@ COLORS: Mapping[Role, str] = {  # as the paper draws it: arm red, platform blue,
     Role.LINK: "#333333",
     Role.OBSTACLE: "#6f7f8f",
     Role.TOUCHED: "#8e24aa",
+    Role.HELD: "#9c6b1c",
 }
 AXIS_COLORS = ("#c00000", "#008000", "#0000c0")  # of a frame's x, y and z
 
@@ -67,7 +69,7 @@ class DrawnRobot:
     parts: NDArray[np.intp]
     """Index of each sphere's component [S]."""
     roles: NDArray[np.str_]
-    """`Role.ARM`, `BASE` or `COLLIDING` of each component [..., C]."""
+    """`Role.ARM`, `BASE`, `HELD` or `COLLIDING` of each component [..., C]."""
 
     def list_spheres(self, component: str) -> tuple[Floats, Floats]:
         """Centres [..., S, 3] and radii [S] of a component, m."""
@@ -177,11 +179,13 @@ def draw_robot(collision: CollisionModel, q: Floats, gaps_m: Floats, links: Sequ
 def _choose_roles(collision: CollisionModel, components: Sequence[str], gaps_m: Floats) -> NDArray[np.str_]:
     """The role of each component [..., C]."""
     base, pairs = base_components(collision), [*collision.pairs]
+    held = {thing.name for thing in collision.world.attached}
     pairs += [(name, "") for name, _ in collision.all_pairs[len(pairs) :]]  # an obstacle may be called like a component
     pairs = pairs[: gaps_m.shape[-1]]
     involved = np.array([[name in pair for name in components] for pair in pairs], bool)
     touching = (gaps_m <= collision.limit_m)[..., None] & involved.reshape(len(pairs), len(components))
     own = np.where([name in base for name in components], Role.BASE, Role.ARM)
+    own = np.where([name in held for name in components], Role.HELD, own)
     return np.where(touching.any(axis=-2), Role.COLLIDING, own)
 
 

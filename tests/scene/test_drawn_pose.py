@@ -5,7 +5,10 @@ import pytest
 
 import ikde
 from ikde.model.collision_model import CollisionModel
+from ikde.model.world import make_world
 from ikde.scene.drawn_pose import Role, base_components, draw_frames, draw_pose
+from tests.attached import OWN, STICK, hold
+from tests.three_joints import ROBOT, free_q
 
 TARGET = ikde.Target((0.8, 0.5, 1.0))
 
@@ -126,3 +129,14 @@ def test_the_base_of_the_paper_is_platform_and_load(qiao):
 def test_the_base_of_a_fixed_robot_is_its_foot(name, base):
     robot = ikde.load_robot(name)
     assert base_components(CollisionModel.of(robot)) == base
+
+
+def test_what_is_held_is_drawn_with_the_robot_in_its_own_role():
+    model, q = OWN.in_world(hold(make_world([]), ball=False)), free_q(1)[0]
+    pose = draw_pose(model, q)
+    roles = dict(zip(pose.robot.components, pose.robot.roles, strict=True))
+    assert roles["stick"] == Role.HELD
+    assert pose.robot.list_spheres("stick")[1].tolist() == [radius for *_, radius in STICK]
+    colliding = next(q for q in free_q(100) if ikde.check(ROBOT, q, model).collision)
+    roles = dict(zip(pose.robot.components, draw_pose(model, colliding).robot.roles, strict=True))
+    assert roles["stick"] == Role.COLLIDING
