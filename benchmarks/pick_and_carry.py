@@ -8,10 +8,10 @@ many m and is set down again where it stood, by two tracks of three seconds each
 followed and certified, or refused with its reason.
 
 Each motion is judged by this script from the text of URDF and scene, by `scenes.Twin`, which shares nothing with ikde
-but the object's spheres, and that these hold the can is checked with points of its surface. It looks at the samples and
-four moments of each step: the tool on its line, no sphere of robot or can nearer to an obstacle than the certificate says,
-the can's none nearer to a link, and no link nearer to another one of ikde's list. Where a track is refused, the judge
-looks whether what is named is near.
+but the object's spheres, and that these hold the can is checked with points of it. It looks at four moments of each
+step: the tool on its line, no sphere of robot or can nearer to an obstacle than the certificate says, the can's none
+nearer to a link, and no link nearer to another one of ikde's list. Where a track is refused, the judge looks whether
+what is named is near.
 """
 
 import argparse

@@ -8,8 +8,9 @@ from ikde.formats.entries import Entry, Number, Quaternion, UnitsEntry, Vector
 from ikde.formats.names import Name, Text
 from ikde.model.robot import WORLD
 from ikde.model.world import MAX_OBSTACLES
+from ikde.spheres.primitives import MAX_SPHERES
 
-MAX_PARTS, MAX_FRAMES = 10_000, 10_000
+MAX_PARTS, MAX_FRAMES, MAX_ATTACHED = 10_000, 10_000, 100
 MAX_LISTED = 20_000  # points that stand in a file itself
 
 
@@ -133,6 +134,29 @@ class ObstacleEntry(SolidEntry):
     """What it is switched on and off with."""
 
 
+class AttachedEntry(SolidEntry):
+    """What the robot holds: one solid or several as `parts`, placed in a frame that a joint moves."""
+
+    parts: Annotated[list[SolidEntry], Field(max_length=MAX_PARTS)] | None = None
+    """Solids that belong together, each placed in the object's frame."""
+    frame: Name
+    """The frame of the robot that holds it, or one of `frames` that is placed in such a frame."""
+    may_touch: list[Name] = []
+    """Components of the robot, obstacles and other attached objects that it may touch."""
+    spheres: Annotated[list[Quaternion], Field(min_length=1, max_length=MAX_SPHERES)] | None = None
+    """Centre in the object's frame and radius: x, y, z, r; in place of those that ikde makes."""
+    protrusion: Number | None = None
+    """How far spheres may stand out of it; of `spheres` that are given, how far they do."""
+    picked_from: FramePlaceEntry | None = None
+    """Where it stood before; by default the world's origin."""
+    margin: Number = 0.0
+    """Added to the distance that it keeps from obstacles."""
+    ignore: list[Name] = []
+    """Components of the robot that may touch it, also as an obstacle."""
+    group: Name | None = None
+    """What it is switched with as an obstacle."""
+
+
 class WorldFile(Entry):
     """The whole file."""
 
@@ -144,6 +168,8 @@ class WorldFile(Entry):
     """What stands there, by name."""
     switched_off: list[Name] = []
     """Groups that do not count."""
+    attached: Annotated[dict[Name, AttachedEntry], Field(max_length=MAX_ATTACHED)] = {}
+    """What the robot holds, by name."""
 
 
 SOLIDS = tuple(key for key in SolidEntry.model_fields if key not in PlaceEntry.model_fields)

@@ -4,6 +4,7 @@ What is not known is refused by name: a scene that is read in part would be call
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,12 @@ from ikde.io.scene_values import (
     make_pose,
 )
 from ikde.kernels.arrays import Floats
+from ikde.model.pack import pack_floats
 from ikde.model.robot import WORLD
 from ikde.model.rotation import rotation_with_z
 from ikde.model.solids import IDENTITY, Solid, SolidKind, make_solid
-from ikde.model.world import MAX_OBSTACLES, Obstacle, World, make_obstacle, make_world
+from ikde.model.world import MAX_OBSTACLES, Attached, Obstacle, World, make_obstacle, make_world
+from ikde.solver.cover_solid import cover_solids, refuse_endless
 
 KINDS: dict[str, tuple[SolidKind, tuple[str, ...]]] = {  # with what their dimensions are
     "box": ("box", ("x", "y", "z")),
@@ -79,12 +82,35 @@ def read_moveit_scene(data: Mapping[str, Any], reading: Reading) -> World:
     for place, (name, entry) in enumerate(entries.items()):
         with prefix_errors(*where, "collision_objects", place):
             obstacles.append(_read_object(name, entry, frames, allowed.get(name, ()), reading))
-    return make_world(obstacles)
+    attached = []
+    with prefix_errors("robot_state"):
+        listed = as_list(as_mapping(scene.get("robot_state")).get("attached_collision_objects"))
+    for place, value in enumerate(listed):
+        with prefix_errors("robot_state", "attached_collision_objects", place):
+            attached.append(_read_attached(as_mapping(value), reading))
+    return make_world(obstacles, (), attached)
+
+
+def _read_attached(entry: Mapping[str, Any], reading: Reading) -> Attached:
+    """An object whose poses are in the link that holds it; it may touch that, and `touch_links`."""
+    check_keys(entry, ("link_name", "object", "touch_links", "detach_posture", "weight"))
+    link, held = as_name(get(entry, "link_name")), as_mapping(get(entry, "object"))
+    touch = tuple(as_name(name) for name in as_list(entry.get("touch_links")))
+    with prefix_errors("object"):
+        check_keys(held, OBJECT)
+        frame = _read_frame(held)
+        if frame != link:
+            message = f"expected poses in {quoted(link)}, which holds it, got them in {quoted(frame)}"
+            raise InputError(message, ("header", "frame_id"))
+        found = _read_object(as_name(get(held, "id")), held, Frames(), (), reading)
+        refuse_endless(found.solids)
+        spheres, out_m = cover_solids(found.solids)
+        obstacle = replace(found, frame=WORLD, T_world_obstacle=IDENTITY)
+    known = {"spheres": pack_floats(spheres), "protrusion_m": out_m, "may_touch": tuple(dict.fromkeys(touch))}
+    return Attached(obstacle=obstacle, frame=link, T_frame_object=found.T_world_obstacle, **known)
 
 
 def _refuse_unread(scene: Mapping[str, Any]) -> None:
-    if as_mapping(scene.get("robot_state")).get("attached_collision_objects"):
-        raise InputError("attached objects are not read", ("robot_state", "attached_collision_objects"))
     for key, value, neutral in (("link_padding", "padding", 0.0), ("link_scale", "scale", 1.0)):
         for place, entry in enumerate(as_list(scene.get(key))):
             if as_mapping(entry).get(value, neutral) != neutral:

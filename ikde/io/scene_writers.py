@@ -76,6 +76,7 @@ def _list_lost(world: World) -> list[str]:
     """What neither format holds."""
     lost = [f"{o.name}: left out, group {o.group} is off" for o in world.obstacles if o.group in world.switched_off]
     lost += [f"{o.name}: its margin of {o.margin_m * 1e3:g} mm" for o in world.active if o.margin_m]
+    lost += [f"{thing.name}: left out, it is attached to {thing.frame}" for thing in world.attached]
     return lost + [f"{o.name}: what ignores it ({', '.join(o.ignore)})" for o in world.active if o.ignore]
 
 

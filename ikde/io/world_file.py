@@ -39,9 +39,16 @@ class ReadWorld(NamedTuple):
         except FileError:
             raise
         except InputError as error:
+            if len(error.where) > 1 and error.where[0] == "attached" and error.where[1] in self._held:
+                raise self.document.error(error.message, error.where) from None
             if len(error.where) < 2 or error.where[0] not in OF_WORLD or error.where[1] not in self.world.names:
                 raise
             raise self.error(error.message, str(error.where[1]), *error.where[2:]) from None
+
+    @property
+    def _held(self) -> Mapping[str, Any]:
+        """What the file itself says that the robot holds."""
+        return self.document.data.get("attached") or {} if self.format == "ikde" else {}
 
     def error(self, message: str, name: str, *inside: str | int) -> InputError:
         """An error about an obstacle, at its place in the file."""

@@ -7,7 +7,7 @@ from ikde.io.world_file import ReadWorld
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack_world import find_fixed_frames
 from ikde.model.world import Obstacle
-from ikde.solver.standing import StandingObstacle, find_standing_obstacles
+from ikde.solver.standing import StandingObstacle, find_standing_obstacles, refuse_attached
 
 
 def check_fit(found: ReadWorld, collision: CollisionModel) -> tuple[StandingObstacle, ...]:
@@ -32,7 +32,10 @@ def _check(found: ReadWorld, collision: CollisionModel) -> tuple[tuple[StandingO
         own = list(_find_unknown(found, obstacle, collision))
         faults += own
         unfit |= {obstacle.name} if own else set()
-    standing = find_standing_obstacles(collision.in_world(world.remove(*unfit)))
+    with found.errors():
+        model = collision.in_world(world.remove(*unfit))
+        refuse_attached(model)
+    standing = find_standing_obstacles(model)
     touching = [pair for pair in standing if pair.touches]
     for name in dict.fromkeys(pair.obstacle for pair in touching):
         some = [pair for pair in touching if pair.obstacle == name]

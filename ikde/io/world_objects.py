@@ -10,8 +10,10 @@ from ikde.formats.error_path import prefix_errors
 from ikde.formats.units import LENGTHS_M
 from ikde.formats.world_entries import (
     SOLIDS,
+    AttachedEntry,
     CloudEntry,
     ColumnsEntry,
+    FramePlaceEntry,
     MeshEntry,
     ObstacleEntry,
     PlaceEntry,
@@ -22,10 +24,13 @@ from ikde.io.cloud_file import read_cloud
 from ikde.io.mesh_solids import find_unit, read_mesh_hulls
 from ikde.io.scene_values import Frames, Reading, compose, rotation_from_unit_quat
 from ikde.kernels.arrays import Floats
+from ikde.model.pack import pack_floats
 from ikde.model.robot import WORLD
 from ikde.model.rotation import check_rotation, length, measure_skew, rotation_from_rpy, rotation_with_z
-from ikde.model.solids import IDENTITY, MAX_CLOUD_POINTS, SIZES, Solid, make_columns, make_solid
-from ikde.model.world import MAX_SOLIDS, Obstacle, World, make_obstacle, make_world
+from ikde.model.solids import IDENTITY, MAX_CLOUD_POINTS, SIZES, Solid, make_columns, make_solid, read_pose
+from ikde.model.world import MAX_SOLIDS, Attached, Obstacle, World, make_obstacle, make_world
+from ikde.solver.attach import FINEST_M, read_protrusion, read_spheres
+from ikde.solver.cover_solid import cover_solids, refuse_endless
 
 ORIENTATIONS = ("rpy", "quat_wxyz", "rotation")
 EXACT = 1e-14  # how far a rotation may be off by rounding alone
@@ -51,10 +56,46 @@ def make_file_world(file: WorldFile, reading: Reading) -> World:
             hulls += sum(solid.kind == "hull" for solid in obstacles[-1].solids)
             if solids > MAX_SOLIDS or hulls > MAX_HULLS:
                 raise InputError(f"expected at most {MAX_SOLIDS:,} solids in all, of them {MAX_HULLS:,} hulls")
-    return make_world(obstacles, file.switched_off)
+    attached = []
+    for name, entry in file.attached.items():
+        with prefix_errors("attached", name):
+            attached.append(_to_attached(name, entry, file.units, frames, reading))
+    return make_world(obstacles, file.switched_off, attached)
 
 
-def _to_obstacle(name: str, entry: ObstacleEntry, units: UnitsEntry, frames: Frames, reading: Reading) -> Obstacle:
+def _to_attached(name: str, entry: AttachedEntry, units: UnitsEntry, frames: Frames, reading: Reading) -> Attached:
+    solids = _list_solids(entry, units, reading)
+    for part in (entry, *(entry.parts or ())):
+        if part.columns is not None:
+            raise InputError("a height field cannot be attached", ("columns",))
+    refuse_endless(solids)
+    stood = entry.picked_from or FramePlaceEntry()
+    with prefix_errors("picked_from"):
+        stands_in, T_frame_given = frames.resolve(stood.frame)
+        T_stood = compose(T_frame_given, _to_pose(stood, units))
+    known = {"margin_m": entry.margin * units.length_m, "ignore": entry.ignore, "group": entry.group}
+    obstacle = make_obstacle(name, solids, T_stood, frame=stands_in, **known)
+    frame, T_frame_given = frames.resolve(entry.frame)
+    out_m = None
+    if entry.protrusion is not None:
+        least_m = FINEST_M if entry.spheres is None else 0.0
+        out_m = read_protrusion(entry.protrusion * units.length_m, ("protrusion",), least_m)
+    if entry.spheres is None:
+        spheres, out_m = cover_solids(solids, out_m)
+    else:
+        spheres = read_spheres(np.array(entry.spheres) * units.length_m)
+    return Attached(
+        obstacle=obstacle,
+        frame=frame,
+        T_frame_object=read_pose(compose(T_frame_given, _to_pose(entry, units)), ("position",)),
+        spheres=pack_floats(spheres),
+        protrusion_m=out_m,
+        may_touch=tuple(dict.fromkeys((*entry.may_touch, *entry.ignore))),
+    )
+
+
+def _list_solids(entry: ObstacleEntry | AttachedEntry, units: UnitsEntry, reading: Reading) -> list[Solid]:
+    """At least one."""
     key = only_key(entry, (*SOLIDS, "parts"))
     solids: list[Solid] = []
     if key != "parts":
@@ -64,6 +105,11 @@ def _to_obstacle(name: str, entry: ObstacleEntry, units: UnitsEntry, frames: Fra
             solids += _to_solids(part, _to_pose(part, units), units, reading)
     if not solids:
         raise InputError("this obstacle has no solid", (key,))
+    return solids
+
+
+def _to_obstacle(name: str, entry: ObstacleEntry, units: UnitsEntry, frames: Frames, reading: Reading) -> Obstacle:
+    solids = _list_solids(entry, units, reading)
     frame, T_frame_given = frames.resolve(entry.frame)
     known = {"frame": frame, "margin_m": entry.margin * units.length_m, "ignore": entry.ignore, "group": entry.group}
     return make_obstacle(name, solids, compose(T_frame_given, _to_pose(entry, units)), **known)

@@ -16,7 +16,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.robot import WORLD
 from ikde.model.rotation import quat_wxyz_from_rotation, rotation_from_quat_wxyz
 from ikde.model.solids import SIZES, Solid
-from ikde.model.world import Obstacle, World
+from ikde.model.world import Attached, Obstacle, World
 
 MAX_INLINE = 1_000  # points of a cloud that stand in the file itself
 
@@ -72,6 +72,13 @@ def format_world_file(world: World, stem: str = "world", notes: Iterable[str] = 
         lines += ["    parts:", *(f"      - {format_flow(e | _pose_entry(s.T_obstacle_solid))}" for e, s in parts)]
     if world.switched_off:
         lines.append(f"switched_off: {format_flow(sorted(world.switched_off))}")
+    if world.attached:
+        lines.append("attached:")
+    for thing in world.attached:
+        lines.append(f"  {format_flow(thing.name)}:")
+        lines += [f"    {key}: {format_flow(value)}" for key, value in _attached_entry(thing).items()]
+        parts = ((_solid_entry(s, stem, files), s) for s in thing.obstacle.solids)
+        lines += ["    parts:", *(f"      - {format_flow(e | _pose_entry(s.T_obstacle_solid))}" for e, s in parts)]
     return WorldText(text="\n".join(lines) + "\n", files=files)
 
 
@@ -92,6 +99,15 @@ def _solid_entry(solid: Solid, stem: str, files: dict[str, bytes]) -> Entry:
         files[name] = buffer.getvalue()
         return {"cloud": {**sizes, "path": name}}
     return {solid.kind: sizes}
+
+
+def _attached_entry(thing: Attached) -> Entry:
+    stood, entry = _obstacle_entry(thing.obstacle), {"frame": thing.frame, **_pose_entry(thing.T_frame_object)}
+    entry |= {key: stood.pop(key) for key in ("margin", "ignore", "group") if key in stood}
+    entry |= {"may_touch": list(thing.may_touch)} if thing.may_touch else {}
+    entry |= {"protrusion": thing.protrusion_m} if thing.protrusion_m is not None else {}
+    entry |= {"picked_from": stood} if stood else {}
+    return entry | {"spheres": thing.spheres.tolist()}
 
 
 def _obstacle_entry(obstacle: Obstacle) -> Entry:

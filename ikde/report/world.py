@@ -10,7 +10,7 @@ import numpy as np
 from ikde.formats.units import LENGTHS_M
 from ikde.model.robot import WORLD
 from ikde.model.solids import SIZES, Solid
-from ikde.model.world import Obstacle, World
+from ikde.model.world import Attached, Obstacle, World
 from ikde.report.numbers import Units, count_of
 from ikde.report.render import make_table, plain, render
 
@@ -23,6 +23,18 @@ def world_json(world: World) -> dict[str, Any]:
     return {
         "digest": world.digest,
         "obstacles": [_obstacle_json(world, obstacle) for obstacle in world.obstacles],
+        "attached": [
+            {
+                "name": thing.name,
+                "frame": thing.frame,
+                "T_frame_object": thing.T_frame_object.tolist(),
+                "spheres": len(thing.spheres),
+                "protrusion_m": thing.protrusion_m,
+                "may_touch": list(thing.may_touch),
+                "picked_from": _obstacle_json(world, thing.obstacle),
+            }
+            for thing in world.attached
+        ],
         "groups": {group: group not in world.switched_off for group in world.groups},
     }
 
@@ -55,7 +67,8 @@ def describe_world(world: World) -> str:
     counted = ", ".join(_count_kind(kind, count) for kind, count in kinds.most_common())
     text = f"{count_of(len(world), 'obstacle')} of {count_of(len(solids), 'solid')}" if solids else "no obstacle"
     off = f"; off: {', '.join(sorted(world.switched_off))}" if world.switched_off else ""
-    return f"{text}{f' ({counted})' if solids else ''}{off}"
+    held = ", ".join(f"{thing.name} to {thing.frame}" for thing in world.attached)
+    return f"{text}{f' ({counted})' if solids else ''}{off}{f'; attached: {held}' if held else ''}"
 
 
 def format_world(
@@ -64,6 +77,7 @@ def format_world(
     """A table of obstacles, a line each or a line a solid; then what is special of some, and the notes."""
     tables = [_table(world, units)] if len(world) else []
     special = [line for obstacle in world.obstacles for line in _describe_special(world, obstacle, units)]
+    special += [_describe_attached(thing, units) for thing in world.attached]
     count = sum(len(obstacle.solids) for obstacle in world.obstacles)
     more = [f"and {count - MAX_ROWS:,} more solids; --json has all"] if count > MAX_ROWS else []
     special = special[:MAX_ROWS]
@@ -130,6 +144,17 @@ def _describe_special(world: World, obstacle: Obstacle, units: Units) -> list[st
     if obstacle.ignore:
         said.append(f"ignores {', '.join(obstacle.ignore)}")
     return [f"{obstacle.name}: {'; '.join(said)}"] if said else []
+
+
+def _describe_attached(thing: Attached, units: Units) -> str:
+    said = [f"attached to {thing.frame}", count_of(len(thing.spheres), "sphere")]
+    if thing.protrusion_m is not None:
+        said[1] += f" that stand out by {units.format_length(thing.protrusion_m)} at most"
+    if thing.obstacle.margin_m:
+        said.append(f"margin {units.format_length(thing.obstacle.margin_m)}")
+    if thing.may_touch:
+        said.append(f"may touch {', '.join(thing.may_touch)}")
+    return f"{thing.name}: {'; '.join(said)}"
 
 
 def _count_kind(kind: str, count: int) -> str:

@@ -18,10 +18,12 @@ from ikde.model.pack import pack_floats
 from ikde.model.robot import MAX_MAGNITUDE, WORLD, Robot
 from ikde.model.solids import MIN_SIZE_M, read_pose
 from ikde.model.world import Attached, World
-from ikde.solver.cover_solid import cover_solids
+from ikde.solver.cover_solid import cover_solids, refuse_endless
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.spheres.primitives import MAX_SPHERES
+
+FINEST_M = 1e-4  # by which spheres are asked to stand out at most
 
 
 def attach(
@@ -55,8 +57,11 @@ def attach(
         T = _find_pose(Ts_world, frame, obstacle.frame, _whole(obstacle.T_world_obstacle), name)
     known = None if own is None else CollisionModel.of(own).components
     touch = _read_touch(world, name, may_touch, known)
-    given = None if spheres is None else _read_spheres(spheres)
-    cover = (given, None) if given is not None else cover_solids(obstacle.solids, _read_protrusion(protrusion_m))
+    given = None if spheres is None else read_spheres(spheres)
+    least_m = FINEST_M if given is None else 0.0
+    out_m = None if protrusion_m is None else read_protrusion(protrusion_m, least_m=least_m)
+    refuse_endless(obstacle.solids)
+    cover = (given, out_m) if given is not None else cover_solids(obstacle.solids, out_m)
     touch = tuple(dict.fromkeys((*touch, *obstacle.ignore)))
     known_of = {"spheres": pack_floats(cover[0]), "protrusion_m": cover[1], "may_touch": touch}
     thing = Attached(obstacle=obstacle, frame=frame, T_frame_object=T, **known_of)
@@ -147,7 +152,8 @@ def _read_touch(world: World, name: str, given: Any, components: tuple[str, ...]
     return touch
 
 
-def _read_spheres(given: ArrayLike) -> Floats:
+def read_spheres(given: ArrayLike) -> Floats:
+    """Centres and radii [n, 4] in m; raises `InputError` for what is none."""
     spheres = read_numbers(given, ("spheres",))
     if spheres.ndim != 2 or spheres.shape[1] != 4 or not 1 <= len(spheres) <= MAX_SPHERES:
         message = f"expected up to {MAX_SPHERES:,} spheres [n, 4], centre and radius in m, got shape {spheres.shape}"
@@ -160,11 +166,10 @@ def _read_spheres(given: ArrayLike) -> Floats:
     return spheres + 0.0
 
 
-def _read_protrusion(given: Any) -> float | None:
-    if given is None:
-        return None
-    if not (is_number(given) and 1e-4 <= given <= MAX_MAGNITUDE):
-        raise InputError(f"expected a length of at least 0.0001 m, got {quoted(given)}", ("protrusion_m",))
+def read_protrusion(given: Any, where: tuple[str | int, ...] = ("protrusion_m",), least_m: float = FINEST_M) -> float:
+    """A length in m; raises `InputError` for what is none, or less than `least_m`."""
+    if not (is_number(given) and least_m <= given <= MAX_MAGNITUDE):
+        raise InputError(f"expected a length of at least {least_m:g} m, got {quoted(given)}", where)
     return float(given)
 
 

@@ -44,9 +44,7 @@ def cover_solids(solids: Sequence[Solid], protrusion_m: float | None = None) -> 
     Raises:
         InputError: for solids that have no end or no inside, and for what would take more than 2,000 spheres.
     """
-    for solid in solids:
-        if solid.kind in NO_END:
-            raise InputError(NO_END[solid.kind], ("solids",))
+    refuse_endless(solids)
     if protrusion_m is not None:
         return _cover_all(solids, protrusion_m, MAX_SPHERES)
     for tried_m in PROTRUSIONS_M:
@@ -55,6 +53,13 @@ def cover_solids(solids: Sequence[Solid], protrusion_m: float | None = None) -> 
         except InputError:
             continue
     raise InputError(f"{len(solids):,} solids would take more than {MAX_SPHERES:,} spheres", ("solids",))
+
+
+def refuse_endless(solids: Sequence[Solid]) -> None:
+    """Raise `InputError` for solids that have no end or no inside: no robot holds them."""
+    for solid in solids:
+        if solid.kind in NO_END:
+            raise InputError(NO_END[solid.kind], ("solids",))
 
 
 def _cover_all(solids: Sequence[Solid], protrusion_m: float, most: int) -> ObjectCover:

@@ -42,6 +42,7 @@ def find_standing_obstacles(collision: CollisionModel) -> tuple[StandingObstacle
     Those alone that are nearer than 20 mm, or than what is asked for.
     """
     widest_m = max([collision.limit_m, collision.margin_m, *dict(collision.margins_m).values()])
+    widest_m += max((thing.obstacle.margin_m for thing in collision.world.attached), default=0.0)
     found, pairs, count = [], len(collision.pairs), len(collision.obstacles)
     for place, standing in enumerate(_find_standing(collision.laden, widest_m).list(collision.obstacles)):
         for name, distance_m in standing:
@@ -163,10 +164,8 @@ def _list_touched(laden: CollisionModel, name: str) -> tuple[str, ...]:
     return () if touching is None else tuple(a if b == name else b for a, b in touching.pairs if name in (a, b))
 
 
-def refuse_touching(collision: CollisionModel) -> None:
-    """Raise `InputError` where a component always touches an obstacle, or an attached object the robot: no
-    configuration would be free.
-    """
+def refuse_attached(collision: CollisionModel) -> None:
+    """Raise `InputError` where an attached object touches the robot in every configuration that is tried."""
     for thing in collision.world.attached:
         touched = _list_touched(collision.laden, thing.name)
         if touched:
@@ -176,6 +175,13 @@ def refuse_touching(collision: CollisionModel) -> None:
                 f"nothing is free of it; if that is meant, write may_touch: [{may_touch}]",
                 ("attached", thing.name),
             )
+
+
+def refuse_touching(collision: CollisionModel) -> None:
+    """Raise `InputError` where a component always touches an obstacle, or an attached object the robot: no
+    configuration would be free.
+    """
+    refuse_attached(collision)
     touching = [pair for pair in find_standing_obstacles(collision) if pair.touches]
     if not touching:
         return

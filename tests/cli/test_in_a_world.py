@@ -110,6 +110,18 @@ def test_batches_take_no_such_option(refuse, write, command):
     assert error.count("\n") == 1
 
 
+@pytest.mark.parametrize("command", ["show", "validate", "convert"])
+def test_files_say_what_is_held(cli, write, tmp_path, command):
+    write("obstacles: {}\nattached: {cup: {frame: tip, sphere: {radius: 0.03}, position: [0, 0, 0.1]}}\n")
+    path = tmp_path / "world.yaml"
+    outcome = cli("worlds", command, path, *(["--robot", FILE] if command == "validate" else []))
+    assert outcome.code == 0
+    assert "attached" in outcome.out
+    assert "cup" in outcome.out
+    pairs = cli("check", "--robot", FILE, "--world", path, "--json").data["pairs"]
+    assert {pair["a"] for pair in pairs if pair["b"] == "cup"} == {"floor", "post", "arm"}
+
+
 HELD = """obstacles:
   cup: {sphere: {radius: 0.03}, position: [0.45, 0, 0.9]}
   wall: {box: [0.1, 2, 2], position: [2, 0, 1]}

@@ -164,7 +164,7 @@ ATTACHED = {"attached_collision_objects": [{"link_name": "hand"}]}
         (scene(change(operation=1)), "operation: expected an object that is added, got 1"),
         (scene(change(shape="box")), PLACE + ".shape: unknown key"),
         (scene(change(header={"frame_id": "can"})), "frame_id: frames are placed in each other: can -> can"),
-        (scene(CAN, robot_state=ATTACHED), "robot_state.attached_collision_objects: attached objects are not read"),
+        (scene(CAN, robot_state=ATTACHED), r"attached_collision_objects\[0\].object: this key is missing"),
         (scene(CAN, link_padding=[{"link_name": "a", "padding": 0.01}]), r"link_padding\[0\]: a link with a padding"),
         (scene(CAN, octomap={}), "octomap: unknown key"),
         ({"world": {"octomap": {"octomap": {"data": [1, 2]}}}}, "world.octomap: an octomap is not read"),
@@ -186,3 +186,24 @@ def test_an_object_that_may_touch_everything_is_refused():
     with pytest.raises(InputError, match="may touch all by default is not read"):
         read(scene(CAN, allowed_collision_matrix=matrix))
     assert read(scene(CAN, allowed_collision_matrix={**matrix, "default_entry_values": [False]}))[0]["can"].ignore == ()
+
+
+def held(**changes):
+    return {"link_name": "hand", "object": {**CAN, "id": "held", "header": {"frame_id": "hand"}}, **changes}
+
+
+def test_objects_that_a_link_holds_are_attached_to_it():
+    state = {"attached_collision_objects": [held(touch_links=["hand", "finger"])]}
+    world = read_moveit_scene(scene(CAN, robot_state=state), Reading(Path()))
+    (thing,) = world.attached
+    assert world.names == (CAN["id"],)
+    assert (thing.name, thing.frame, thing.may_touch) == ("held", "hand", ("hand", "finger"))
+    assert thing.protrusion_m > 0.0
+    assert thing.obstacle.solids == world[CAN["id"]].solids
+    elsewhere = {**CAN, "id": "held", "header": {"frame_id": "base"}}
+    with pytest.raises(InputError, match="expected poses in 'hand', which holds it, got them in 'base'"):
+        state = {"attached_collision_objects": [held(object=elsewhere)]}
+        read_moveit_scene(scene(CAN, robot_state=state), Reading(Path()))
+    with pytest.raises(InputError, match=r"'held' is attached to hand, and another object has its name"):
+        state = {"attached_collision_objects": [held(), held()]}
+        read_moveit_scene(scene(CAN, robot_state=state), Reading(Path()))
