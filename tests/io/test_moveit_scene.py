@@ -200,10 +200,9 @@ def test_objects_that_a_link_holds_are_attached_to_it():
     assert (thing.name, thing.frame, thing.may_touch) == ("held", "hand", ("hand", "finger"))
     assert thing.protrusion_m > 0.0
     assert thing.obstacle.solids == world[CAN["id"]].solids
-    elsewhere = {**CAN, "id": "held", "header": {"frame_id": "base"}}
+    elsewhere = {"attached_collision_objects": [held(object={**CAN, "id": "held", "header": {"frame_id": "base"}})]}
     with pytest.raises(InputError, match="expected poses in 'hand', which holds it, got them in 'base'"):
-        state = {"attached_collision_objects": [held(object=elsewhere)]}
-        read_moveit_scene(scene(CAN, robot_state=state), Reading(Path()))
+        read_moveit_scene(scene(CAN, robot_state=elsewhere), Reading(Path()))
+    twice = {"attached_collision_objects": [held(), held()]}
     with pytest.raises(InputError, match=r"'held' is attached to hand, and another object has its name"):
-        state = {"attached_collision_objects": [held(), held()]}
-        read_moveit_scene(scene(CAN, robot_state=state), Reading(Path()))
+        read_moveit_scene(scene(CAN, robot_state=twice), Reading(Path()))
