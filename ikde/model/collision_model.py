@@ -264,7 +264,7 @@ class CollisionModel:
         if not self.is_in_world:
             return pack_collision(self.robot, self.detector)
         arrays, packer, is_fixed = self.laden._whole
-        kept_m = np.full(len(is_fixed), self.margin_m) if not self.margins_m else self._list_kept_m()
+        kept_m = self._list_kept_m()
         kept_m[is_fixed] = -np.inf
         return arrays._replace(world=packer.pack(self.world, kept_m))
 
@@ -284,6 +284,8 @@ class CollisionModel:
 
     def _list_kept_m(self) -> Floats:
         """The distance that each component keeps [C], m."""
+        if not (self.margins_m or self.world.attached):
+            return np.full(len(self.components), self.margin_m)
         others, own_m = dict(self.margins_m), {thing.name: thing.obstacle.margin_m for thing in self.world.attached}
         return np.array([others.get(c, self.margin_m) + own_m.get(c, 0.0) for c in self.components], dtype=float)
 
