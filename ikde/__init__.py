@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.model.compose import compose as compose
     from ikde.model.convention import from_convention as from_convention
     from ikde.model.convention import to_convention as to_convention
+    from ikde.model.region import Region as Region
     from ikde.model.robot import Detector as Detector
     from ikde.model.robot import Robot as Robot
     from ikde.model.target import Target as Target
@@ -103,6 +104,7 @@ _HOME = {
     "Detector": "ikde.model.robot",
     "Target": "ikde.model.target",
     "Targets": "ikde.model.target",
+    "Region": "ikde.model.region",
     "BulkOptions": "ikde.solver.settings",
     "SolveSettings": "ikde.solver.settings",
     "DeSettings": "ikde.solver.settings",

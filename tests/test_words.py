@@ -38,6 +38,8 @@ ALLOWED = {
     ("ikde/kernels/cache_folder.py", "everybody"): "users of a machine",
     ("docs/security.md", "stranger"): "people who send files",
     ("docs/index.md", "stranger"): "the same",
+    ("ikde/model/region.py", "looks"): "a camera does, at a point",
+    ("docs/index.md", "look at"): "a camera does, at a point",
     ("CHANGELOG.md", ""): "what was renamed, and from what",
 }
 

@@ -12,8 +12,9 @@ import numpy as np
 from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats
 from ikde.kernels.seeds import LUCKY_ATTEMPTS
-from ikde.model.arguments import RobotLike, TargetLike, read_robot, read_target
+from ikde.model.arguments import RobotLike, read_robot, read_target
 from ikde.model.collision_model import CollisionChoice
+from ikde.model.region import GoalLike, Region
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES, Method
@@ -21,6 +22,7 @@ from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights, limit_margin
 from ikde.solver.problem import Freeze, Problem, make_problem
+from ikde.solver.regions import RegionQuestion, RegionSearch
 from ikde.solver.result import SolveResult
 from ikde.solver.results import solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, choose_settings, describe_count, is_count
@@ -55,7 +57,7 @@ class Question(TypedDict, total=False):
 
 def solve_distinct(
     robot: RobotLike,
-    target: TargetLike,
+    target: GoalLike,
     count: int,
     settings: SolveSettings | Mapping[str, Any] | None = None,
     *,
@@ -71,13 +73,14 @@ def solve_distinct(
 
     Args:
         robot: the robot, its name or the path of its file.
-        target: what the tool is asked to do, as for `solve`.
+        target: what the tool is asked to do, as for `solve`; of a `Region` solutions may meet poses of their own.
         count: how many are wanted.
         settings: tolerances and search settings; None for the method's own.
         rank: what comes first, and what is kept of many: `"motion"`, the least from `near`, else home
-            (`SolveResult.motion`); `"clearance"`, the largest; `"limits"`, the largest distance from the joint limits,
-            of the joint that is nearest to one as a share of its range; `"found"`, in the order of the search, the
-            first being that of `solve`. Without a detector there is no clearance to rank by.
+            (`SolveResult.motion`); `"clearance"`, the most to spare between components, and from obstacles, beyond what
+            is asked for (`SolveResult.spare_m`); `"limits"`, the largest distance from the joint limits, of the joint
+            that is nearest to one as a share of its range; `"found"`, in the order of the search, the first being that
+            of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
         question: `collision`, `near`, `freeze` and `weights`, as for `solve`. With `near` the first that is found is a
@@ -86,17 +89,34 @@ def solve_distinct(
     if not is_count(1, MAX_WANTED)(count):
         raise InputError(f"expected {describe_count(1, MAX_WANTED)}, got {quoted(count)}", ("count",))
     check_rank(rank)
-    robot, target = read_robot(robot), read_target(target)
+    robot = read_robot(robot)
     chosen = choose_settings(settings, method)
     problem = make_problem(robot, chosen, **{**NOTHING_ELSE, **question})
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
+    if isinstance(target, Region):
+        return _solve_in_region(RegionQuestion(problem, target, check_seed(seed), 0), count, rank)
+    target = read_target(target)
     options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
     first = confirm(robot, solve(robot, target, chosen, seed=seed, **question))
     if not first.reached or count == 1 or problem.is_fixed:
         return DistinctResults([first])
     look = _sample if ENGINES[chosen.engines[0]].starts_near else _go_on
     solutions = look(replace(problem, descends=False), target, count, first, options)
+    return DistinctResults(sort_solutions(robot, solutions, rank)[:count])
+
+
+def _solve_in_region(question: RegionQuestion, count: int, rank: Rank) -> DistinctResults:
+    """Distinct solutions of a region: each of them meets an exact pose of its own."""
+    robot, search_of = question.problem.robot, RegionSearch(question)
+    solutions: list[SolveResult] = []
+    for number, result in enumerate(search_of.answers(), 1):
+        if all(are_distinct(robot, result.q, other.q) for other in solutions):
+            solutions.append(result)
+        if number >= SAMPLES * count or len(solutions) == count == 1:
+            break
+    if not solutions:
+        return DistinctResults([search_of.give_up()])
     return DistinctResults(sort_solutions(robot, solutions, rank)[:count])
 
 
@@ -132,7 +152,7 @@ def sort_solutions(robot: Robot, solutions: list[SolveResult], rank: Rank) -> li
     """Best first; equals stay in the order in which they were found."""
     costs: dict[Rank, Callable[[SolveResult], float]] = {
         "motion": lambda result: result.motion,
-        "clearance": lambda result: -(result.clearance_m or 0.0),
+        "clearance": lambda result: -(result.spare_m or 0.0),
         "limits": lambda result: -float(limit_margin(robot.lower, robot.upper, result.q)),
         "found": lambda result: 0.0,
     }

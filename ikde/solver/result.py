@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, PAIR
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats
 from ikde.model.collision_model import CollisionModel
+from ikde.model.region import Region
 from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.motion import measure_motion
@@ -108,8 +109,23 @@ class SolveResult:
 
     @cached_property
     def target(self) -> Target:
-        """What was asked for."""
+        """What was asked for; of a region the exact pose that was drawn from it, and reached."""
         return self._parts[2]
+
+    @cached_property
+    def region(self) -> Region | None:
+        """What was asked for, if that has freedom; None: exactly the target."""
+        return None
+
+    @cached_property
+    def alternative(self) -> int | None:
+        """Which part of the region was reached, or was tried last: its place in `region.parts`."""
+        return None
+
+    @cached_property
+    def poses(self) -> int | None:
+        """How many exact poses were drawn from the region."""
+        return None
 
     @cached_property
     def position_error_m(self) -> float:
@@ -141,6 +157,14 @@ class SolveResult:
         return (
             self._row.item(self._maker.joints + 2) + self._maker.problem.collision.extra_m(pair) if pair >= 0 else None
         )
+
+    @cached_property
+    def spare_m(self) -> float | None:
+        """By how much that is more than what is asked for, the safe distance or an obstacle's margins, m: the smallest
+        such difference of all pairs, below 0 in collision; None without a detector."""
+        if self._counted[PAIR] < 0:
+            return None
+        return self._row.item(self._maker.joints + 2) - self._maker.problem.collision.limit_m
 
     @cached_property
     def closest_pair(self) -> tuple[str, str] | None:

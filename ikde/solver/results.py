@@ -49,6 +49,8 @@ class SolveResults(MadeAnew):
     found: SearchState
     outcomes: Outcomes
     compile_seconds: float
+    singles: tuple[SolveResult, ...] | None = None
+    """The rows as they are, where some goals are regions: each target is the exact pose that was drawn; else None."""
 
     @property
     def q(self) -> Floats:
@@ -124,6 +126,12 @@ class SolveResults(MadeAnew):
         """Which engine answered [T]: its place in `engine_table.NAMES`."""
         return self.found.engine
 
+    @property
+    def alternatives(self) -> Ints:
+        """Which part of its region each row has reached, or tried last [T]; -1 for exact targets."""
+        known = [None] * len(self) if self.singles is None else [result.alternative for result in self.singles]
+        return np.array([-1 if place is None else place for place in known], dtype=np.int64)
+
     def __post_init__(self) -> None:
         """What was graded stays what it is: no column can be written to by mistake."""
         for known in (self.found, self.found.metrics, self.outcomes):
@@ -170,7 +178,9 @@ class SolveResults(MadeAnew):
     def _take(self, rows: Ints) -> "SolveResults":
         found = self.found.take(rows)
         outcomes, streams = self.outcomes.take(rows, found), tuple(self.streams[row] for row in rows.tolist())
-        return replace(self, targets=self.targets.take(rows), streams=streams, found=found, outcomes=outcomes)
+        singles = None if self.singles is None else tuple(self.singles[row] for row in rows.tolist())
+        known = {"streams": streams, "found": found, "outcomes": outcomes, "singles": singles}
+        return replace(self, targets=self.targets.take(rows), **known)
 
     def reason(self, index: int) -> str:
         """One line: what happened in this row."""
@@ -203,6 +213,8 @@ class SolveResults(MadeAnew):
 
     def row(self, index: int) -> SolveResult:
         """One row with everything known about it."""
+        if self.singles is not None:
+            return self.singles[index]
         outcomes, metrics, found = self.outcomes, self.outcomes.metrics, self.found
         measured = [getattr(metrics, name)[index] for name in MEASURED]
         blocked = found.pair_counts.row(index)

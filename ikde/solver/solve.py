@@ -9,10 +9,11 @@ from typing import Any
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import read_only
-from ikde.model.arguments import RobotLike, TargetLike, TargetsLike, read_robot, read_target, read_targets
+from ikde.model.arguments import RobotLike, read_robot, read_target
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.region import GoalLike, GoalsLike, Region, read_goals
 from ikde.model.robot import Robot
-from ikde.model.target import Target
+from ikde.model.target import Target, Targets
 from ikde.solver.asker import find_asker
 from ikde.solver.background import choose_way
 from ikde.solver.engine_table import Method
@@ -20,6 +21,8 @@ from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.quick import Quick, find_quick
+from ikde.solver.region_rows import solve_goals
+from ikde.solver.regions import RegionQuestion, solve_region
 from ikde.solver.result import SolveResult, change_result
 from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions, SolveSettings, check_seed, check_stream, choose_settings
@@ -29,7 +32,7 @@ USUAL = BulkOptions()
 
 def solve(
     robot: RobotLike,
-    target: TargetLike,
+    target: GoalLike,
     settings: SolveSettings | Mapping[str, Any] | None = None,
     *,
     seed: int = 0,
@@ -45,7 +48,8 @@ def solve(
     Args:
         robot: the robot, its name or the path of its file.
         target: what the tool is asked to do: a `Target`, a position [3] in m, or a pose [4, 4], also that
-            of another library (`.homogeneous`, `.A`, `.as_matrix()`).
+            of another library (`.homogeneous`, `.A`, `.as_matrix()`); or a `Region`, of which any pose will do: exact
+            ones are drawn, its centre first, and the first that is reached is the `target` of the result.
         settings: tolerances and search settings, or a mapping of some; others are the method's own
             (`SolveSettings.for_method`).
         seed: same seed, same bits. 0 <= seed < 2^64.
@@ -70,6 +74,9 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     started = perf_counter()
+    if isinstance(target, Region):
+        problem = _make_problem(read_robot(robot), choose_settings(settings, method), collision, near, freeze, weights)
+        return solve_region(RegionQuestion(problem, target, check_seed(seed), check_stream(stream)))
     if type(robot) is not Robot or type(target) is not Target:
         robot, target = read_robot(robot), read_target(target)
     if settings is not None and type(settings) is not SolveSettings:
@@ -98,7 +105,7 @@ def solve(
 
 def solve_many(
     robot: RobotLike,
-    targets: TargetsLike,
+    targets: GoalsLike,
     settings: SolveSettings | Mapping[str, Any] | None = None,
     *,
     seed: int = 0,
@@ -112,7 +119,7 @@ def solve_many(
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
 
     `targets`: `Targets`, positions [T, 3] in m, poses [T, 4, 4], or a sequence of what `solve` takes; one
-    target is one row.
+    target is one row. Where some are a `Region`, each row is solved as `solve` does, and graded by plain numpy.
     `bulk` says on how many threads, whose answers plain numpy grades as well (`verified` is masked where it was not
     asked), and whether failures are explained. A disagreement does not raise: that result is not reached, and
     `verified` is False. Other arguments as for `solve`.
@@ -124,11 +131,25 @@ def solve_many(
     if not isinstance(bulk, BulkOptions | None):
         raise InputError(f"expected BulkOptions, got {bulk!r}", ("bulk",))
     robot, chosen = read_robot(robot), choose_settings(settings, method)
+    problem = _make_problem(robot, chosen, collision, near, freeze, weights)
+    goals = read_goals(targets)
+    if isinstance(goals, Targets):
+        return solve_rows(problem, goals, bulk or USUAL, seed=check_seed(seed))
+    return solve_goals(problem, goals, seed=check_seed(seed))
+
+
+def _make_problem(
+    robot: Robot,
+    chosen: SolveSettings,
+    collision: CollisionChoice,
+    near: JointValues | None,
+    freeze: Freeze | None,
+    weights: Weights | None,
+) -> Problem:
+    """A question about some joints, or about the whole robot, which is kept."""
     if near is None and freeze is None and weights is None:
-        problem = _find_problem(CollisionModel.of(robot, collision), chosen)
-    else:
-        problem = make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
-    return solve_rows(problem, read_targets(targets), bulk or USUAL, seed=check_seed(seed))
+        return _find_problem(CollisionModel.of(robot, collision), chosen)
+    return make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
 
 
 @lru_cache(maxsize=16)

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats
-from ikde.model.arguments import RobotLike, TargetLike, read_robot, read_target
+from ikde.model.arguments import RobotLike, read_robot, read_target
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.region import GoalLike, Region
 from ikde.model.rotation import angle_between, rotation_angle
 from ikde.model.target import AXIS, POSE, Target, Targets
 from ikde.solver.families import label_family
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.obstacle_clearance import ObstacleClearance, find_nearest_obstacle
 from ikde.solver.plain import compute_frames, compute_gaps
+from ikde.solver.region_grade import grade_region
 from ikde.solver.settings import SolveSettings, choose_settings
 from ikde.solver.standing import find_model
 
@@ -94,7 +96,7 @@ class Grades:
 
 def verify(
     robot: RobotLike,
-    target: TargetLike,
+    target: GoalLike,
     q: JointValues,
     *,
     settings: SolveSettings | Mapping[str, Any] | None = None,
@@ -105,7 +107,7 @@ def verify(
 
     Args:
         robot: the robot, its name or the path of its file.
-        target: what the tool is asked to do.
+        target: what the tool is asked to do; of a `Region` errors are how far out of it the tool is, 0 inside.
         q: joint values [N] or a mapping by joint name; m and rad.
         settings: the tolerances (default 1e-5 m, 1e-4 rad).
         collision: a detector's name, a `Detector`, a `CollisionModel`, `"none"`, or None for the robot's default.
@@ -116,7 +118,23 @@ def verify(
     """
     robot, chosen = read_robot(robot), choose_settings(settings, "auto")
     Q = read_configuration(robot, q, convention)[None]
-    return verify_many(find_model(robot, collision), [read_target(target)], Q, chosen).row(0)
+    model = find_model(robot, collision)
+    if isinstance(target, Region):
+        return _verify_in_region(model, target, Q, chosen)
+    return verify_many(model, [read_target(target)], Q, chosen).row(0)
+
+
+def _verify_in_region(collision: CollisionModel, region: Region, Q: Floats, settings: SolveSettings) -> Grade:
+    T_world_tool = compute_frames(collision.robot, Q[0])[collision.robot.tool]
+    where = grade_region(region, T_world_tool, settings)
+    grade = verify_many(collision, [Target(T_world_tool[:3, 3])], Q, settings).row(0)
+    return replace(
+        grade,
+        position_error_m=where.position_m,
+        orientation_error_rad=where.orientation_rad,
+        within_tolerance=where.is_inside,
+        accepted=grade.accepted and where.is_inside,
+    )
 
 
 def verify_many(

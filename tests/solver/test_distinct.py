@@ -134,3 +134,20 @@ def test_an_unknown_rank_is_refused(qiao):
 def test_without_a_detector_nothing_is_ranked_by_clearance(qiao):
     with pytest.raises(InputError, match="rank: without a detector no clearance is known to rank by"):
         ikde.solve_distinct(qiao, TARGET, 2, rank="clearance", collision="none")
+
+
+def test_the_rank_by_clearance_is_what_is_left_beyond_what_is_asked_for():
+    """Ranked by distances alone it would be another order: margins differ from obstacle to obstacle."""
+    wide = {"cylinder": {"radius": 0.05, "height": 2.0}, "position": [0.6, 0.4, 0.5], "margin": 0.188}
+    robot, world = ikde.load_robot("ur5"), ikde.load_world({"obstacles": {"wide": wide}})
+    model = ikde.CollisionModel.of(robot).in_world(world)
+    found = ikde.solve_distinct(robot, (0.4, 0.2, 0.5), 24, rank="clearance", collision=model)
+    spare = []
+    for result in found:
+        checked = ikde.check(robot, result.q, model)
+        own = min(pair.clearance_m for pair in checked.pairs) - model.limit_m
+        spare.append(min(own, *(row.clearance_m - row.margin_m for row in checked.obstacles)))
+        assert result.spare_m == pytest.approx(spare[-1], abs=1e-12)
+    assert len({result.closest_pair for result in found}) > 1
+    assert (np.diff(spare) <= 1e-12).all()
+    assert (np.diff([result.clearance_m for result in found]) > 0.1).any()

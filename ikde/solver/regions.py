@@ -1,0 +1,199 @@
+"""A region is solved by exact poses: one is drawn an attempt, asked of the usual search, and graded by the region."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ikde.kernels.answer import pack_row
+from ikde.kernels.arrays import REACHED, Floats
+from ikde.model.bounds import find_bounds
+from ikde.model.region import Region
+from ikde.model.target import Target, Targets
+from ikde.solver.engine_table import NAMES
+from ikde.solver.few import find_ask
+from ikde.solver.grade import confirm
+from ikde.solver.plain import compute_frames
+from ikde.solver.problem import Problem
+from ikde.solver.region_draws import Drawn, draw_poses, draw_streams
+from ikde.solver.region_grade import RegionGrade, grade_region
+from ikde.solver.region_proof import Proof, prove_region
+from ikde.solver.region_tally import Tally, Tried, tell_still
+from ikde.solver.result import ResultMaker, SolveResult, change_result
+from ikde.solver.search import search
+from ikde.solver.way import as_word
+
+POSES = 1024  # of each alternative that are tried before the budget is spent, unless `restarts` says otherwise
+LM_ATTEMPTS = 4  # at one pose; of the closed form, which shows all branches, and of other engines one
+FIRST_BLOCK, MAX_BLOCK = 4, 64  # poses drawn at once
+MORE_POSES = "more restarts: so many poses of the region are tried"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RegionQuestion:
+    """What is asked: a region, in a problem, on a random stream."""
+
+    problem: Problem
+    region: Region
+    seed: int
+    stream: int
+
+
+def solve_region(question: RegionQuestion) -> SolveResult:
+    """The first answer, or of several alternatives the best; if there is none the best that was found, and why."""
+    region, search_of = question.region, RegionSearch(question)
+    if region.take == "first":
+        first = next(search_of.answers(), None)
+        return search_of.finish(first) if first else search_of.give_up()
+    found: dict[int, SolveResult] = {}
+    for answer in search_of.answers():
+        found.setdefault(answer.alternative or 0, answer)
+        search_of.close(answer.alternative or 0)
+    best = min(found.values(), key=lambda answer: answer.motion, default=None)
+    return search_of.finish(best) if best else search_of.give_up()
+
+
+class RegionSearch:
+    """The answers of one region, in the order in which they are found; then what there is to say if there are none."""
+
+    def __init__(self, question: RegionQuestion) -> None:
+        self._asked, self._problem = question, question.problem
+        self._started, self._tally = time.perf_counter(), Tally(question.problem)
+        budget = question.problem.settings.restarts
+        self._budget = (POSES if budget is None else budget) * len(question.region.parts)
+        self._closed: set[int] = set()
+        self._proof: Proof | None = None
+
+    def answers(self) -> Iterator[SolveResult]:
+        """Solutions, each graded by plain numpy and by the region."""
+        region = self._asked.region
+        yield from self._try_standing()
+        first, count = 0, len(region.parts)
+        while first < self._budget and not self._is_done():
+            yield from self._try_block(self._draw(first, min(count, self._budget - first)))
+            if first == 0 and not self._is_done():
+                excluded, self._proof = prove_region(self._problem, region)
+                self._closed |= excluded
+            first, count = first + count, min(MAX_BLOCK, max(FIRST_BLOCK, first))
+
+    def close(self, alternative: int) -> None:
+        """Try no further pose of an alternative."""
+        self._closed.add(alternative)
+
+    def finish(self, answer: SolveResult) -> SolveResult:
+        """An answer, with the time and all that was tried until now."""
+        return change_result(
+            answer, grade=answer.grade, solve_seconds=time.perf_counter() - self._started, **self._tally.spent
+        )
+
+    def give_up(self) -> SolveResult:
+        """The best that was found, with the reason."""
+        tally, problem = self._tally, self._problem
+        if tally.best is None:  # all that was drawn is out of reach
+            drawn = self._draw(0, len(self._asked.region.parts))
+            tally.best = self._ask(drawn.targets[0], int(drawn.parts[0]), self._asked.stream)
+        stop, reason, blocking = self._proof or tally.tell(self._is_late())
+        result = confirm(problem.robot, self._make(tally.best))
+        hint = None if self._proof else MORE_POSES
+        known: dict[str, Any] = {"stop_reason": stop, "reason": reason, "hint": hint}
+        return change_result(
+            result, grade=result.grade, reached=False, **known, **{**tally.spent, "blocking_pairs": blocking}
+        )
+
+    def _draw(self, first: int, count: int) -> Drawn:
+        asked = self._asked
+        return draw_poses(asked.region, first, count, self._problem.settings, asked.seed, asked.stream)
+
+    def _try_standing(self) -> Iterator[SolveResult]:
+        """Where nothing need move: `near` is inside the region, or no joint may move."""
+        problem = self._problem
+        q = problem.lower if problem.is_fixed else problem.near
+        if q is None:
+            return
+        T, grade = self._grade(q)
+        if grade.is_inside or problem.is_fixed:
+            target = Target.packed("pose", np.ascontiguousarray(T[:3]))
+            yield from self._answer(self._try(target, grade.alternative, self._asked.stream))
+        if problem.is_fixed:
+            self._budget = 0
+            self._proof = None if grade.is_inside else tell_still(grade)
+
+    def _try_block(self, drawn: Drawn) -> Iterator[SolveResult]:
+        """Solutions among some poses; those that a bound excludes are not asked for."""
+        problem, targets = self._problem, drawn.targets
+        far, off = find_bounds(problem.robot, problem.lower, problem.upper).excess_of_many(targets)
+        settings = problem.settings
+        is_out = (far > settings.position_tolerance_m) | (off > settings.orientation_tolerance_rad)
+        streams = draw_streams(self._asked.seed, self._asked.stream, drawn.numbers)
+        for place, (stream, part) in enumerate(zip(streams, drawn.parts.tolist(), strict=True)):
+            if self._is_done():
+                return
+            if part in self._closed:
+                continue
+            if is_out[place]:
+                self._tally.add_excluded()
+                continue
+            yield from self._answer(self._try(targets[place], part, stream))
+
+    def _try(self, target: Target, alternative: int, stream: int) -> Tried:
+        tried = self._ask(target, alternative, stream)
+        self._tally.add(tried)
+        return tried
+
+    def _ask(self, target: Target, alternative: int, stream: int) -> Tried:
+        return Tried(self._problem, target, alternative, *_ask(self._problem, target, self._asked.seed, stream))
+
+    def _answer(self, tried: Tried) -> Iterator[SolveResult]:
+        """The solution, if that pose was reached, and both graders accept what was found."""
+        if not tried.is_reached:
+            return
+        result = confirm(self._problem.robot, self._make(tried))
+        _, grade = self._grade(result.q)
+        if result.reached and grade.is_inside:
+            yield change_result(result, grade=result.grade, alternative=grade.alternative)
+
+    def _grade(self, q: Floats) -> tuple[Floats, RegionGrade]:
+        """Where the tool is [4, 4], and how that is judged."""
+        robot = self._problem.robot
+        T = compute_frames(robot, q)[robot.tool]
+        return T, grade_region(self._asked.region, T, self._problem.settings)
+
+    def _make(self, tried: Tried) -> SolveResult:
+        asked, maker = self._asked, ResultMaker(tried.problem, tried.engine)
+        result = maker.make(tried.row, tried.target, asked.seed, asked.stream, time.perf_counter() - self._started)
+        return change_result(result, region=asked.region, alternative=tried.alternative, **self._tally.spent)
+
+    def _is_done(self) -> bool:
+        return self._proof is not None or self._is_late() or len(self._closed) == len(self._asked.region.parts)
+
+    def _is_late(self) -> bool:
+        timeout_s = self._problem.settings.timeout_s
+        return timeout_s is not None and time.perf_counter() - self._started >= timeout_s
+
+
+def _ask(problem: Problem, target: Target, seed: int, stream: int) -> tuple[Floats, str, bool]:
+    """A few attempts at one exact pose: the row (`kernels/answer.py`), the engine, and whether it is reached."""
+    ask = find_ask(problem, target.kind)
+    if ask is not None:
+        if not ask.is_ready:
+            ask.bind()
+        row, last = np.empty(ask.plan.size), 1 if ask.plan.is_closed else LM_ATTEMPTS
+        is_reached = ask.answer(target.T_world_tool, as_word(seed), stream, 0, last, row)
+        return row, ask.engine, bool(is_reached)
+    few, attempts = _find_few(problem)
+    found = search(few, Targets.of([target]), seed=seed, streams=[stream], attempts=attempts, threads=1)
+    metrics = found.metrics
+    measured = metrics.position_error_m[0], metrics.orientation_error_rad[0], metrics.clearance_m[0]
+    row = pack_row(found.q[0], measured, metrics.closest_pair[0], found.counts[0], found.pair_counts.row(0))
+    return row, NAMES[found.engine[0]], bool(metrics.accepted[0] and found.counts[0, REACHED])
+
+
+@lru_cache(maxsize=16)
+def _find_few(problem: Problem) -> tuple[Problem, int]:
+    """The same question with so little search as one of many poses is worth, and how many attempts that is."""
+    if problem.settings.method in ("auto", "lm"):
+        return problem.with_settings(method="lm"), LM_ATTEMPTS
+    return problem, 1

@@ -1,0 +1,177 @@
+"""Regions solved: answers lie inside by the grader, a no has its reason, and the same seed gives the same bits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.errors import InputError
+from ikde.model.region import Region
+from ikde.solver import regions
+from ikde.solver.region_grade import RegionGrade, grade_region
+from ikde.solver.regions import RegionQuestion, solve_region
+from ikde.solver.result import StopReason
+from tests.problems import problem_of
+
+
+@pytest.fixture(scope="module")
+def ur5():
+    return ikde.load_robot("ur5")
+
+
+@pytest.fixture(scope="module")
+def goal(ur5):
+    return ikde.Target.from_matrix(ikde.forward(ur5, ur5.home + 0.3)["tool"])
+
+
+def ball(goal, offset, radius):
+    place = (goal.p_world_tool + np.array(offset)).tolist()
+    return ikde.load_world({"obstacles": {"ball": {"sphere": {"radius": radius}, "position": place}}})
+
+
+def is_inside(region, result, robot):
+    tool = ikde.forward(robot, result.q)["tool"]
+    return grade_region(region, tool, ikde.SolveSettings()).is_inside
+
+
+def list_regions(goal):
+    point = goal.p_world_tool + 0.2 * goal.axis_world_tool
+    yield Region.box(goal, 0.05, [(0, 0), (0, 0), (-1, 2)])
+    yield Region.box(goal.p_world_tool, (0.05, 0.0, 0.01))
+    yield Region.turn(goal)
+    yield Region.turn(goal, (1, 0, 0), position_m=0.01)
+    yield Region.cone(goal, 0.3, 0.05)
+    yield Region.look_at(point, (0.1, 0.4))
+
+
+def test_answers_lie_inside_and_are_verified(ur5, goal):
+    for region in list_regions(goal):
+        result = ikde.solve(ur5, region)
+        assert result.reached
+        assert result.verified
+        assert is_inside(region, result, ur5)
+        assert (result.region, result.alternative, result.poses) == (region, 0, 1)
+        assert ikde.verify(ur5, region, result.q).accepted
+
+
+def test_where_the_centre_is_blocked_another_pose_is_found(ur5, goal):
+    world = ball(goal, (0.03, 0, 0), 0.05)
+    region = Region.box(goal, 0.15)
+    assert not ikde.solve(ur5, goal, collision=world).reached
+    result = ikde.solve(ur5, region, collision=world)
+    assert result.reached
+    assert result.poses > 1
+    assert not np.array_equal(result.target.T_world_tool, goal.T_world_tool)
+    again = ikde.solve(ur5, region, collision=world)
+    assert again.q.tobytes() == result.q.tobytes()
+    assert ikde.solve(ur5, region, collision=world, seed=1).q.tobytes() != result.q.tobytes()
+
+
+def test_an_answer_that_the_grader_of_regions_refuses_is_none(ur5, goal, monkeypatch):
+    region = Region.box(goal, 0.05)
+    monkeypatch.setattr(regions, "grade_region", lambda *_: RegionGrade(0, 0.1, 0.0, False))
+    result = ikde.solve(ur5, region, {"restarts": 3})
+    assert not result.reached
+    assert result.poses == 3
+
+
+def test_a_region_out_of_reach_is_proved_and_says_by_how_much(ur5):
+    result = ikde.solve(ur5, Region.box((3.0, 0.0, 0.0), 0.5))
+    assert result.stop_reason is StopReason.OUT_OF_REACH
+    assert result.reason.startswith("out of reach: every pose of the region is at least 1.2")
+    assert result.poses == 1
+    assert result.hint is None
+
+
+def test_a_region_inside_an_obstacle_is_proved(ur5, goal):
+    result = ikde.solve(ur5, Region.box(goal, 0.01), collision=ball(goal, (0, 0, 0), 0.08))
+    assert result.stop_reason is StopReason.WORLD
+    assert result.reason.startswith("no solution, proved: whatever the joints do, every pose of the region puts")
+    assert dict(result.blocking_pairs) == {("ur5", "ball"): 1}
+
+
+def test_a_no_counts_what_was_tried_and_what_was_in_the_way(ur5, goal):
+    region = Region.box(goal, (0.3, 0.0, 0.0))
+    result = ikde.solve(ur5, region, {"restarts": 1}, collision=ball(goal, (0, 0, 0), 0.2))
+    assert result.stop_reason is StopReason.WORLD
+    assert result.reason.startswith("1 pose of the region tried: 1 met only in collision; ")
+    assert "blocked by ball (" in result.reason
+    assert result.hint == "more restarts: so many poses of the region are tried"
+    assert result.poses == 1
+    assert result.verified
+
+
+def test_the_first_alternative_that_is_reached_is_named(ur5, goal):
+    far, other = (3.0, 0.0, 0.0), Region.cone(goal, 0.2)
+    result = ikde.solve(ur5, Region.any_of([far, other, goal]))
+    assert (result.reached, result.alternative) == (True, 1)
+    assert ikde.solve(ur5, Region.any_of([far, (0, 0, 9)])).stop_reason is StopReason.OUT_OF_REACH
+
+
+def test_the_best_alternative_moves_the_least(ur5, goal):
+    near = ur5.home + 0.31
+    goals = [ikde.forward(ur5, ur5.home + step)["tool"] for step in (1.0, 0.3, -0.5)]
+    result = ikde.solve(ur5, Region.any_of(goals, "best"), near=near)
+    assert result.alternative == 1
+    assert result.motion <= min(ikde.solve(ur5, each, near=near).motion for each in goals)
+
+
+def test_near_inside_the_region_is_the_answer(ur5, goal):
+    near = ur5.home + 0.3
+    near[5] += 0.4
+    result = ikde.solve(ur5, Region.turn(goal), near=near)
+    assert result.q.tobytes() == near.tobytes()
+    assert result.motion == 0.0
+
+
+def test_a_robot_that_may_not_move_is_inside_or_not(ur5, goal):
+    there = dict(zip(ur5.joint_names, (ur5.home + 0.3).tolist(), strict=True))
+    assert ikde.solve(ur5, Region.box(goal, 0.01), freeze=there).reached
+    result = ikde.solve(ur5, Region.box(goal, 0.01), freeze=ur5.joint_names)
+    assert result.stop_reason is StopReason.OUT_OF_REACH
+    assert result.reason.startswith("no joint may move, and the tool is 0.317 m and 0.945 rad out")
+
+
+def test_a_timeout_ends_it(ur5, goal):
+    settings = {"timeout_s": 1e-9}
+    result = ikde.solve(ur5, Region.box(goal, 0.05), settings)
+    assert result.stop_reason is StopReason.TIMED_OUT
+    assert result.reason.startswith("timed out after 1e-09 s, with ")
+
+
+def test_rows_are_what_single_calls_give(ur5, goal):
+    goals = [goal, Region.box(goal, 0.05), Region.cone(goal, 0.2), Region.box((3.0, 0.0, 0.0), 0.5)]
+    rows = ikde.solve_many(ur5, goals)
+    singles = [ikde.solve(ur5, each, stream=k) for k, each in enumerate(goals)]
+    assert rows.reached.tolist() == [True, True, True, False]
+    assert rows.alternatives.tolist() == [-1, 0, 0, 0]
+    assert [row.q.tobytes() for row in rows] == [single.q.tobytes() for single in singles]
+    assert [row.reason for row in rows] == [single.reason for single in singles]
+    assert rows.verified.all()
+    part = rows[[3, 1]]
+    assert part.reached.tolist() == [False, True]
+    assert part[1].region == goals[1]
+    assert part.to_arrow().column("reached").to_pylist() == [False, True]
+
+
+def test_distinct_solutions_of_a_region(ur5, goal):
+    region = Region.box(goal, 0.1)
+    found = ikde.solve_distinct(ur5, region, 3, rank="motion")
+    assert len(found) == 3
+    assert [result.motion for result in found] == sorted(result.motion for result in found)
+    assert all(is_inside(region, result, ur5) for result in found)
+    assert not ikde.solve_distinct(ur5, Region.box((3.0, 0.0, 0.0), 0.5), 3)[0].reached
+
+
+def test_what_does_not_fit_is_refused(ur5, goal):
+    region = Region.box(goal, 0.1)
+    with pytest.raises(InputError, match="near"):
+        ikde.solve(ur5, region, near=[0.0])
+    with pytest.raises(InputError, match="seed"):
+        ikde.solve(ur5, region, seed=-1)
+
+
+def test_a_problem_of_its_own_is_asked_as_it_is(ur5, goal):
+    asked = replace(problem_of(ur5), descends=False)
+    assert solve_region(RegionQuestion(asked, Region.box(goal, 0.1), 0, 0)).reached
