@@ -28,7 +28,7 @@ box = ikde.Region.box(targets[1], position_m=(0.01, 0.01, 0.0), rotation_rad=[(0
 look = ikde.Region.look_at((0.5, 0.0, 0.1), (0.3, 0.6), axis_world_tool=(0, 0, -1), angle_rad=0.5)
 goals = ikde.Region.any_of([box, ikde.Region.turn(targets[2]), ikde.Region.cone(targets[3], 0.2), look], "best")
 result = ikde.solve(robot, goals, collision="none")
-print(result.region, result.alternative, result.poses, result.target.p_world_tool, result.spare_m)
+print(result.region, result.alternative, result.poses, result.target.p_world_tool, result.room_m)
 print(ikde.solve_many(robot, [box, targets[0], T_world_tool]).alternatives, ikde.solve_many(robot, box).reached)
 print(ikde.solve_distinct(robot, box, 3)[0].q, ikde.verify(robot, box, result.q).accepted)
 ikde.Region.any_of(targets, "worst")  # type: ignore[arg-type]

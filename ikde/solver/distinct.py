@@ -77,8 +77,8 @@ def solve_distinct(
         count: how many are wanted.
         settings: tolerances and search settings; None for the method's own.
         rank: what comes first, and what is kept of many: `"motion"`, the least from `near`, else home
-            (`SolveResult.motion`); `"clearance"`, the most to spare between components, and from obstacles, beyond what
-            is asked for (`SolveResult.spare_m`); `"limits"`, the largest distance from the joint limits, of the joint
+            (`SolveResult.motion`); `"clearance"`, the most room between components, and to obstacles, beyond what is
+            asked for (`SolveResult.room_m`); `"limits"`, the largest distance from the joint limits, of the joint
             that is nearest to one as a share of its range; `"found"`, in the order of the search, the first being that
             of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
@@ -152,7 +152,7 @@ def sort_solutions(robot: Robot, solutions: list[SolveResult], rank: Rank) -> li
     """Best first; equals stay in the order in which they were found."""
     costs: dict[Rank, Callable[[SolveResult], float]] = {
         "motion": lambda result: result.motion,
-        "clearance": lambda result: -(result.spare_m or 0.0),
+        "clearance": lambda result: -(result.room_m or 0.0),
         "limits": lambda result: -float(limit_margin(robot.lower, robot.upper, result.q)),
         "found": lambda result: 0.0,
     }

@@ -159,7 +159,7 @@ class SolveResult:
         )
 
     @cached_property
-    def spare_m(self) -> float | None:
+    def room_m(self) -> float | None:
         """By how much that is more than what is asked for, the safe distance or an obstacle's margins, m: the smallest
         such difference of all pairs, below 0 in collision; None without a detector."""
         if self._counted[PAIR] < 0:

@@ -147,7 +147,7 @@ def test_the_rank_by_clearance_is_what_is_left_beyond_what_is_asked_for():
         checked = ikde.check(robot, result.q, model)
         own = min(pair.clearance_m for pair in checked.pairs) - model.limit_m
         spare.append(min(own, *(row.clearance_m - row.margin_m for row in checked.obstacles)))
-        assert result.spare_m == pytest.approx(spare[-1], abs=1e-12)
+        assert result.room_m == pytest.approx(spare[-1], abs=1e-12)
     assert len({result.closest_pair for result in found}) > 1
     assert (np.diff(spare) <= 1e-12).all()
     assert (np.diff([result.clearance_m for result in found]) > 0.1).any()
