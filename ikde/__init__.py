@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.io.world_file import read_world as read_world
     from ikde.io.world_writer import write_world as write_world
     from ikde.kernels.jit import compile_clock as compile_clock
+    from ikde.model.base_region import BaseRegion as BaseRegion
     from ikde.model.collision_model import CollisionModel as CollisionModel
     from ikde.model.compose import compose as compose
     from ikde.model.convention import from_convention as from_convention
@@ -105,6 +106,7 @@ _HOME = {
     "Target": "ikde.model.target",
     "Targets": "ikde.model.target",
     "Region": "ikde.model.region",
+    "BaseRegion": "ikde.model.base_region",
     "BulkOptions": "ikde.solver.settings",
     "SolveSettings": "ikde.solver.settings",
     "DeSettings": "ikde.solver.settings",

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.base_region import BaseRegion
 from ikde.model.region import Region, RegionPart
 from ikde.model.rotation import angle_between, quat_wxyz_from_rotation, rotation_angle
 from ikde.solver.settings import SolveSettings
@@ -51,6 +52,29 @@ def measure_part(part: RegionPart, T_world_tool: Floats, tolerance_m: float = 0.
     low, high = part.box_m.T
     far_m = float(np.linalg.norm(np.maximum(0.0, np.maximum(low - offset, offset - high))))
     return far_m, _measure_rotation(part, R)
+
+
+def measure_base(region: BaseRegion, place: Floats) -> float:
+    """How far out of a base region a place [2] is, m; 0 inside and on its edges."""
+    turns = [_count_turns(polygon - place) for polygon in (region.corners, *region.holes)]
+    if turns[0] != 0 and not any(turns[1:]):
+        return 0.0
+    return min(_measure_edges(polygon - place) for polygon in (region.corners, *region.holes))
+
+
+def _count_turns(corners: Floats) -> int:
+    """How often a polygon [C, 2] goes round the origin."""
+    (ax, ay), (bx, by) = corners.T, np.roll(corners, -1, axis=0).T
+    return round(float(np.sum(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))) / (2.0 * np.pi))
+
+
+def _measure_edges(corners: Floats) -> float:
+    """How far a polygon [C, 2] is from the origin, m."""
+    nearest = np.inf
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = float(np.dot(-a, b - a) / np.dot(b - a, b - a))
+        nearest = min(nearest, float(np.hypot(*(a + min(max(along, 0.0), 1.0) * (b - a)))))
+    return nearest
 
 
 def _measure_rotation(part: RegionPart, R: Floats) -> float:

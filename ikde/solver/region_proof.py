@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.bounds import find_bounds
-from ikde.model.region import Region, RegionPart
+from ikde.model.region import Region, RegionPart, has_freedom
 from ikde.model.target import KINDS, TargetKind, Targets
 from ikde.solver.digits import at_least
 from ikde.solver.problem import Problem
@@ -45,7 +45,9 @@ def prove_region(problem: Problem, region: Region) -> tuple[set[int], Proof | No
     excesses = [_measure_excess(problem, each) for each in cells]
     excluded = {place for place, (far, off) in enumerate(excesses) if far > 0.0 or off > 0.0}
     if len(excluded) == len(cells):
-        return excluded, Proof(StopReason.OUT_OF_REACH, _tell_excess(excesses), {})
+        what = "every alternative" if len(region.parts) > 1 else "the target"
+        what = "every pose of the region" if any(map(has_freedom, region.parts)) else what
+        return excluded, Proof(StopReason.OUT_OF_REACH, _tell_excess(excesses, what), {})
     if not problem.collision.obstacles or find_tool_body(problem.collision.own) is None:
         return excluded, None
     shortages = {k: _measure_shortage(problem, each) for k, each in enumerate(cells) if k not in excluded}
@@ -113,13 +115,12 @@ def _measure_shortage(problem: Problem, cells: Cells) -> Floats:
     return measure_shortage(problem, cells.targets) - room
 
 
-def _tell_excess(excesses: list[tuple[float, float]]) -> str:
+def _tell_excess(excesses: list[tuple[float, float]], what: str) -> str:
     far_m, off_rad = (min(values) for values in zip(*excesses, strict=True))
-    what = "every pose of the region is at least"
     if far_m > 0.0:
-        return f"out of reach: {what} {at_least(far_m)} m too far, whatever the joints do"
+        return f"out of reach: {what} is at least {at_least(far_m)} m too far, whatever the joints do"
     if off_rad > 0.0:
-        return f"out of reach: {what} {at_least(off_rad)} rad off in orientation, whatever the joints do"
+        return f"out of reach: {what} is at least {at_least(off_rad)} rad off in orientation, whatever the joints do"
     parts = [f"{at_least(far)} m too far" if far > 0.0 else f"{at_least(off)} rad off" for far, off in excesses]
     more = f" and {len(parts) - NAMED} more" if len(parts) > NAMED else ""
     return f"out of reach: each alternative is, whatever the joints do: {', '.join(parts[:NAMED])}{more}"

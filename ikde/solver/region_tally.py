@@ -40,10 +40,10 @@ class Tried(NamedTuple):
 class Tally:
     """Counts of what was tried, and the best of it."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, noun: str = "pose of the region") -> None:
         self.poses, self.out_of_reach, self.colliding = 0, 0, 0
         self.best: Tried | None = None
-        self._problem = problem
+        self._problem, self._noun = problem, noun
         self._counts = np.zeros(COUNTS, dtype=np.int64)
         self._blocked = np.zeros(len(problem.collision.counted), dtype=np.int64)
 
@@ -88,7 +88,8 @@ class Tally:
         parts += [f"{self.out_of_reach} proved to be out of reach"] if self.out_of_reach else []
         parts += [f"{rest} not met"] if rest else []
         begin = f"timed out after {self._problem.settings.timeout_s:g} s, with " if is_late else ""
-        tried = "1 pose of the region tried" if self.poses == 1 else f"{self.poses:,} poses of the region tried"
+        kind, _, rest_of_it = self._noun.partition(" ")
+        tried = f"{self.poses:,} {kind}{'s' * (self.poses != 1)} {rest_of_it} tried"
         line = f"{begin}{tried}{': ' if parts else ''}{', '.join(parts)}"
         if not blocking:
             return line

@@ -8,18 +8,24 @@ from typing import Any
 
 import numpy as np
 
-from ikde.kernels.answer import pack_row
+from ikde.kernels.answer import METRICS, PAIR, pack_row
 from ikde.kernels.arrays import REACHED, Floats
+from ikde.kernels.grade_one import grade_one
+from ikde.model.base_region import BaseRegion
 from ikde.model.bounds import find_bounds
-from ikde.model.region import Region
+from ikde.model.pack import pack_targets
+from ikde.model.region import Region, has_freedom
 from ikde.model.target import Target, Targets
+from ikde.solver.ask import Ask
+from ikde.solver.asker import find_asker
+from ikde.solver.base_places import BasePlaces, find_base_frame
 from ikde.solver.engine_table import NAMES
-from ikde.solver.few import find_ask
 from ikde.solver.grade import confirm
+from ikde.solver.metrics import pack_grader
 from ikde.solver.plain import compute_frames
 from ikde.solver.problem import Problem
 from ikde.solver.region_draws import Drawn, draw_poses, draw_streams
-from ikde.solver.region_grade import RegionGrade, grade_region
+from ikde.solver.region_grade import RegionGrade, grade_region, measure_base
 from ikde.solver.region_proof import Proof, prove_region
 from ikde.solver.region_tally import Tally, Tried, tell_still
 from ikde.solver.result import ResultMaker, SolveResult, change_result
@@ -29,6 +35,7 @@ from ikde.solver.way import as_word
 POSES = 1024  # of each alternative that are tried before the budget is spent, unless `restarts` says otherwise
 LM_ATTEMPTS = 4  # at one pose; of the closed form, which shows all branches, and of other engines one
 FIRST_BLOCK, MAX_BLOCK = 4, 64  # poses drawn at once
+ON_EDGE_M = 1e-9  # what rounding may take a base that stands on an edge beyond it
 MORE_POSES = "more restarts: so many poses of the region are tried"
 
 
@@ -40,6 +47,8 @@ class RegionQuestion:
     region: Region
     seed: int
     stream: int
+    base: BaseRegion | None = None
+    """Where a planar base may stand."""
 
 
 def solve_region(question: RegionQuestion) -> SolveResult:
@@ -60,8 +69,13 @@ class RegionSearch:
     """The answers of one region, in the order in which they are found; then what there is to say if there are none."""
 
     def __init__(self, question: RegionQuestion) -> None:
-        self._asked, self._problem = question, question.problem
-        self._started, self._tally = time.perf_counter(), Tally(question.problem)
+        self._asked = question
+        self._started = time.perf_counter()
+        base, random = question.base, (question.seed, question.stream)
+        self._places = None if base is None else BasePlaces(question.problem, base, *random)
+        self._problem = question.problem if self._places is None else self._places.whole
+        is_free = any(map(has_freedom, question.region.parts))
+        self._tally = Tally(self._problem, "pose of the region" if is_free else "place of the base")
         budget = question.problem.settings.restarts
         self._budget = (POSES if budget is None else budget) * len(question.region.parts)
         self._closed: set[int] = set()
@@ -94,9 +108,9 @@ class RegionSearch:
         tally, problem = self._tally, self._problem
         if tally.best is None:  # all that was drawn is out of reach
             drawn = self._draw(0, len(self._asked.region.parts))
-            tally.best = self._ask(drawn.targets[0], int(drawn.parts[0]), self._asked.stream)
+            tally.best = self._ask(problem, drawn.targets[0], int(drawn.parts[0]), self._asked.stream)
         stop, reason, blocking = self._proof or tally.tell(self._is_late())
-        result = confirm(problem.robot, self._make(tally.best))
+        result = confirm(problem.robot, self._make(_grade_best(tally.best)))
         hint = None if self._proof else MORE_POSES
         known: dict[str, Any] = {"stop_reason": stop, "reason": reason, "hint": hint}
         return change_result(
@@ -116,7 +130,7 @@ class RegionSearch:
         T, grade = self._grade(q)
         if grade.is_inside or problem.is_fixed:
             target = Target.packed("pose", np.ascontiguousarray(T[:3]))
-            yield from self._answer(self._try(target, grade.alternative, self._asked.stream))
+            yield from self._answer(self._try(self._problem, target, grade.alternative, self._asked.stream))
         if problem.is_fixed:
             self._budget = 0
             self._proof = None if grade.is_inside else tell_still(grade)
@@ -133,18 +147,26 @@ class RegionSearch:
                 return
             if part in self._closed:
                 continue
-            if is_out[place]:
+            target = targets[place]
+            asked = None if is_out[place] else self._place(int(drawn.numbers[place]), target)
+            if asked is None:
                 self._tally.add_excluded()
                 continue
-            yield from self._answer(self._try(targets[place], part, stream))
+            yield from self._answer(self._try(asked, target, part, stream))
 
-    def _try(self, target: Target, alternative: int, stream: int) -> Tried:
-        tried = self._ask(target, alternative, stream)
+    def _place(self, number: int, target: Target) -> Problem | None:
+        """The question of a draw: of a base, where it stands in that attempt; None: out of reach from there."""
+        if self._places is None:
+            return self._problem
+        return self._places.narrow(number // len(self._asked.region.parts), target)
+
+    def _try(self, problem: Problem, target: Target, alternative: int, stream: int) -> Tried:
+        tried = self._ask(problem, target, alternative, stream)
         self._tally.add(tried)
         return tried
 
-    def _ask(self, target: Target, alternative: int, stream: int) -> Tried:
-        return Tried(self._problem, target, alternative, *_ask(self._problem, target, self._asked.seed, stream))
+    def _ask(self, problem: Problem, target: Target, alternative: int, stream: int) -> Tried:
+        return Tried(problem, target, alternative, *_ask(problem, target, self._asked.seed, stream))
 
     def _answer(self, tried: Tried) -> Iterator[SolveResult]:
         """The solution, if that pose was reached, and both graders accept what was found."""
@@ -156,10 +178,13 @@ class RegionSearch:
             yield change_result(result, grade=result.grade, alternative=grade.alternative)
 
     def _grade(self, q: Floats) -> tuple[Floats, RegionGrade]:
-        """Where the tool is [4, 4], and how that is judged."""
-        robot = self._problem.robot
-        T = compute_frames(robot, q)[robot.tool]
-        return T, grade_region(self._asked.region, T, self._problem.settings)
+        """Where the tool is [4, 4], and how that and the place of the base are judged."""
+        robot, base = self._problem.robot, self._asked.base
+        Ts_world = compute_frames(robot, q)
+        grade = grade_region(self._asked.region, Ts_world[robot.tool], self._problem.settings)
+        if base is not None and measure_base(base, Ts_world[find_base_frame(robot)][:2, 3]) > ON_EDGE_M:
+            grade = grade._replace(is_inside=False)
+        return Ts_world[robot.tool], grade
 
     def _make(self, tried: Tried) -> SolveResult:
         asked, maker = self._asked, ResultMaker(tried.problem, tried.engine)
@@ -176,11 +201,12 @@ class RegionSearch:
 
 def _ask(problem: Problem, target: Target, seed: int, stream: int) -> tuple[Floats, str, bool]:
     """A few attempts at one exact pose: the row (`kernels/answer.py`), the engine, and whether it is reached."""
-    ask = find_ask(problem, target.kind)
+    ask = find_asker(problem.collision, problem.settings, target.kind).make(problem, Ask)
     if ask is not None:
         if not ask.is_ready:
             ask.bind()
-        row, last = np.empty(ask.plan.size), 1 if ask.plan.is_closed else LM_ATTEMPTS
+        row, last = np.zeros(ask.plan.size), 1 if ask.plan.is_closed else LM_ATTEMPTS
+        row[: len(problem.lower)] = np.minimum(np.maximum(problem.centre, problem.lower), problem.upper)
         is_reached = ask.answer(target.T_world_tool, as_word(seed), stream, 0, last, row)
         return row, ask.engine, bool(is_reached)
     few, attempts = _find_few(problem)
@@ -189,6 +215,17 @@ def _ask(problem: Problem, target: Target, seed: int, stream: int) -> tuple[Floa
     measured = metrics.position_error_m[0], metrics.orientation_error_rad[0], metrics.clearance_m[0]
     row = pack_row(found.q[0], measured, metrics.closest_pair[0], found.counts[0], found.pair_counts.row(0))
     return row, NAMES[found.engine[0]], bool(metrics.accepted[0] and found.counts[0, REACHED])
+
+
+def _grade_best(tried: Tried) -> Tried:
+    """The same with its figures: a search does not grade what it has not reached."""
+    problem, row, (kinds, T_world_tool) = tried.problem, tried.row.copy(), pack_targets([tried.target])
+    joints = len(problem.lower)
+    with np.errstate(all="ignore"):  # as machine code does
+        seen = grade_one.plain(*pack_grader(problem.collision, problem.settings), kinds, T_world_tool, row[:joints])
+    row[joints : joints + METRICS] = seen[:METRICS]
+    row[joints + METRICS :].view(np.int64)[PAIR] = seen[METRICS]
+    return tried._replace(row=row)
 
 
 @lru_cache(maxsize=16)

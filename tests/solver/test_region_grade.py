@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from ikde.model.base_region import BaseRegion
 from ikde.model.region import Region
 from ikde.model.target import Target
-from ikde.solver.region_grade import grade_region, measure_part
+from ikde.solver.region_grade import grade_region, measure_base, measure_part
 from ikde.solver.settings import SolveSettings
 
 SETTINGS = SolveSettings()
@@ -94,3 +95,16 @@ def test_a_tolerance_is_beyond_the_edge():
     region = Region.box(POSE, 0.01)
     assert grade_region(region, tool((0.01 + 0.9e-5, 0, 0)), SETTINGS).is_inside
     assert not grade_region(region, tool((0.01 + 1.1e-5, 0, 0)), SETTINGS).is_inside
+
+
+def test_a_base_stands_inside_or_so_far_out():
+    region = BaseRegion([(0, 0), (4, 0), (4, 4), (0, 4)], [[(1, 1), (2, 1), (2, 3), (1, 3)]])
+    places = {(0.5, 0.5): 0.0, (1.5, 2.0): 0.5, (3, 3): 0.0, (5, 5): np.sqrt(2), (4, 2): 0.0, (0, 0): 0.0, (1, 2): 0.0}
+    for place, far_m in places.items():
+        assert measure_base(region, np.array(place, dtype=float)) == pytest.approx(far_m)
+
+
+def test_the_grader_of_places_agrees_with_what_draws_them(rng):
+    region = BaseRegion([(0, 0), (4, 0), (4, 1), (1, 1), (1, 4), (0, 4)], [[(0.2, 0.2), (0.8, 0.2), (0.5, 0.8)]])
+    points = rng.uniform(-1, 5, (500, 2))
+    assert np.array_equal(region.contains(points), [measure_base(region, point) == 0.0 for point in points])

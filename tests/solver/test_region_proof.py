@@ -77,4 +77,4 @@ def test_one_alternative_may_be_excluded_without_the_others():
     assert prove_region(asked, region) == ({0, 2}, None)
     _, proof = prove_region(asked, Region.any_of([(3.0, 0, 0), (0, 0, 4.0)]))
     assert proof is not None
-    assert proof.reason.startswith("out of reach: every pose of the region is at least 1.870 m")
+    assert proof.reason.startswith("out of reach: every alternative is at least 1.870 m")

@@ -12,7 +12,7 @@ from ikde.solver import regions
 from ikde.solver.region_grade import RegionGrade, grade_region
 from ikde.solver.regions import RegionQuestion, solve_region
 from ikde.solver.result import StopReason
-from tests.problems import problem_of
+from tests.problems import TARGET, problem_of
 
 
 @pytest.fixture(scope="module")
@@ -175,3 +175,36 @@ def test_what_does_not_fit_is_refused(ur5, goal):
 def test_a_problem_of_its_own_is_asked_as_it_is(ur5, goal):
     asked = replace(problem_of(ur5), descends=False)
     assert solve_region(RegionQuestion(asked, Region.box(goal, 0.1), 0, 0)).reached
+
+
+ELL = ikde.BaseRegion([(0, -1), (1.2, -1), (1.2, 0.2), (0.3, 0.2), (0.3, 1.5), (0, 1.5)])
+ROUND = ikde.BaseRegion([(-1, -1), (2, -1), (2, 2), (-1, 2)], [[(0, 0), (1.5, 0), (1.5, 1.5), (0, 1.5)]])
+
+
+@pytest.mark.parametrize("base", [ELL, ROUND], ids=repr)
+def test_the_base_stands_in_its_region(qiao, base):
+    rows = ikde.solve_many(qiao, [TARGET, Region.box(TARGET, 0.2)] * 5, base_region=base)
+    assert rows.reached.all()
+    assert base.contains(rows.q[:, :2]).all()
+    assert rows[0].target == TARGET
+    single = ikde.solve(qiao, TARGET, base_region=base, stream=0)
+    assert single.q.tobytes() == rows[0].q.tobytes()
+    assert all(base.contains(each.q[None, :2]).all() for each in ikde.solve_distinct(qiao, TARGET, 3, base_region=base))
+
+
+def test_a_place_that_the_grader_refuses_is_none(qiao, monkeypatch):
+    monkeypatch.setattr(regions, "measure_base", lambda *_: 1.0)
+    result = ikde.solve(qiao, TARGET, {"restarts": 4}, base_region=ELL)
+    assert not result.reached
+    assert result.reason.startswith("4 places of the base tried: 4 ")
+
+
+def test_from_a_base_region_that_is_too_far_nothing_is_in_reach(qiao):
+    result = ikde.solve(qiao, TARGET, base_region=[(5, 5), (6, 5), (6, 6)])
+    assert result.stop_reason is StopReason.OUT_OF_REACH
+    assert result.reason == "out of reach: the target is at least 4.317 m too far, whatever the joints do"
+
+
+def test_a_base_region_is_for_a_base(ur5, goal):
+    with pytest.raises(InputError, match="base_region: ur5 has no planar base"):
+        ikde.solve(ur5, goal, base_region=ELL)

@@ -80,14 +80,14 @@ def make_seeds(problem: Problem, kind: str) -> SeedArrays:
 def find_seeds(collision: CollisionModel, kind: str, lower: Floats, upper: Floats) -> SeedArrays:
     """Seeds for targets of a kind within ranges [N]; those of frozen joints are made of the pool of the joint limits.
 
-    10 us if no joint or only a base is frozen, whose joints are set for each target whatever the pool; 0.2 ms for other
-    joints at new values; 50 ms for other ranges.
+    10 us if no joint or only a base is frozen or has less room, whose joints are set for each target whatever the pool;
+    0.2 ms for other joints at new values; 50 ms for other ranges.
     """
     whole, seeds = find_whole(collision, kind)
-    is_frozen = lower == upper
-    if not (is_frozen | ((lower == whole.lower) & (upper == whole.upper))).all():
+    is_frozen, base = lower == upper, whole.base.tolist()
+    is_set = np.isin(np.arange(len(lower)), base) & (lower >= whole.lower) & (upper <= whole.upper)
+    if not (is_frozen | is_set | ((lower == whole.lower) & (upper == whole.upper))).all():
         return _find_narrow(collision, kind, tuple(lower.tolist()), tuple(upper.tolist()))
-    base = whole.base.tolist()
     joints = tuple(k for k in np.flatnonzero(is_frozen).tolist() if k not in base and whole.lower[k] < whole.upper[k])
     if not joints or not len(seeds.q):
         return seeds
