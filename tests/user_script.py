@@ -32,8 +32,8 @@ print(result.region, result.alternative, result.poses, result.target.p_world_too
 print(ikde.solve_many(robot, [box, targets[0], T_world_tool]).alternatives, ikde.solve_many(robot, box).reached)
 print(ikde.solve_distinct(robot, box, 3)[0].q, ikde.verify(robot, box, result.q).accepted)
 room = ikde.BaseRegion([(0, 0), (2, 0), (2, 2), (0, 2)], holes=[[(1, 1), (1.2, 1), (1, 1.2)]])
-result = ikde.solve("qiao2021", box, base_region=room)
-rows = ikde.solve_many("qiao2021", [box, targets[0]], base_region=[(0, 0), (2, 0), (2, 2)])
+result = ikde.solve("qiao2021", box.with_base(room))
+rows = ikde.solve_many("qiao2021", [box, ikde.Region.of(targets[0]).with_base([(0, 0), (2, 0), (2, 2)])])
 ikde.Region.any_of(targets, "worst")  # type: ignore[arg-type]
 result = ikde.solve("ur5", (0.4, 0.2, 0.3), {"timeout_s": 1.0}, method="lm")
 result = ikde.solve(Path("my.yaml"), T_world_tool, near=result.q, freeze=["q1"], weights={"q2": 1.0})

@@ -46,6 +46,20 @@ def find_planar_base(robot: Robot) -> Ints:
     return read_only(np.array([x, y, heading]))
 
 
+def need_base(robot: Robot) -> tuple[int, int, int]:
+    """The same of a robot that must have such a base; raises `InputError`, at `base`, for any other."""
+    x, y, heading = find_planar_base(robot).tolist()
+    if x < 0:
+        raise InputError(f"{robot.name} has no planar base (x, y, yaw) to stand in it", ("base",))
+    return x, y, heading
+
+
+def find_base_frame(robot: Robot) -> str:
+    """The frame that the heading of a planar base rotates: its origin is where the base stands; as `need_base`."""
+    heading = robot.joint_names[need_base(robot)[2]]
+    return next(frame.name for frame in robot.frames if frame.joint == heading)
+
+
 def base_joints(robot: Robot) -> tuple[str, ...]:
     """Names of x, y and heading of a planar base; none for a robot without."""
     return tuple(robot.joint_names[k] for k in find_planar_base(robot) if k >= 0)

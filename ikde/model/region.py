@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, Self, get_args
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats
 from ikde.model.arguments import TargetLike, TargetsLike, Where, read_target, read_targets
+from ikde.model.base_region import BaseRegion, BaseRegionLike, read_base_region
 from ikde.model.numbers import is_number, read_numbers
 from ikde.model.target import MAX_MAGNITUDE, Target, Targets
 from ikde.model.value import ReadOnlyValue
@@ -78,6 +79,8 @@ class Region(ReadOnlyValue):
     """The alternatives, in their order; mostly one."""
     take: Take = "first"
     """Of several: the one that is reached first, or of all that are reached the one with the least motion."""
+    base: BaseRegion | None = None
+    """Where a planar base may stand; None: anywhere in its ranges."""
 
     @classmethod
     def box(
@@ -178,24 +181,36 @@ class Region(ReadOnlyValue):
             raise InputError(f"expected one of {', '.join(get_args(Take))}, got {quoted(take)}", ("take",))
         if isinstance(goals, Region | Target | str) or not isinstance(goals, Iterable):
             raise InputError(f"expected a sequence of targets and regions, got {quoted(goals)}", ("goals",))
-        parts = [part for row, goal in enumerate(goals) for part in read_region(goal, ("goals", row)).parts]
+        regions = [read_region(goal, ("goals", row)) for row, goal in enumerate(goals)]
+        for row, region in enumerate(regions):
+            if region.base is not None:
+                raise InputError("alternatives share a base region: give it to all of them", ("goals", row))
+        parts = [part for region in regions for part in region.parts]
         if not 1 <= len(parts) <= MAX_ALTERNATIVES:
             raise InputError(f"expected 1 to {MAX_ALTERNATIVES:,} alternatives, got {len(parts):,}", ("goals",))
         return cls(parts=tuple(parts), take=take)
 
     @classmethod
-    def of(cls, target: Target) -> Self:
-        """The one alternative that is exactly a target: a region of zero size, to stand beside others."""
-        box = np.zeros((3, 2))
-        part = RegionPart(target=target, rule="exact", numbers=EXACT, box_m=box, R_world_box=np.eye(3))
+    def of(cls, target: TargetLike) -> Self:
+        """Exactly a target: what has no freedom but where the base stands (`with_base`)."""
+        goal, box = read_target(target), np.zeros((3, 2))
+        part = RegionPart(target=goal, rule="exact", numbers=EXACT, box_m=box, R_world_box=np.eye(3))
         return cls(parts=(part,))
+
+    def with_base(self, base: BaseRegionLike) -> Self:
+        """The same with a planar base that stands in a `BaseRegion`, or in a polygon of these corners [K, 2], m.
+
+        Raises:
+            InputError: for what makes no base region.
+        """
+        return replace(self, base=read_base_region(base, ("base",)))
 
     def __repr__(self) -> str:
         """In a line."""
-        first = repr(self.parts[0])
+        first, base = repr(self.parts[0]), "" if self.base is None else f", base in {len(self.base.corners)} corners"
         if len(self.parts) == 1:
-            return f"<Region: {first}>"
-        return f"<Region: {self.take} of {len(self.parts)} alternatives, the first {first}>"
+            return f"<Region: {first}{base}>"
+        return f"<Region: {self.take} of {len(self.parts)} alternatives, the first {first}{base}>"
 
     @classmethod
     def _make(cls, goal: Target, rule: Rule, numbers: Floats, position_m: ArrayLike, frame: BoxFrame) -> Self:

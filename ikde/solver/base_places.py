@@ -6,16 +6,14 @@ y are frozen. Only points from which bounds leave the target in reach are taken.
 """
 
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
-from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
-from ikde.model.base_motion import find_planar_base
+from ikde.model.base_motion import need_base
 from ikde.model.base_region import BaseRegion
 from ikde.model.bounds import find_bounds
-from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.problem import Problem
 from ikde.solver.region_draws import draw_points
@@ -26,27 +24,12 @@ NARROW_M = 0.1  # half a square's edge: the base is frozen where there is less r
 INSCRIBED = 0.7  # half the edge of a square in a circle of radius 1
 
 
-def find_base_joints(robot: Robot) -> tuple[int, int]:
-    """Coordinates of x and y of the base; raises `InputError` for a robot without one that drives in the plane."""
-    x, y, _ = find_planar_base(robot).tolist()
-    if x < 0:
-        raise InputError(f"{robot.name} has no planar base (x, y, yaw) to stand in it", ("base_region",))
-    return x, y
-
-
-@lru_cache(maxsize=64)
-def find_base_frame(robot: Robot) -> str:
-    """The frame that the base's heading rotates: its origin is where the base stands."""
-    heading = robot.joint_names[find_planar_base(robot)[2]]
-    return next(frame.name for frame in robot.frames if frame.joint is not None and frame.joint == heading)
-
-
 class BasePlaces:
     """The places of one search."""
 
     def __init__(self, problem: Problem, region: BaseRegion, seed: int, stream: int) -> None:
         self._problem, self._region, self._random = problem, region, (seed, stream)
-        self._joints = [*find_base_joints(problem.robot)]
+        self._joints = [*need_base(problem.robot)[:2]]
         self.whole = self._narrow(region.corners.min(axis=0), region.corners.max(axis=0))
         """The question with the base in the box about the polygon."""
 

@@ -13,9 +13,8 @@ from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats
 from ikde.kernels.seeds import LUCKY_ATTEMPTS
 from ikde.model.arguments import RobotLike, read_robot, read_target
-from ikde.model.base_region import BaseRegionLike, read_base_region
 from ikde.model.collision_model import CollisionChoice
-from ikde.model.region import GoalLike, Region, read_region
+from ikde.model.region import GoalLike, Region
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.engine_table import ENGINES, Method
@@ -54,7 +53,6 @@ class Question(TypedDict, total=False):
     near: JointValues | None
     freeze: Freeze | None
     weights: Weights | None
-    base_region: BaseRegionLike | None
 
 
 def solve_distinct(
@@ -85,22 +83,19 @@ def solve_distinct(
             of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
-        question: `collision`, `near`, `freeze`, `weights` and `base_region`, as for `solve`. With `near` the first that
-            is found is a local minimum of the motion; the others are as the search finds them, since few are.
+        question: `collision`, `near`, `freeze` and `weights`, as for `solve`. With `near` the first that is found is a
+            local minimum of the motion; the others are as the search finds them, since few are.
     """
     if not is_count(1, MAX_WANTED)(count):
         raise InputError(f"expected {describe_count(1, MAX_WANTED)}, got {quoted(count)}", ("count",))
     check_rank(rank)
     robot = read_robot(robot)
     chosen = choose_settings(settings, method)
-    known = {name: value for name, value in question.items() if name != "base_region"}
-    problem = make_problem(robot, chosen, **{**NOTHING_ELSE, **known})
+    problem = make_problem(robot, chosen, **{**NOTHING_ELSE, **question})
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
-    given = question.get("base_region")
-    if isinstance(target, Region) or given is not None:
-        base = None if given is None else read_base_region(given)
-        return _solve_in_region(RegionQuestion(problem, read_region(target), check_seed(seed), 0, base), count, rank)
+    if isinstance(target, Region):
+        return _solve_in_region(RegionQuestion(problem, target, check_seed(seed), 0), count, rank)
     target = read_target(target)
     options = {"bulk": UNEXPLAINED, "seed": check_seed(seed), "strict": True}
     first = confirm(robot, solve(robot, target, chosen, seed=seed, **question))

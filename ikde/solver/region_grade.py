@@ -3,16 +3,20 @@
 A pose is inside if some exact pose of the region is within both tolerances of it.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.base_motion import find_base_frame
 from ikde.model.base_region import BaseRegion
 from ikde.model.region import Region, RegionPart
+from ikde.model.robot import Robot
 from ikde.model.rotation import angle_between, quat_wxyz_from_rotation, rotation_angle
 from ikde.solver.settings import SolveSettings
 
+ON_EDGE_M = 1e-9  # what rounding may take a base that stands on an edge beyond it
 Z = np.array([0.0, 0.0, 1.0])
 
 
@@ -26,6 +30,14 @@ class RegionGrade(NamedTuple):
     """Beyond the largest rotation; 0 inside."""
     is_inside: bool
     """Both within the tolerances."""
+
+
+def grade_frames(region: Region, robot: Robot, Ts_world: Mapping[str, Floats], settings: SolveSettings) -> RegionGrade:
+    """The grade of a configuration by the poses of its frames; where the base stands counts, too."""
+    grade = grade_region(region, Ts_world[robot.tool], settings)
+    if region.base is None or measure_base(region.base, Ts_world[find_base_frame(robot)][:2, 3]) <= ON_EDGE_M:
+        return grade
+    return grade._replace(is_inside=False)
 
 
 def grade_region(region: Region, T_world_tool: Floats, settings: SolveSettings) -> RegionGrade:

@@ -6,8 +6,7 @@ import numpy as np
 
 from ikde.kernels.answer import BLOCKED, METRICS, PAIR, SCORE, size_of
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED
-from ikde.model.base_region import BaseRegion
-from ikde.model.region import Region, read_region
+from ikde.model.region import Region
 from ikde.model.target import Target, Targets
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import PairCounts, SearchState
@@ -22,9 +21,9 @@ from ikde.solver.results import SolveResults, solve_rows
 Goals = Sequence[Target | Region]
 
 
-def solve_goals(problem: Problem, goals: Goals, *, seed: int, base: BaseRegion | None = None) -> SolveResults:
-    """Rows of goals, each graded by plain numpy, too; with `base` the base stands in there."""
-    rows = [_solve(problem, goal, (seed, stream), base) for stream, goal in enumerate(goals)]
+def solve_goals(problem: Problem, goals: Goals, *, seed: int) -> SolveResults:
+    """Rows of goals, each graded by plain numpy, too."""
+    rows = [_solve(problem, goal, seed, stream) for stream, goal in enumerate(goals)]
     found = _gather(problem, rows)
     stories = {
         place: Explanation(stop_reason=r.stop_reason, reason=r.reason, hint=r.hint, blocking_pairs=r.blocking_pairs)
@@ -51,10 +50,9 @@ def solve_goals(problem: Problem, goals: Goals, *, seed: int, base: BaseRegion |
     )
 
 
-def _solve(problem: Problem, goal: Target | Region, random: tuple[int, int], base: BaseRegion | None) -> SolveResult:
-    if isinstance(goal, Region) or base is not None:
-        return solve_region(RegionQuestion(problem, read_region(goal), *random, base))
-    seed, stream = random
+def _solve(problem: Problem, goal: Target | Region, seed: int, stream: int) -> SolveResult:
+    if isinstance(goal, Region):
+        return solve_region(RegionQuestion(problem, goal, seed, stream))
     return solve_rows(problem, [goal], seed=seed, first_stream=stream, strict=True).row(0)
 
 

@@ -11,21 +11,20 @@ import numpy as np
 from ikde.kernels.answer import METRICS, PAIR, pack_row
 from ikde.kernels.arrays import REACHED, Floats
 from ikde.kernels.grade_one import grade_one
-from ikde.model.base_region import BaseRegion
 from ikde.model.bounds import find_bounds
 from ikde.model.pack import pack_targets
 from ikde.model.region import Region, has_freedom
 from ikde.model.target import Target, Targets
 from ikde.solver.ask import Ask
 from ikde.solver.asker import find_asker
-from ikde.solver.base_places import BasePlaces, find_base_frame
+from ikde.solver.base_places import BasePlaces
 from ikde.solver.engine_table import NAMES
 from ikde.solver.grade import confirm
 from ikde.solver.metrics import pack_grader
 from ikde.solver.plain import compute_frames
 from ikde.solver.problem import Problem
 from ikde.solver.region_draws import Drawn, draw_poses, draw_streams
-from ikde.solver.region_grade import RegionGrade, grade_region, measure_base
+from ikde.solver.region_grade import RegionGrade, grade_frames
 from ikde.solver.region_proof import Proof, prove_region
 from ikde.solver.region_tally import Tally, Tried, tell_still
 from ikde.solver.result import ResultMaker, SolveResult, change_result
@@ -35,7 +34,6 @@ from ikde.solver.way import as_word
 POSES = 1024  # of each alternative that are tried before the budget is spent, unless `restarts` says otherwise
 LM_ATTEMPTS = 4  # at one pose; of the closed form, which shows all branches, and of other engines one
 FIRST_BLOCK, MAX_BLOCK = 4, 64  # poses drawn at once
-ON_EDGE_M = 1e-9  # what rounding may take a base that stands on an edge beyond it
 MORE_POSES = "more restarts: so many poses of the region are tried"
 
 
@@ -47,8 +45,6 @@ class RegionQuestion:
     region: Region
     seed: int
     stream: int
-    base: BaseRegion | None = None
-    """Where a planar base may stand."""
 
 
 def solve_region(question: RegionQuestion) -> SolveResult:
@@ -71,7 +67,7 @@ class RegionSearch:
     def __init__(self, question: RegionQuestion) -> None:
         self._asked = question
         self._started = time.perf_counter()
-        base, random = question.base, (question.seed, question.stream)
+        base, random = question.region.base, (question.seed, question.stream)
         self._places = None if base is None else BasePlaces(question.problem, base, *random)
         self._problem = question.problem if self._places is None else self._places.whole
         is_free = any(map(has_freedom, question.region.parts))
@@ -179,12 +175,9 @@ class RegionSearch:
 
     def _grade(self, q: Floats) -> tuple[Floats, RegionGrade]:
         """Where the tool is [4, 4], and how that and the place of the base are judged."""
-        robot, base = self._problem.robot, self._asked.base
+        robot = self._problem.robot
         Ts_world = compute_frames(robot, q)
-        grade = grade_region(self._asked.region, Ts_world[robot.tool], self._problem.settings)
-        if base is not None and measure_base(base, Ts_world[find_base_frame(robot)][:2, 3]) > ON_EDGE_M:
-            grade = grade._replace(is_inside=False)
-        return Ts_world[robot.tool], grade
+        return Ts_world[robot.tool], grade_frames(self._asked.region, robot, Ts_world, self._problem.settings)
 
     def _make(self, tried: Tried) -> SolveResult:
         asked, maker = self._asked, ResultMaker(tried.problem, tried.engine)

@@ -10,9 +10,8 @@ from typing import Any
 from ikde.errors import InputError
 from ikde.kernels.arrays import read_only
 from ikde.model.arguments import RobotLike, read_robot, read_target
-from ikde.model.base_region import BaseRegionLike, read_base_region
 from ikde.model.collision_model import CollisionChoice, CollisionModel
-from ikde.model.region import GoalLike, GoalsLike, Region, read_goals, read_region
+from ikde.model.region import GoalLike, GoalsLike, Region, read_goals
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
 from ikde.solver.asker import find_asker
@@ -43,7 +42,6 @@ def solve(
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     weights: Weights | None = None,
-    base_region: BaseRegionLike | None = None,
 ) -> SolveResult:
     """Find a configuration that meets the target, inside all limits and free of self-collision.
 
@@ -65,8 +63,6 @@ def solve(
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
         weights: of joints, by name, in the motion sqrt(sum (w_j dq_j)^2), per m or rad, 1e-6 to 1e6; left out: 1 /
             range, 1 / (2 pi) for a joint without limits, and 1 / m for a planar base.
-        base_region: where a planar base may stand: a `BaseRegion`, or the corners [K, 2] of a polygon in the world's
-            x, y, in m. Each attempt has a place of its own.
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
@@ -78,10 +74,9 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     started = perf_counter()
-    if isinstance(target, Region) or base_region is not None:
+    if isinstance(target, Region):
         problem = _make_problem(read_robot(robot), choose_settings(settings, method), collision, near, freeze, weights)
-        base = None if base_region is None else read_base_region(base_region)
-        return solve_region(RegionQuestion(problem, read_region(target), check_seed(seed), check_stream(stream), base))
+        return solve_region(RegionQuestion(problem, target, check_seed(seed), check_stream(stream)))
     if type(robot) is not Robot or type(target) is not Target:
         robot, target = read_robot(robot), read_target(target)
     if settings is not None and type(settings) is not SolveSettings:
@@ -119,7 +114,6 @@ def solve_many(
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     weights: Weights | None = None,
-    base_region: BaseRegionLike | None = None,
     bulk: BulkOptions | None = None,
 ) -> SolveResults:
     """Solve many targets at once, a lane each on all threads, in order; target k has the stream (seed, k).
@@ -139,8 +133,6 @@ def solve_many(
     robot, chosen = read_robot(robot), choose_settings(settings, method)
     problem = _make_problem(robot, chosen, collision, near, freeze, weights)
     goals = read_goals(targets)
-    if base_region is not None:
-        return solve_goals(problem, list(goals), seed=check_seed(seed), base=read_base_region(base_region))
     if isinstance(goals, Targets):
         return solve_rows(problem, goals, bulk or USUAL, seed=check_seed(seed))
     return solve_goals(problem, goals, seed=check_seed(seed))

@@ -19,7 +19,7 @@ from ikde.solver.families import label_family
 from ikde.solver.joints import JointValues, read_configuration
 from ikde.solver.obstacle_clearance import ObstacleClearance, find_nearest_obstacle
 from ikde.solver.plain import compute_frames, compute_gaps
-from ikde.solver.region_grade import grade_region
+from ikde.solver.region_grade import grade_frames
 from ikde.solver.settings import SolveSettings, choose_settings
 from ikde.solver.standing import find_model
 
@@ -125,9 +125,9 @@ def verify(
 
 
 def _verify_in_region(collision: CollisionModel, region: Region, Q: Floats, settings: SolveSettings) -> Grade:
-    T_world_tool = compute_frames(collision.robot, Q[0])[collision.robot.tool]
-    where = grade_region(region, T_world_tool, settings)
-    grade = verify_many(collision, [Target(T_world_tool[:3, 3])], Q, settings).row(0)
+    Ts_world = compute_frames(collision.robot, Q[0])
+    where = grade_frames(region, collision.robot, Ts_world, settings)
+    grade = verify_many(collision, [Target(Ts_world[collision.robot.tool][:3, 3])], Q, settings).row(0)
     return replace(
         grade,
         position_error_m=where.position_m,

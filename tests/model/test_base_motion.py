@@ -11,8 +11,10 @@ from ikde.model.base_motion import (
     NO_BASE,
     base_joints,
     base_twist,
+    find_base_frame,
     find_planar_base,
     find_wheels,
+    need_base,
     step_base,
     usual_drive,
     wheel_speeds,
@@ -117,3 +119,15 @@ def test_a_robot_says_itself_how_its_base_drives(qiao):
     assert usual_drive(qiao) == "differential"
     assert usual_drive(replace(qiao, drive="omnidirectional")) == "omnidirectional"
     assert usual_drive(replace(ikde.load_robot("ur5"), drive="differential")) == "omnidirectional"  # it has no base
+
+
+def test_a_base_that_must_be_there_is_named(qiao):
+    assert need_base(qiao) == (0, 1, 2)
+    with pytest.raises(InputError, match=r"base: ur5 has no planar base \(x, y, yaw\)"):
+        need_base(ikde.load_robot("ur5"))
+
+
+def test_a_base_stands_at_its_joints(qiao):
+    q = qiao.home.copy()
+    q[:3] = 0.3, -0.7, 1.0
+    assert ikde.forward(qiao, q)[find_base_frame(qiao)][:2, 3] == pytest.approx((0.3, -0.7))

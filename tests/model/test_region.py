@@ -10,8 +10,10 @@ from ikde.model.region import Region, read_goals, read_region
 from ikde.model.target import Target, Targets
 from tests.goals import AXIS, POINT, POSE, REGIONS
 
+ROOM = [(0, 0), (2, 0), (2, 2)]
 
-@pytest.mark.parametrize("region", REGIONS, ids=repr)
+
+@pytest.mark.parametrize("region", [*REGIONS, Region.any_of([POSE, AXIS]).with_base(ROOM)], ids=repr)
 def test_a_region_is_a_value_in_a_line(region):
     again = pickle.loads(pickle.dumps(region))
     assert again == region
@@ -69,6 +71,11 @@ def test_what_is_found_in_a_region_is_read_only():
         (lambda: Region.any_of([]), "goals: expected 1 to 1,000 alternatives, got 0"),
         (lambda: Region.any_of(POSE), "goals: expected a sequence"),
         (lambda: Region.any_of([POSE], "worst"), "take: expected one of first, best, got 'worst'"),
+        (
+            lambda: Region.any_of([POSE, Region.of(POSE).with_base(ROOM)]),
+            r"goals\[1\]: alternatives share a base region",
+        ),
+        (lambda: Region.of(POSE).with_base(ROOM[:2]), "base: expected at least 3 corners"),
         (lambda: Region.any_of([POSE, "here"]), r"goals\[1\]: expected a Target"),
     ],
 )

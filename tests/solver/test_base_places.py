@@ -1,12 +1,11 @@
 """Places of the base: inside the polygon and the base's ranges, and only where the target is in reach."""
 
 import numpy as np
-import pytest
 
 import ikde
-from ikde.errors import InputError
+from ikde.model.base_motion import need_base
 from ikde.model.base_region import BaseRegion
-from ikde.solver.base_places import BasePlaces, find_base_frame, find_base_joints
+from ikde.solver.base_places import BasePlaces
 from ikde.solver.proof import prove
 from tests.problems import TARGET, problem_of
 
@@ -16,7 +15,7 @@ CORNERS = np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
 
 def test_each_place_is_inside(qiao):
     places, boxes = BasePlaces(problem_of(qiao), ELL, 0, 0), set()
-    x, y = find_base_joints(qiao)
+    x, y, _ = need_base(qiao)
     for number in range(1, 60):
         asked = places.narrow(number, TARGET)
         low, high = asked.lower[[x, y]], asked.upper[[x, y]]
@@ -46,14 +45,3 @@ def test_ranges_hold(qiao):
     places = BasePlaces(asked, ELL, 0, 0)
     assert places.whole.lower[0] == places.whole.upper[0] == 0.1
     assert places.narrow(3, TARGET).lower[0] == 0.1
-
-
-def test_a_robot_without_such_a_base_is_refused():
-    with pytest.raises(InputError, match=r"base_region: ur5 has no planar base \(x, y, yaw\)"):
-        find_base_joints(ikde.load_robot("ur5"))
-
-
-def test_the_base_stands_at_its_joints(qiao):
-    q = qiao.home.copy()
-    q[:3] = 0.3, -0.7, 1.0
-    assert ikde.forward(qiao, q)[find_base_frame(qiao)][:2, 3] == pytest.approx((0.3, -0.7))

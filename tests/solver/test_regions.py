@@ -8,7 +8,7 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.model.region import Region
-from ikde.solver import regions
+from ikde.solver import region_grade
 from ikde.solver.region_grade import RegionGrade, grade_region
 from ikde.solver.regions import RegionQuestion, solve_region
 from ikde.solver.result import StopReason
@@ -70,7 +70,7 @@ def test_where_the_centre_is_blocked_another_pose_is_found(ur5, goal):
 
 def test_an_answer_that_the_grader_of_regions_refuses_is_none(ur5, goal, monkeypatch):
     region = Region.box(goal, 0.05)
-    monkeypatch.setattr(regions, "grade_region", lambda *_: RegionGrade(0, 0.1, 0.0, False))
+    monkeypatch.setattr(region_grade, "grade_region", lambda *_: RegionGrade(0, 0.1, 0.0, False))
     result = ikde.solve(ur5, region, {"restarts": 3})
     assert not result.reached
     assert result.poses == 3
@@ -183,28 +183,29 @@ ROUND = ikde.BaseRegion([(-1, -1), (2, -1), (2, 2), (-1, 2)], [[(0, 0), (1.5, 0)
 
 @pytest.mark.parametrize("base", [ELL, ROUND], ids=repr)
 def test_the_base_stands_in_its_region(qiao, base):
-    rows = ikde.solve_many(qiao, [TARGET, Region.box(TARGET, 0.2)] * 5, base_region=base)
+    goals = [Region.of(TARGET).with_base(base), Region.box(TARGET, 0.2).with_base(base)]
+    rows = ikde.solve_many(qiao, goals * 5)
     assert rows.reached.all()
     assert base.contains(rows.q[:, :2]).all()
     assert rows[0].target == TARGET
-    single = ikde.solve(qiao, TARGET, base_region=base, stream=0)
-    assert single.q.tobytes() == rows[0].q.tobytes()
-    assert all(base.contains(each.q[None, :2]).all() for each in ikde.solve_distinct(qiao, TARGET, 3, base_region=base))
+    assert ikde.solve(qiao, goals[0]).q.tobytes() == rows[0].q.tobytes()
+    assert all(base.contains(each.q[None, :2]).all() for each in ikde.solve_distinct(qiao, goals[0], 3))
 
 
 def test_a_place_that_the_grader_refuses_is_none(qiao, monkeypatch):
-    monkeypatch.setattr(regions, "measure_base", lambda *_: 1.0)
-    result = ikde.solve(qiao, TARGET, {"restarts": 4}, base_region=ELL)
+    monkeypatch.setattr(region_grade, "measure_base", lambda *_: 1.0)
+    result = ikde.solve(qiao, Region.of(TARGET).with_base(ELL), {"restarts": 4})
     assert not result.reached
     assert result.reason.startswith("4 places of the base tried: 4 ")
+    assert not ikde.verify(qiao, Region.of(TARGET).with_base([(9, 9), (9, 8), (8, 8)]), result.q).accepted
 
 
 def test_from_a_base_region_that_is_too_far_nothing_is_in_reach(qiao):
-    result = ikde.solve(qiao, TARGET, base_region=[(5, 5), (6, 5), (6, 6)])
+    result = ikde.solve(qiao, Region.of(TARGET).with_base([(5, 5), (6, 5), (6, 6)]))
     assert result.stop_reason is StopReason.OUT_OF_REACH
     assert result.reason == "out of reach: the target is at least 4.317 m too far, whatever the joints do"
 
 
 def test_a_base_region_is_for_a_base(ur5, goal):
-    with pytest.raises(InputError, match="base_region: ur5 has no planar base"):
-        ikde.solve(ur5, goal, base_region=ELL)
+    with pytest.raises(InputError, match="base: ur5 has no planar base"):
+        ikde.solve(ur5, Region.of(goal).with_base(ELL))
