@@ -16,6 +16,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.errors import IkdeError as IkdeError
     from ikde.errors import InputError as InputError
     from ikde.errors import VerificationError as VerificationError
+    from ikde.io.goal_file import load_goal as load_goal
     from ikde.io.mjcf import format_mjcf as format_mjcf
     from ikde.io.plan_file import load_batch as load_batch
     from ikde.io.plan_file import load_track as load_track
@@ -90,6 +91,7 @@ _HOME = {
     "write_trajectory": "ikde.io.trajectory_files",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
+    "load_goal": "ikde.io.goal_file",
     "load_world": "ikde.io.world_file",
     "read_world": "ikde.io.world_file",
     "write_world": "ikde.io.world_writer",

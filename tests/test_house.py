@@ -17,6 +17,7 @@ NO_TEST_OF_ITS_OWN = {
     "__main__.py": "two lines; tests/cli/test_app.py runs them in a process",
     "cli/exit_codes.py": "an enumeration; tests/cli/test_app.py",
     "cli/startup.py": "tests/cli/conftest.py undoes it, test_app.py starts processes",
+    "formats/goal_entries.py": "tests/io/test_goal_file.py reads every entry",
     "formats/world_entries.py": "tests/io/test_world_file.py reads every entry",
     "formats/units.py": "two tables; tests/cli/test_solve.py and tests/report/test_numbers.py use every unit",
     "io/plan_file.py": "tests/io/test_batch_file.py and test_track_file.py load every kind of plan",

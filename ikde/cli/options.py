@@ -19,7 +19,9 @@ from ikde.cli.output import print_note, print_written, use_color
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
     from ikde.model.collision_model import CollisionModel
+    from ikde.model.region import Region
     from ikde.model.robot import Robot
+    from ikde.model.target import Target
 
 
 class LengthUnit(StrEnum):
@@ -41,6 +43,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 OUTPUT = "Units and output"
 of_target = partial(typer.Option, rich_help_panel="Target")  # headings of the help, in the order of the options
+of_freedom = partial(typer.Option, rich_help_panel="Freedom of the target")
 of_robot = partial(typer.Option, rich_help_panel="Robot")
 of_collision = partial(typer.Option, rich_help_panel="Collision")
 of_search = partial(typer.Option, rich_help_panel="Search")
@@ -303,7 +306,13 @@ def check_positive(value: float | None, option: str, most: float | None = None) 
 
 
 def draw(
-    path: Path | None, collision: "CollisionModel", q: "Floats", target: object = None, *, as_json: bool = False
+    path: Path | None,
+    collision: "CollisionModel",
+    q: "Floats",
+    target: "Target | None" = None,
+    *,
+    region: "Region | None" = None,
+    as_json: bool = False,
 ) -> None:
     """Draw a configuration if a path is given, and say so."""
     if path is None:
@@ -311,6 +320,5 @@ def draw(
     from ikde.plot.pose import plot_pose, save_figure
     from ikde.scene.drawn_pose import draw_pose
 
-    pose = draw_pose(collision, q, target=target)  # type: ignore[arg-type]
-    save_figure(plot_pose(pose), path)
+    save_figure(plot_pose(draw_pose(collision, q, target=target, region=region)), path)
     print_written(path, as_json=as_json)

@@ -12,6 +12,7 @@ MODELS = {
     "batch": ("ikde.batch.spec", "BatchSpec"),
     "track": ("ikde.track.spec", "TrackSpec"),
     "robot": ("ikde.io.robot_file", "RobotFile"),
+    "goal": ("ikde.formats.goal_entries", "GoalFile"),
     "world": ("ikde.formats.world_entries", "WorldFile"),
 }
 

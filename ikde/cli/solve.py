@@ -1,11 +1,11 @@
 """`ikde solve`: a collision-free configuration for a tool target."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ikde.cli import options
+from ikde.cli import goal_options, options
 from ikde.cli.candidates import DEFAULT_ROBOT, offer, offer_joints
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import of_robot, of_search, of_target
@@ -16,7 +16,9 @@ from ikde.cli.world_options import AttachOption, MarginOption, Pick, WorldOption
 from ikde.solver.engine_table import ENGINES, NO_ENGINE
 
 if TYPE_CHECKING:
+    from ikde.model.region import Region
     from ikde.model.robot import Robot
+    from ikde.model.target import Target
     from ikde.report.numbers import Units
     from ikde.solver.result import SolveResult
     from ikde.solver.settings import SolveSettings
@@ -26,7 +28,7 @@ Quaternion = tuple[float, float, float, float]
 
 METHODS = ", ".join(["auto (ikde's choice)", *(f"{name} ({row.brief})" for name, row in ENGINES.items())])
 
-PositionOption = Annotated[Vector, of_target(metavar="X Y Z", help="Tool position in the world.")]
+PositionOption = Annotated[Vector | None, of_target(metavar="X Y Z", help="Tool position in the world.")]
 QuatOption = Annotated[
     Quaternion | None, of_target(metavar="W X Y Z", help="Tool orientation as a quaternion, w first.")
 ]
@@ -94,12 +96,20 @@ DeOption = Annotated[
 
 
 def solve(
-    position: PositionOption,
+    position: PositionOption = None,
     quat_wxyz: QuatOption = None,
     rpy: RpyOption = None,
     axis: AxisOption = None,
     tolerance: ToleranceOption = None,
     orientation_tolerance: OrientationToleranceOption = None,
+    tolerance_box: goal_options.BoxOption = None,
+    rotation_box: goal_options.RotationBoxOption = None,
+    free_turn: goal_options.FreeTurnOption = False,
+    cone: goal_options.ConeOption = None,
+    look_at: goal_options.LookAtOption = None,
+    distance: goal_options.DistanceOption = None,
+    goal: goal_options.GoalOption = None,
+    base_region: goal_options.BaseRegionOption = None,
     robot: options.RobotOption = DEFAULT_ROBOT,
     tool: ToolOption = None,
     near: NearOption = None,
@@ -128,21 +138,17 @@ def solve(
 
     Example: ikde solve --position 800 500 1000 --unit mm --plot pose.png
     """
+    typed = locals()
     skip_blas_probe()
     from ikde.io.joint_text import parse_weights
-    from ikde.io.target import make_target
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
-    from ikde.solver.background import LATER, compile_way
-    from ikde.solver.compile_note import name_work, note_compile
-    from ikde.solver.distinct import check_rank, solve_distinct
-    from ikde.solver.grade import confirm
-    from ikde.solver.solve import solve as solve_one
+    from ikde.solver.distinct import check_rank
 
     model, units = read_robot(robot, tool), Units(unit, angles)
     start = None if near is None else options.read_q(model.whole, near, unit, angles, convention, "near")
     model = hold_at(model, start)
-    target = make_target(position, quat_wxyz, rpy, axis, unit, angles)
+    target = goal_options.read_goal(typed, unit, angles)
     settings = _read_settings(method, units, tolerance, orientation_tolerance, timeout, restarts, de)
     checked = options.read_collision(model, detector, pairs, safe_distance, unit)
     checked = place_in_world(checked, world, margin, unit, Pick(attach, start))
@@ -152,21 +158,35 @@ def solve(
     check_rank(rank)
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
-    note = note_compile(lambda: name_work(f"{target.kind} targets", checked))
-    with compile_way(LATER), working("searching ..."), note as clock:
-        question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
-        if count == 1:
-            results = [confirm(model, solve_one(model, target, settings, **question))]
-        else:
-            results = solve_distinct(model, target, count, settings, rank=rank, **question)  # type: ignore[arg-type]
-        spent = {"solve_seconds": clock.run_seconds, "compile_seconds": clock.seconds}
+    question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
+    results, spent = _search(target, count, settings, rank, question)
     if count == 1:
         _print(model, results[0], units, convention, as_json)
     else:
         _print_several(model, results, units, convention, as_json, **spent)
         _note_fewer(results, count)
-    options.draw(plot, checked, results[0].q, target, as_json=as_json)
+    options.draw(plot, checked, results[0].q, results[0].target, region=results[0].region, as_json=as_json)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)
+
+
+def _search(
+    target: "Target | Region", count: int, settings: "SolveSettings", rank: str, question: dict[str, Any]
+) -> "tuple[list[SolveResult], dict[str, float]]":
+    """The solutions, and what they took."""
+    from ikde.solver.background import LATER, compile_way
+    from ikde.solver.compile_note import name_work, note_compile
+    from ikde.solver.distinct import solve_distinct
+    from ikde.solver.grade import confirm
+    from ikde.solver.solve import solve as solve_one
+
+    checked, kind = question["collision"], getattr(target, "kind", "region")
+    note = note_compile(lambda: name_work(f"{kind} targets", checked))
+    with compile_way(LATER), working("searching ..."), note as clock:
+        if count == 1:
+            results = [confirm(checked.robot, solve_one(checked.robot, target, settings, **question))]
+        else:
+            results = solve_distinct(checked.robot, target, count, settings, rank=rank, **question)  # type: ignore[arg-type]
+        return results, {"solve_seconds": clock.run_seconds, "compile_seconds": clock.seconds}
 
 
 def _read_settings(

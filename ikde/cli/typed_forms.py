@@ -2,9 +2,19 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-VECTORS = {"--position": 3, "--rpy": 3, "--axis": 3, "--quat-wxyz": 4}
+VECTORS = {"--position": 3, "--rpy": 3, "--axis": 3, "--quat-wxyz": 4, "--look-at": 3, "--distance": 2}
 """Options of so many numbers, a word each."""
-LISTS = {"--q", "--near", "--start", "--freeze", "--weights", "--de"}
+LISTS = {
+    "--q",
+    "--near",
+    "--start",
+    "--freeze",
+    "--weights",
+    "--de",
+    "--tolerance-box",
+    "--rotation-box",
+    "--base-region",
+}
 """Options of one word that holds them all."""
 
 

@@ -149,4 +149,4 @@ def _side(a: Floats, b: Floats, c: Floats) -> Floats:
 def _boxes_meet(a: Floats, b: Floats, c: Floats, d: Floats) -> NDArray[np.bool_]:
     """Whether the boxes about two edges have a point in common."""
     apart = (np.maximum(a, b) < np.minimum(c, d)) | (np.maximum(c, d) < np.minimum(a, b))
-    return ~apart.any(axis=-1)
+    return np.asarray(~apart.any(axis=-1))

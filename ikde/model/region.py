@@ -96,7 +96,7 @@ class Region(ReadOnlyValue):
         """
         goal, ranges = read_target(target), _read_ranges(rotation_rad, "rotation_rad", np.pi)
         if ranges.any() and goal.kind != "pose":
-            raise InputError("only a full pose has rotations to be off by; see Region.cone", ("rotation_rad",))
+            raise InputError("only a full pose has rotations to be off by; an axis may have a cone", ("rotation_rad",))
         rule, numbers = ("rotation", ranges) if ranges.any() else ("exact", EXACT)
         return cls._make(goal, rule, numbers, position_m, frame)
 
@@ -301,7 +301,7 @@ def _read_ranges(value: ArrayLike, name: str, most: float) -> Floats:
         raise InputError(f"expected finite numbers up to {most:g}, got {quoted(value)}", (name,))
     if given.ndim < 2:
         if (given < 0.0).any():
-            raise InputError(f"inside out: expected at least 0 either way, got {quoted(value)}", (name,))
+            raise InputError(f"inside out: expected at least 0 either way, got {quoted(given.tolist())}", (name,))
         high = np.broadcast_to(given, (3,))
         return np.stack([-high, high], axis=1) + 0.0
     for axis, (low, high) in zip(AXES, given.tolist(), strict=True):

@@ -57,7 +57,21 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "solve_seconds": result.solve_seconds,
         "compile_seconds": result.compile_seconds,
         "verified": result.verified,
+        **_goal_json(result),
     }
+
+
+def _goal_json(result: SolveResult) -> dict[str, Any]:
+    """Of a goal with freedom: the exact pose that was drawn, which alternative it belongs to, and how many were."""
+    if result.region is None:
+        return {}
+    target = result.target
+    pose = {
+        "kind": target.kind,
+        "position": target.p_world_tool.tolist(),
+        "rotation": None if target.kind == "position" else target.R_world_tool.tolist(),
+    }
+    return {"goal": {"alternative": result.alternative, "poses": result.poses, "target": pose}}
 
 
 def solutions_json(
@@ -160,6 +174,17 @@ GRADERS = {
 COLLISIONS = {True: "yes", False: "no", None: "not checked"}
 
 
+def _tell_goal(result: SolveResult, units: Units) -> str:
+    """Which exact pose of a goal with freedom was drawn."""
+    assert result.region is not None
+    many, place = (
+        len(result.region.parts),
+        ", ".join(units.format_length(x) for x in result.target.p_world_tool.tolist()),
+    )
+    which = f"alternative {1 + (result.alternative or 0)} of {many}, " if many > 1 else ""
+    return f"{which}{count_of(result.poses or 0, 'pose')} tried; errors are from the one at {place}"
+
+
 def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     table = make_table("graded", GRADERS[result.verified])
     table.add_row("position error", units.format_error(result.position_error_m))
@@ -170,6 +195,8 @@ def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     else:
         between = f"between {' and '.join(result.closest_pair)}, detector {result.detector}"
         table.add_row("clearance", plain(f"{units.format_length(result.clearance_m)} {between}"))
+    if result.region is not None:
+        table.add_row("goal", plain(_tell_goal(result, units)))
     table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, weighted")
     if result.obstacles:
         table.add_row("self-collision", _tell_self(result))

@@ -14,10 +14,12 @@ from ikde.kernels.arrays import Floats
 from ikde.model.base_motion import base_joints
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pairs import component_bodies
+from ikde.model.region import Region
 from ikde.model.robot import WORLD, Robot
 from ikde.model.target import Target
 from ikde.model.tree import build_tree
 from ikde.scene.drawn_near import draw_near, reach_obstacle
+from ikde.scene.drawn_region import draw_region
 from ikde.scene.drawn_world import DrawnObstacle
 from ikde.solver.plain import compute_components, compute_frames, compute_gaps, compute_sphere_gaps
 
@@ -34,6 +36,7 @@ class Role(StrEnum):
     COLLIDING = "colliding"
     CLOSEST = "closest pair"
     TARGET = "target"
+    REGION = "region"
     LINK = "link"
     OBSTACLE = "obstacle"
     TOUCHED = "obstacle that is too near"
@@ -46,6 +49,7 @@ COLORS: Mapping[Role, str] = {  # as the paper draws it: arm red, platform blue,
     Role.COLLIDING: "#1a1a1a",
     Role.CLOSEST: "#0b8a3c",
     Role.TARGET: "#e69f00",
+    Role.REGION: "#b36b00",
     Role.LINK: "#333333",
     Role.OBSTACLE: "#6f7f8f",
     Role.TOUCHED: "#8e24aa",
@@ -109,17 +113,24 @@ class DrawnPose:
     """About the world's z axis, of the base."""
     obstacles: tuple[DrawnObstacle, ...] = ()
     """What of them is near."""
+    region_m: tuple[Floats, ...] = ()
+    """Outlines [n, 3] of a goal with freedom."""
 
     def compute_box(self) -> Floats:
         """Lower and upper corner [2, 3] in m around robot and marks, and what is drawn of obstacles."""
         solids = [solid for obstacle in self.obstacles for solid in obstacle.solids]
-        parts = [self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks)]
+        parts = [self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks), *self.region_m]
         points = np.concatenate([*parts, *(part for solid in solids for part in (*solid.polygons_m, solid.points_m))])
         return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = None) -> DrawnPose:
-    """The robot at `q` [N] with the spheres that are compared, the closest pair, its tool's axes, and the target."""
+def draw_pose(
+    collision: CollisionModel, q: Floats, *, target: Target | None = None, region: Region | None = None
+) -> DrawnPose:
+    """The robot at `q` [N] with the spheres that are compared, the closest pair, its tool's axes, and the target.
+
+    Of a goal with freedom, its outlines, too.
+    """
     robot, gaps_m = collision.robot, compute_gaps(collision, q)
     Ts_world = compute_frames(robot, q)
     drawn = draw_robot(collision, q, gaps_m)
@@ -136,6 +147,7 @@ def draw_pose(collision: CollisionModel, q: Floats, *, target: Target | None = N
         Ts_world_frame=Ts_world[robot.tool][None],
         marks=tuple(marks),
         heading_rad=heading_rad,
+        region_m=() if region is None else draw_region(region),
     )
     if not collision.obstacles:
         return pose

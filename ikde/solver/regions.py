@@ -32,7 +32,8 @@ from ikde.solver.search import search
 from ikde.solver.way import as_word
 
 POSES = 1024  # of each alternative that are tried before the budget is spent, unless `restarts` says otherwise
-LM_ATTEMPTS = 4  # at one pose; of the closed form, which shows all branches, and of other engines one
+LM_ATTEMPTS, MORE_ATTEMPTS = 4, 16  # at one pose; of the closed form, which shows all branches, and of others one
+QUICKLY = 32  # poses of each alternative that so few attempts are made at
 FIRST_BLOCK, MAX_BLOCK = 4, 64  # poses drawn at once
 MORE_POSES = "more restarts: so many poses of the region are tried"
 
@@ -75,6 +76,7 @@ class RegionSearch:
         budget = question.problem.settings.restarts
         self._budget = (POSES if budget is None else budget) * len(question.region.parts)
         self._closed: set[int] = set()
+        self._ways: dict[str, Ask] = {}
         self._proof: Proof | None = None
 
     def answers(self) -> Iterator[SolveResult]:
@@ -144,11 +146,12 @@ class RegionSearch:
             if part in self._closed:
                 continue
             target = targets[place]
-            asked = None if is_out[place] else self._place(int(drawn.numbers[place]), target)
+            number = int(drawn.numbers[place])
+            asked = None if is_out[place] else self._place(number, target)
             if asked is None:
                 self._tally.add_excluded()
                 continue
-            yield from self._answer(self._try(asked, target, part, stream))
+            yield from self._answer(self._try(asked, target, part, stream, number))
 
     def _place(self, number: int, target: Target) -> Problem | None:
         """The question of a draw: of a base, where it stands in that attempt; None: out of reach from there."""
@@ -156,13 +159,27 @@ class RegionSearch:
             return self._problem
         return self._places.narrow(number // len(self._asked.region.parts), target)
 
-    def _try(self, problem: Problem, target: Target, alternative: int, stream: int) -> Tried:
-        tried = self._ask(problem, target, alternative, stream)
+    def _try(self, problem: Problem, target: Target, alternative: int, stream: int, number: int = 0) -> Tried:
+        tried = self._ask(problem, target, alternative, stream, number)
         self._tally.add(tried)
         return tried
 
-    def _ask(self, problem: Problem, target: Target, alternative: int, stream: int) -> Tried:
-        return Tried(problem, target, alternative, *_ask(problem, target, self._asked.seed, stream))
+    def _ask(self, problem: Problem, target: Target, alternative: int, stream: int, number: int = 0) -> Tried:
+        """A few attempts at one exact pose, on a stream of its own; later draws, which others left, have more."""
+        attempts = LM_ATTEMPTS if number < QUICKLY * len(self._asked.region.parts) else MORE_ATTEMPTS
+        way = self._ways.get(target.kind) if problem is self._problem else None
+        if way is None:
+            way = find_asker(problem.collision, problem.settings, target.kind).make(problem, Ask)
+        if way is None:
+            return Tried(problem, target, alternative, *_search(problem, target, self._asked.seed, stream, attempts))
+        if problem is self._problem:
+            self._ways[target.kind] = way
+        if not way.is_ready:
+            way.bind()
+        row, last = np.zeros(way.plan.size), 1 if way.plan.is_closed else attempts
+        row[: len(problem.lower)] = np.minimum(np.maximum(problem.centre, problem.lower), problem.upper)
+        is_reached = way.answer(target.T_world_tool, as_word(self._asked.seed), stream, 0, last, row)
+        return Tried(problem, target, alternative, row, way.engine, bool(is_reached))
 
     def _answer(self, tried: Tried) -> Iterator[SolveResult]:
         """The solution, if that pose was reached, and both graders accept what was found."""
@@ -192,17 +209,10 @@ class RegionSearch:
         return timeout_s is not None and time.perf_counter() - self._started >= timeout_s
 
 
-def _ask(problem: Problem, target: Target, seed: int, stream: int) -> tuple[Floats, str, bool]:
-    """A few attempts at one exact pose: the row (`kernels/answer.py`), the engine, and whether it is reached."""
-    ask = find_asker(problem.collision, problem.settings, target.kind).make(problem, Ask)
-    if ask is not None:
-        if not ask.is_ready:
-            ask.bind()
-        row, last = np.zeros(ask.plan.size), 1 if ask.plan.is_closed else LM_ATTEMPTS
-        row[: len(problem.lower)] = np.minimum(np.maximum(problem.centre, problem.lower), problem.upper)
-        is_reached = ask.answer(target.T_world_tool, as_word(seed), stream, 0, last, row)
-        return row, ask.engine, bool(is_reached)
-    few, attempts = _find_few(problem)
+def _search(problem: Problem, target: Target, seed: int, stream: int, attempts: int) -> tuple[Floats, str, bool]:
+    """The same by the long way: the row (`kernels/answer.py`), the engine, and whether it is reached."""
+    few = _find_few(problem)
+    attempts = attempts if few.settings.method == "lm" else 1
     found = search(few, Targets.of([target]), seed=seed, streams=[stream], attempts=attempts, threads=1)
     metrics = found.metrics
     measured = metrics.position_error_m[0], metrics.orientation_error_rad[0], metrics.clearance_m[0]
@@ -222,8 +232,6 @@ def _grade_best(tried: Tried) -> Tried:
 
 
 @lru_cache(maxsize=16)
-def _find_few(problem: Problem) -> tuple[Problem, int]:
-    """The same question with so little search as one of many poses is worth, and how many attempts that is."""
-    if problem.settings.method in ("auto", "lm"):
-        return problem.with_settings(method="lm"), LM_ATTEMPTS
-    return problem, 1
+def _find_few(problem: Problem) -> Problem:
+    """The same question with so little search as one of many poses is worth: without the slower engines of `auto`."""
+    return problem.with_settings(method="lm") if problem.settings.method == "auto" else problem

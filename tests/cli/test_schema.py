@@ -43,11 +43,18 @@ def test_the_schema_of_a_world_file_is_there_too(cli):
     assert data["$defs"]["RoundEntry"]["required"] == ["radius", "height"]
 
 
+def test_the_schema_of_a_goal_file_is_there_too(cli):
+    data = cli("schema", "goal").data
+    assert set(data["properties"]) == {"units", "goal", "any_of", "take", "base"}
+    goal = data["$defs"]["GoalEntry"]["properties"]
+    assert {"position", "box", "rotation", "turn", "cone", "look_at", "frame"} <= set(goal)
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "of batch, track, robot, world, got nothing"),
-        (("bacth",), "robot, world, got bacth (did you mean 'batch'?)"),
+        ((), "of batch, track, robot, goal, world, got nothing"),
+        (("bacth",), "robot, goal, world, got bacth (did you mean 'batch'?)"),
     ],
 )
 def test_other_names_are_refused(refuse, arguments, words):

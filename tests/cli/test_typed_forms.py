@@ -34,6 +34,20 @@ def test_a_fourth_number_is_left_over():
     assert regroup(["--quat-wxyz", "1,0,0,0"]) == ["--quat-wxyz", "1", "0", "0", "0"]
 
 
+def test_goals_with_freedom_are_typed_alike():
+    assert regroup(["--look-at", "1,2,3", "--distance", "0.3 0.6"]) == [
+        "--look-at",
+        "1",
+        "2",
+        "3",
+        "--distance",
+        "0.3",
+        "0.6",
+    ]
+    assert regroup(["--tolerance-box", "0.1", "0", "0", "--json"]) == ["--tolerance-box", "0.1 0 0", "--json"]
+    assert regroup(["--base-region", "-1,0", "1,0", "1,1", "--json"]) == ["--base-region", "-1,0 1,0 1,1", "--json"]
+
+
 @pytest.mark.parametrize("option", ["--q", "--near", "--start"])
 def test_joint_values_are_one_word(option):
     assert regroup([option, "0", "-1", ".5", "--json"]) == [option, "0 -1 .5", "--json"]

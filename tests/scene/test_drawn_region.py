@@ -1,0 +1,48 @@
+"""Outlines of regions lie on their edges."""
+
+import numpy as np
+import pytest
+
+import ikde
+from ikde.model.collision_model import CollisionModel
+from ikde.model.region import Region
+from ikde.scene.drawn_pose import draw_pose
+from ikde.scene.drawn_region import LENGTH_M, draw_region
+from tests.goals import POSE, REGIONS
+
+
+def test_a_box_is_its_edges():
+    lines = draw_region(Region.box(POSE, [(0, 0.1), (-0.1, 0.2), (0, 0.3)]))
+    corners = (np.concatenate(lines[:2]) - POSE.p_world_tool) @ POSE.R_world_tool
+    assert {tuple(np.round(corner, 9) + 0.0) for corner in corners[: -2 if len(lines) < 6 else None]} == {
+        (x, y, z) for x in (0, 0.1) for y in (-0.1, 0.2) for z in (0, 0.3)
+    }
+    assert len(lines) == 6 + 1  # two loops, four posts; and the axis that is asked for
+
+
+def test_a_cone_is_as_wide_as_its_angle():
+    rim = draw_region(Region.cone(POSE, 0.3))[0] - POSE.p_world_tool
+    assert np.linalg.norm(rim, axis=1) == pytest.approx(LENGTH_M)
+    assert rim @ POSE.axis_world_tool == pytest.approx(LENGTH_M * np.cos(0.3))
+
+
+def test_what_looks_at_a_point_is_so_far_from_it():
+    near, far, *_ = draw_region(Region.look_at((1, 0, 0), (0.3, 0.6), (0, 0, -1), 0.5))
+    for rim, distance in ((near, 0.3), (far, 0.6)):
+        assert np.linalg.norm(rim - (1, 0, 0), axis=1) == pytest.approx(distance)
+        assert rim[:, 2] == pytest.approx(distance * np.cos(0.5))
+
+
+@pytest.mark.parametrize("region", REGIONS, ids=repr)
+def test_every_kind_is_drawn(region):
+    lines = draw_region(region.with_base([(0, 0), (2, 0), (2, 2)]))
+    assert len(lines) > 1
+    assert all(np.isfinite(line).all() and line.shape[1] == 3 for line in lines)
+    assert lines[-1][:, 2].tolist() == [0.0] * 4
+
+
+def test_a_drawn_pose_has_room_for_it():
+    robot = ikde.load_robot("ur5")
+    region = Region.box((1.5, 0.0, 0.3), 0.2)
+    pose = draw_pose(CollisionModel.of(robot), robot.home, region=region)
+    assert pose.compute_box()[1, 0] == pytest.approx(1.7)
