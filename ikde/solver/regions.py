@@ -23,8 +23,10 @@ from ikde.solver.grade import confirm
 from ikde.solver.metrics import pack_grader
 from ikde.solver.plain import compute_frames
 from ikde.solver.problem import Problem
+from ikde.solver.proof import prove
 from ikde.solver.region_draws import Drawn, draw_poses, draw_streams
 from ikde.solver.region_grade import RegionGrade, grade_frames
+from ikde.solver.region_nearest import find_nearest
 from ikde.solver.region_proof import Proof, prove_region
 from ikde.solver.region_tally import Tally, Tried, tell_still
 from ikde.solver.result import ResultMaker, SolveResult, change_result
@@ -132,6 +134,15 @@ class RegionSearch:
         if problem.is_fixed:
             self._budget = 0
             self._proof = None if grade.is_inside else tell_still(grade)
+        elif not grade.is_inside:
+            yield from self._try_nearest(T)
+
+    def _try_nearest(self, T_world_tool: Floats) -> Iterator[SolveResult]:
+        """Of each alternative the pose that is nearest to where the tool is at `near`."""
+        for place, part in enumerate(self._asked.region.parts):
+            target = find_nearest(part, T_world_tool, self._problem.settings)
+            if place not in self._closed and prove(self._problem, target) == (0.0, 0.0):
+                yield from self._answer(self._try(self._problem, target, place, self._asked.stream))
 
     def _try_block(self, drawn: Drawn) -> Iterator[SolveResult]:
         """Solutions among some poses; those that a bound excludes are not asked for."""

@@ -125,6 +125,15 @@ def test_near_inside_the_region_is_the_answer(ur5, goal):
     assert result.motion == 0.0
 
 
+def test_near_outside_the_region_the_nearest_pose_is_tried_first(ur5, goal):
+    near = ur5.home + 0.4
+    region = Region.box(goal, 0.05, 0.1)
+    first, centre = ikde.solve(ur5, region, near=near), ikde.solve(ur5, goal, near=near)
+    assert first.reached
+    assert first.poses == 1
+    assert first.motion < 0.9 * centre.motion
+
+
 def test_a_robot_that_may_not_move_is_inside_or_not(ur5, goal):
     there = dict(zip(ur5.joint_names, (ur5.home + 0.3).tolist(), strict=True))
     assert ikde.solve(ur5, Region.box(goal, 0.01), freeze=there).reached
