@@ -55,8 +55,8 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0), vie
     draw_obstacles(axes, pose.obstacles)
     for mark in pose.marks:
         _draw_mark(axes, mark)
-    for place, line_m in enumerate(pose.region_m):
-        label = "_nolegend_" if place else "region: any pose in it will do"
+    for number, line_m in enumerate(pose.region_m):
+        label = "_nolegend_" if number else "region: any pose in it will do"
         axes.plot(*line_m.T, color=COLORS[Role.REGION], linewidth=1.6, zorder=9, label=label)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=pose.title)
     box_m = pose.compute_box()

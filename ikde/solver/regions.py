@@ -31,11 +31,13 @@ from ikde.solver.region_proof import Proof, prove_region
 from ikde.solver.region_tally import Tally, Tried, tell_still
 from ikde.solver.result import ResultMaker, SolveResult, change_result
 from ikde.solver.search import search
+from ikde.solver.settings import SolveSettings
 from ikde.solver.way import as_word
 
 POSES = 1024  # of each alternative that are tried before the budget is spent, unless `restarts` says otherwise
 LM_ATTEMPTS, MORE_ATTEMPTS = 4, 16  # at one pose; of the closed form, which shows all branches, and of others one
 QUICKLY = 32  # poses of each alternative that so few attempts are made at
+QUICK = "lm", "analytic"
 FIRST_BLOCK, MAX_BLOCK = 4, 64  # poses drawn at once
 MORE_POSES = "more restarts: so many poses of the region are tried"
 
@@ -75,8 +77,7 @@ class RegionSearch:
         self._problem = question.problem if self._places is None else self._places.whole
         is_free = any(map(has_freedom, question.region.parts))
         self._tally = Tally(self._problem, "pose of the region" if is_free else "place of the base")
-        budget = question.problem.settings.restarts
-        self._budget = (POSES if budget is None else budget) * len(question.region.parts)
+        self._budget = _find_budget(question.problem.settings) * len(question.region.parts)
         self._closed: set[int] = set()
         self._ways: dict[str, Ask] = {}
         self._proof: Proof | None = None
@@ -218,6 +219,13 @@ class RegionSearch:
     def _is_late(self) -> bool:
         timeout_s = self._problem.settings.timeout_s
         return timeout_s is not None and time.perf_counter() - self._started >= timeout_s
+
+
+def _find_budget(settings: SolveSettings) -> int:
+    """Poses of each alternative: of slow engines, which make one attempt at each, their own number of attempts."""
+    if settings.restarts is None and {*QUICK} & {*settings.engines}:
+        return POSES
+    return settings.budget(settings.engines[-1])
 
 
 def _search(problem: Problem, target: Target, seed: int, stream: int, attempts: int) -> tuple[Floats, str, bool]:

@@ -130,7 +130,7 @@ class SolveResults(MadeAnew):
     def alternatives(self) -> Ints:
         """Which part of its region each row has reached, or tried last [T]; -1 for exact targets."""
         known = [None] * len(self) if self.singles is None else [result.alternative for result in self.singles]
-        return np.array([-1 if place is None else place for place in known], dtype=np.int64)
+        return read_only(np.array([-1 if place is None else place for place in known], dtype=np.int64))
 
     def __post_init__(self) -> None:
         """What was graded stays what it is: no column can be written to by mistake."""
