@@ -34,10 +34,11 @@ from ikde.solver.search import search
 from ikde.solver.settings import SolveSettings
 from ikde.solver.way import as_word
 
-POSES = 1024  # of each alternative that are tried before the budget is spent, unless `restarts` says otherwise
+POSES, POSES_OF_MANY = 1024, 128  # of each alternative that are tried unless `restarts` says otherwise; of many fewer
+SEVERAL = 4  # alternatives that are not many
 LM_ATTEMPTS, MORE_ATTEMPTS = 4, 16  # at one pose; of the closed form, which shows all branches, and of others one
 QUICKLY = 32  # poses of each alternative that so few attempts are made at
-QUICK = "lm", "analytic"
+QUICK, ONCE = ("lm", "analytic"), ("analytic",)  # engines; those that show all that a pose has at once
 FIRST_BLOCK, MAX_BLOCK = 4, 64  # poses drawn at once
 MORE_POSES = "more restarts: so many poses of the region are tried"
 
@@ -77,7 +78,7 @@ class RegionSearch:
         self._problem = question.problem if self._places is None else self._places.whole
         is_free = any(map(has_freedom, question.region.parts))
         self._tally = Tally(self._problem, "pose of the region" if is_free else "place of the base")
-        self._budget = _find_budget(question.problem.settings) * len(question.region.parts)
+        self._budget = _find_budget(question.problem.settings, len(question.region.parts))
         self._closed: set[int] = set()
         self._ways: dict[str, Ask] = {}
         self._proof: Proof | None = None
@@ -163,7 +164,10 @@ class RegionSearch:
             if asked is None:
                 self._tally.add_excluded()
                 continue
-            yield from self._answer(self._try(asked, target, part, stream, number))
+            tried = self._try(asked, target, part, stream, number)
+            yield from self._answer(tried)
+            if tried.engine in ONCE and self._places is None and not has_freedom(self._asked.region.parts[part]):
+                self._closed.add(part)
 
     def _place(self, number: int, target: Target) -> Problem | None:
         """The question of a draw: of a base, where it stands in that attempt; None: out of reach from there."""
@@ -221,11 +225,11 @@ class RegionSearch:
         return timeout_s is not None and time.perf_counter() - self._started >= timeout_s
 
 
-def _find_budget(settings: SolveSettings) -> int:
-    """Poses of each alternative: of slow engines, which make one attempt at each, their own number of attempts."""
+def _find_budget(settings: SolveSettings, alternatives: int) -> int:
+    """Poses of all alternatives: of slow engines, which make one attempt at each, their own number of attempts."""
     if settings.restarts is None and {*QUICK} & {*settings.engines}:
-        return POSES
-    return settings.budget(settings.engines[-1])
+        return max(POSES * min(alternatives, SEVERAL), POSES_OF_MANY * alternatives)
+    return settings.budget(settings.engines[-1]) * alternatives
 
 
 def _search(problem: Problem, target: Target, seed: int, stream: int, attempts: int) -> tuple[Floats, str, bool]:

@@ -8,7 +8,7 @@ import pytest
 import ikde
 from ikde.errors import InputError
 from ikde.model.region import Region
-from ikde.solver import region_grade
+from ikde.solver import region_grade, regions
 from ikde.solver.region_grade import RegionGrade, grade_region
 from ikde.solver.regions import RegionQuestion, solve_region
 from ikde.solver.result import StopReason
@@ -107,6 +107,14 @@ def test_the_first_alternative_that_is_reached_is_named(ur5, goal):
     result = ikde.solve(ur5, Region.any_of([far, other, goal]))
     assert (result.reached, result.alternative) == (True, 1)
     assert ikde.solve(ur5, Region.any_of([far, (0, 0, 9)])).stop_reason is StopReason.OUT_OF_REACH
+
+
+def test_many_alternatives_have_a_budget_together():
+    auto, slow = ikde.SolveSettings(), ikde.SolveSettings(method="memetic")
+    counts = [regions._find_budget(auto, count) for count in (1, 4, 10, 100)]
+    assert counts == [1024, 4096, 4096, 12800]
+    assert regions._find_budget(slow, 2) == 40
+    assert regions._find_budget(auto.with_changes(restarts=7), 3) == 21
 
 
 def test_the_best_alternative_moves_the_least(ur5, goal):
