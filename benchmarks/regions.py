@@ -9,7 +9,8 @@ tolerance box, a free or a limited turn, a cone, a point to look at, or three al
 Answers are graded by this script: forward kinematics and distances from obstacles by `benchmarks.scenes.Twin`, from the
 text of URDF and scene, and where the tool is in the region by scipy's rotations. Where no answer is found and nothing
 is proved, a dense search looks for one: random poses of the region, drawn here, each of them searched by `lm` with 100
-attempts. Times are of the processor, of a second call. *Of those that exist* counts answers against all regions, with a blocked centre, of which either found one.
+attempts. *Of those that exist* counts answers against all regions, with a blocked centre, of which either found one.
+Times are of the processor, of a second call.
 """
 
 import argparse
