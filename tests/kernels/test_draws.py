@@ -5,12 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import ikde
 from ikde.kernels.draws import MAX_DRAWS, SAMPLING, draw_free
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
 from ikde.model.pack import pack_robot
 from tests import reference
 from tests.random_robots import random_robot
+from tests.three_joints import ROBOT
 
 SOMETIMES_FREE = (5, 6, 14, 16, 19, 20, 21, 22)  # random robots; most others always collide
 
@@ -58,10 +60,13 @@ def test_how_many_were_found_in_a_row_is_told(qiao):
     assert np.isfinite(q).all()
 
 
-@pytest.mark.parametrize("detector", ["improved", pytest.param("typical", marks=pytest.mark.slow)])
-def test_written_kernels_draw_the_same_bits(qiao, detector):
-    collision = CollisionModel.of(qiao, detector)
-    module = load_module(collision, "position")
-    written, tables = draw(collision, 3, 10, 400, module), draw(collision, 3, 10, 400)
-    np.testing.assert_array_equal(written[0], tables[0])
-    assert written[1] == tables[1] == 400
+@pytest.mark.parametrize("robot", [ROBOT, pytest.param("qiao2021", marks=pytest.mark.slow)], ids=["small", "large"])
+def test_written_kernels_draw_the_same_bits(robot):
+    """A robot of three joints: other tests compile its kernels as well."""
+    robot = ikde.load_robot(robot) if isinstance(robot, str) else robot
+    for name in robot.detectors:
+        collision = CollisionModel.of(robot, name)
+        module = load_module(collision, "position")
+        written, tables = draw(collision, 3, 10, 400, module), draw(collision, 3, 10, 400)
+        np.testing.assert_array_equal(written[0], tables[0])
+        assert written[1] == tables[1] == 400
