@@ -12,7 +12,7 @@ import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_from_rpy
 from ikde.solver.plain import compute_gaps
-from tests import regrade, robot_texts
+from tests import regrade, robot_texts, three_joints
 from tests.asking import account_for_pairs, ask, ask_and_regrade, draw_question, grade_answers
 from tests.conftest import ROBOTS, random_q
 from tests.regrade import Grader, find_faults
@@ -185,14 +185,13 @@ def test_what_is_called_reached_is_reached(seed):
 
 
 def test_what_written_kernels_call_reached_is_reached(monkeypatch):
+    """Of a robot whose kernels other tests compile as well."""
     monkeypatch.delenv("IKDE_KERNELS")
-    grader, robot = grader_and_robot(WRITTEN)
+    grader, robot = Grader.of_text(three_joints.FILE.read_text(encoding="utf-8")), three_joints.ROBOT
     tally = ask_and_regrade(robot, grader, np.random.default_rng(0), 60, most=12, kinds=("pose",), detectors=(None,))
     assert not tally.faults
     assert tally.counts["reached"] > 10
 
-
-WRITTEN = 30
 
 # ---- the law has teeth
 
