@@ -28,19 +28,34 @@ def page(qiao):
     return make_page(make_measured(qiao, further=5, stop=STOP))
 
 
-def test_the_page_needs_nothing_else(page):
-    text = render_html(page)
+@pytest.fixture(scope="module")
+def text(page):
+    return render_html(page)
+
+
+@pytest.fixture(scope="module")
+def unchecked(qiao):
+    """The page of a motion without a detector."""
+    return make_page(make_measured(qiao, detector="none"))
+
+
+@pytest.fixture(scope="module")
+def alone(qiao):
+    """The page of a start, of which nothing was followed."""
+    return make_page(make_measured(qiao, steps=0, further=5))
+
+
+def test_the_page_needs_nothing_else(text):
     assert len(text) < MAX_BYTES
     assert re.findall(r'(?:src|href)="(?!#|data:image/png)', text) == []
     assert re.findall(r"@import|@font-face|url\((?!#)|https?://(?!www.w3.org)", text) == []
     assert "wave &lt;1&gt;" in text
 
 
-def test_it_shows_everything(page):
+def test_it_shows_everything(page, text):
     assert [section.title for section in page.sections] == [
         *("Motion", "Clearance and limits", "Figures", "Path and error", "Joints", "Base", "How it was made"),
     ]
-    text = render_html(page)
     assert text.count("<svg") == 6
     assert text.count("<canvas") == 1
     assert text.count("data:image/png") == 1
@@ -48,8 +63,7 @@ def test_it_shows_everything(page):
     assert "Animation in the HTML page" in render_markdown(page)
 
 
-def test_a_stop_is_not_overlooked(page):
-    text = render_html(page)
+def test_a_stop_is_not_overlooked(text):
     assert "The path was not followed to its end" in text
     assert STOP.text in text
 
@@ -64,26 +78,24 @@ def test_a_robot_that_stands_still_has_a_fixed_base():
     assert not any(word in text for word in ("omnidirectional", "differential", "drove", "platform"))
 
 
-def test_without_a_detector_the_page_says_not_checked(qiao):
-    page = make_page(make_measured(qiao, detector="none"))
-    numbers = {item.label: item.value for item in page.lead[-1].items}
+def test_without_a_detector_the_page_says_not_checked(unchecked):
+    numbers = {item.label: item.value for item in unchecked.lead[-1].items}
     assert numbers["self-collision"] == "not checked"
-    assert page.lead[-1].items[3].note == "of all other kinds, at all samples"
+    assert unchecked.lead[-1].items[3].note == "of all other kinds, at all samples"
     assert not any("clearance" in label for label in numbers)
-    text = render_html(page)
+    text = render_html(unchecked)
     assert "What collides is black" not in text
     assert text.count("Self-collision was not checked.") == 2
     assert "certified" not in text
 
 
-def test_the_caption_of_the_margins_says_certified_where_something_is(qiao, page):
+def test_the_caption_of_the_margins_says_certified_where_something_is(page, alone, unchecked):
     def caption(page):
         return next(section for section in page.sections if section.title == "Clearance and limits").blocks[0].caption
 
     assert caption(page).startswith("The smallest clearance of any pair, at the samples and certified between them. ")
-    alone = caption(make_page(make_measured(qiao, steps=0, further=5)))
-    assert alone.startswith("The smallest clearance of any pair, at the samples. ")
-    assert caption(make_page(make_measured(qiao, detector="none"))).startswith("The least share of a joint's range")
+    assert caption(alone).startswith("The smallest clearance of any pair, at the samples. ")
+    assert caption(unchecked).startswith("The least share of a joint's range")
 
 
 def test_it_says_what_measured(page):
@@ -109,11 +121,10 @@ def test_nothing_followed_is_a_short_page(qiao):
     assert "Nothing was followed" in render_html(page)
 
 
-def test_a_start_alone_is_shown(qiao):
-    page = make_page(make_measured(qiao, steps=0, further=5))
-    assert "Motion" in [section.title for section in page.sections]
-    assert "smallest clearance at samples" in [item.label for item in page.lead[-1].items]
-    assert "certified" not in render_html(page)  # there is nothing between
+def test_a_start_alone_is_shown(alone):
+    assert "Motion" in [section.title for section in alone.sections]
+    assert "smallest clearance at samples" in [item.label for item in alone.lead[-1].items]
+    assert "certified" not in render_html(alone)  # there is nothing between
 
 
 def test_it_says_how_it_was_made(page):
