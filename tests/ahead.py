@@ -3,6 +3,7 @@
 What a test needs before it is in the cache, the test compiles itself. What still runs at the end is stopped.
 """
 
+import gc
 import os
 import signal
 import subprocess
@@ -32,6 +33,7 @@ def stop():
 
 def compile_kernels():
     """All that a robot of the paper's size needs."""
+    gc.set_threshold(100_000, 50, 50)  # to look for garbage as often as usual took 5% of compiling
     import ikde
     from ikde.solver.warmup import list_stages, warm_up
     from ikde.track.run import list_track_stages
