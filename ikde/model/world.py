@@ -1,11 +1,11 @@
 """A world of obstacles, as values: named, posed, each with a margin of its own. Worlds never become types or text."""
 
 import hashlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
-from typing import Generic, TypeVar, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +20,6 @@ from ikde.model.solids import Solid, read_pose
 from ikde.model.value import ByFields
 
 MAX_OBSTACLES = MAX_SOLIDS = 100_000
-FEW = 4  # obstacles that may have moved, before they are looked up: they may stand in another order
-Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -188,7 +186,7 @@ class World(ByFields):
         moved = replace(self.obstacles[place], T_world_obstacle=T)
         known = {"obstacles": (*self.obstacles[:place], moved, *self.obstacles[place + 1 :]), "_places": self._places}
         world = object.__new__(World)  # of the same names and groups, which are known to be right
-        vars(world).update(known, switched_off=self.switched_off)
+        vars(world).update(known, switched_off=self.switched_off, attached=self.attached)
         return world
 
     def switch(self, /, **groups: bool) -> "World":
@@ -317,35 +315,6 @@ def make_obstacle(
     T = np.eye(4)[:3] if T_world_obstacle is None else T_world_obstacle
     known = {"frame": frame, "margin_m": float(margin_m), "ignore": ignored, "group": group}
     return Obstacle(name=name, solids=parts, T_world_obstacle=read_pose(T, ("T_world_obstacle",)), **known)
-
-
-class PerObstacle(Generic[Found]):
-    """What is made of each obstacle of a world, kept for the next one: where one has moved, only that is made anew."""
-
-    def __init__(self, make: Callable[[Obstacle], Found]) -> None:
-        self._make = make
-        self._last: tuple[tuple[Obstacle, ...], list[Found]] = ((), [])
-
-    def list(self, obstacles: tuple[Obstacle, ...]) -> list[Found]:
-        """Of each obstacle, in their order."""
-        make, (before, found) = self._make, self._last
-        changed = find_changed(before, obstacles)
-        if changed is None or len(changed) > FEW:
-            kept = {id(old): part for old, part in zip(before, found, strict=True)}
-            made = [kept[id(obstacle)] if id(obstacle) in kept else make(obstacle) for obstacle in obstacles]
-        else:
-            made = found.copy()
-            for place in changed:
-                made[place] = make(obstacles[place])
-        self._last = obstacles, made
-        return made
-
-
-def find_changed(before: tuple[Obstacle, ...], after: tuple[Obstacle, ...]) -> list[int] | None:
-    """Places at which another object stands than before; None if there are fewer or more of them."""
-    if len(before) != len(after):
-        return None
-    return [place for place, (old, new) in enumerate(zip(before, after, strict=True)) if old is not new]
 
 
 def _read_place(given: "ArrayLike | Pose") -> Floats:

@@ -11,9 +11,10 @@ from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.pack_world import find_fixed_frames
+from ikde.model.per_obstacle import PerObstacle
 from ikde.model.robot import WORLD
 from ikde.model.solids import IDENTITY, Solid
-from ikde.model.world import Obstacle, PerObstacle
+from ikde.model.world import Obstacle
 from ikde.solver.plain import compute_components, compute_frames
 from ikde.solver.plain_world import measure_obstacle
 from ikde.solver.touching import CONFIGURATIONS as TRIED

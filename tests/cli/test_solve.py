@@ -28,6 +28,7 @@ PROMISED = {
     "orientation_error_rad",
     "clearance_m",
     "closest_pair",
+    "nearest_obstacle",
     "collision",
     "method",
     "detector",
