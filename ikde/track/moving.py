@@ -168,9 +168,10 @@ class MovingWorld:
         components = compute_components(model, q)
         for mover in self.movers:
             R, p = mover.motion.place(times_s)
+            held = [thing.name for thing in model.world.attached if mover.obstacle.name in thing.may_touch]
             for row, name in enumerate(model.components):
                 centres, radii = components[name]
-                if name in mover.obstacle.ignore:
+                if name in mover.obstacle.ignore or name in held:
                     gaps[:, row, mover.place] = np.inf
                     continue
                 own = np.einsum("mji,msj->msi", R, np.broadcast_to(centres, (len(q), *centres.shape[-2:])) - p[:, None])

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import fields
 from types import SimpleNamespace
 
 import numpy as np
@@ -158,3 +159,14 @@ def test_what_a_world_refuses(world, wrong, said):
 
 def test_an_obstacle_moves_to_a_pose_of_another_library(world):
     assert world.move("box", SimpleNamespace(homogeneous=place(1))) == world.move("box", place(1))
+
+
+def test_what_is_held_stays_held_when_an_obstacle_moves():
+    three = [make_obstacle(name, [make_solid("sphere", (0.1,))], group=name) for name in ("rod", "can", "off")]
+    spheres = [[0.0, 0.0, 0.0, 0.1]]
+    world = make_world(three, ["off"]).attach("rod", "hand", T_frame_object=np.eye(4), spheres=spheres)
+    moved = world.move("can", np.eye(4))
+    assert moved == world
+    for field in fields(World):
+        assert getattr(moved, field.name) == getattr(world, field.name), field.name
+    assert [thing.name for thing in moved.attached] == ["rod"]

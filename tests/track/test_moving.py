@@ -168,6 +168,23 @@ def test_a_fixed_part_is_compared_with_what_moves():
     assert np.isinf(compute_world_gaps(model, ur5.home)).any()  # which a world that stands still leaves out
 
 
+def test_what_is_held_is_compared_with_what_moves_unless_it_may_touch_it(qiao, rng):
+    obstacles = {name: {"sphere": {"radius": 0.05}, "position": [2, 0, 1]} for name in ("rod", "belt", "ball")}
+    world = ikde.load_world({"obstacles": obstacles})
+    held = {"T_frame_object": np.eye(4), "spheres": [[0, 0, 0.1, 0.03]], "may_touch": ["belt"]}
+    model = CollisionModel.of(qiao).in_world(world.attach("rod", "tool", **held), 0.01)
+    moving = {name: make_motion(rng, [1.2, 0.3, 1.2]) for name in ("belt", "ball")}
+    moved = MovingWorld.of(place_at(model, moving, 0.0), moving, 0.02 * np.arange(21))
+    q, times = rng.uniform(*qiao.drawn, (4, 9)), rng.uniform(0.0, 0.4, 4)
+    gaps = moved.compute_gaps(q, times)
+    for k, time in enumerate(times):
+        there = place_at(moved.collision, moving, time)
+        np.testing.assert_allclose(gaps[k], compute_world_gaps(there, q[k]), rtol=0, atol=1e-12)
+    row = gaps.reshape(4, len(model.components), 2)[:, model.components.index("rod")]
+    assert np.isinf(row[:, 0]).all()
+    assert np.isfinite(row[:, 1]).all()
+
+
 def plan_with(moving, **changes):
     ball = {
         "ball": {"sphere": {"radius": 0.05}, "position": [9, 0, 0]},
