@@ -19,6 +19,7 @@ from ikde.track.plan import TrackPlan
 EXACT = SolveSettings(position_tolerance_m=1e-9, orientation_tolerance_rad=1e-9)
 DRAWS, MORE_DRAWS = 16, 64  # starts that the solver finds by itself, and as many near random configurations
 NEAR_RESTARTS = 8
+TRIED = (StopReason.BUDGET, StopReason.COLLISION, StopReason.WORLD)  # what further attempts may refute
 ROUNDING = 1e-12  # m or rad
 MAX_SHIFT = 0.05  # m or rad: how far a given start may stand from what meets the first pose
 
@@ -28,7 +29,7 @@ def draw_starts(plan: TrackPlan, draws: int = DRAWS) -> tuple[Floats, SolveResul
     robot, target, seed = plan.robot, plan.path.targets()[0], plan.seed
     question = {"collision": plan.collision, "freeze": plan.frozen}
     first, nothing = solve(robot, target, EXACT, seed=seed, **question), np.empty((0, len(robot.joints)))
-    if not first.reached and first.stop_reason != StopReason.BUDGET:
+    if not first.reached and first.stop_reason not in TRIED:
         return nothing, first
     bulk = BulkOptions(threads=1, explain=False)
     rows = solve_many(robot, [target] * draws, EXACT, seed=seed, bulk=bulk, **question)
