@@ -4,7 +4,8 @@
 
 Folders as for `benchmarks/scenes.py`. Of each robot so many problems `table_pick`, spread over all: at the request's
 goal the gripper holds Can1. It is attached there, may touch the table that it stands on, is lifted straight up by so
-many m and is set down again where it stood, by two tracks of three seconds each; then it is let go. A track is
+many m with the whole pose kept, and is set down again where it stood, by two tracks of three seconds each; then it is
+let go. The lift begins in the goal's configuration, or, where that is refused, in one that ikde chooses. A track is
 followed and certified, or refused with its reason.
 
 Each motion is judged by this script from the text of URDF and scene, by `scenes.Twin`, which shares nothing with ikde
@@ -32,7 +33,7 @@ from ikde.io.scene_pairs import find_pairs, read_request
 OBJECT, TABLE = "Can1", "table_top"
 SAMPLES, DT_S, BETWEEN = 40, 0.075, 4
 ON_LINE_M, ON_LINE_RAD, CONTACT_M = 1e-4, 1e-3, 1e-9
-BEHIND_M = 0.02  # a refusal names something that was as near as this
+BEHIND_M, NEAR_LIMIT_RAD = 0.03, 0.2  # a refusal names something that was as near as this one sample before
 
 
 class Judge:
@@ -59,14 +60,15 @@ class Judge:
         balls = {name: self._place(links[name], own) for name, own in self.twin.spheres.items() if own}
         own = [(sphere[:3], sphere[3]) for sphere in self.held.spheres]
         balls[OBJECT] = self._place(self.place_object(links), own)
-        found = {}
-        for name, (centres, radii) in balls.items():
-            for other, shape, T in self.solids:
-                free = name == OBJECT and other in (OBJECT, TABLE)
-                if free or other == OBJECT or name not in (*self.moved, OBJECT):
-                    continue
-                gap = float((measure(shape, (centres - T[:3, 3]) @ T[:3, :3]) - radii).min())
-                found[name, other] = min(found.get((name, other), np.inf), gap)
+        names, found = [name for name in balls if name in (*self.moved, OBJECT)], {}
+        centres, radii = (np.concatenate([balls[name][k] for name in names]) for k in (0, 1))
+        firsts = np.cumsum([0, *(len(balls[name][1]) for name in names)])[:-1]
+        for other, shape, T in self.solids:
+            if other != OBJECT:
+                gaps = np.minimum.reduceat(measure(shape, (centres - T[:3, 3]) @ T[:3, :3]) - radii, firsts)
+                for name, gap in zip(names, gaps.tolist(), strict=True):
+                    if (name, other) != (OBJECT, TABLE):
+                        found[name, other] = min(found.get((name, other), np.inf), gap)
         for a, b in self.pairs:
             (P, r), (Q, s) = balls[a], balls[b]
             found[a, b] = float((np.linalg.norm(P[:, None] - Q, axis=2) - r[:, None] - s).min())
@@ -96,14 +98,16 @@ class Judge:
         return float(np.linalg.norm(T[:3, 3] - start - share * (end - start))), float(turned)
 
 
-def follow(robot: ikde.Robot, q: np.ndarray, rise_m: float, model: ikde.CollisionModel) -> ikde.Trajectory:
-    """Straight up or down from where the tool is at `q`."""
+def follow(
+    robot: ikde.Robot, q: np.ndarray, rise_m: float, model: ikde.CollisionModel, *, starts_there: bool = True
+) -> ikde.Trajectory:
+    """Straight up or down from where the tool is at `q`, in that configuration or in any that has the tool there."""
     T = ikde.forward(robot, q)[robot.tool]
     smooth = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SAMPLES + 1))
     points = T[:3, 3] + rise_m * smooth[:, None] * np.array([0.0, 0.0, 1.0])
     R = np.repeat(T[None, :3, :3], len(points), axis=0)
     path = ikde.ToolPath(p_world_tool=points, R_world_tool=R, orientation="pose", dt_s=DT_S)
-    return ikde.follow_path(robot, path, start=q, collision=model)
+    return ikde.follow_path(robot, path, start=q if starts_there else None, collision=model)
 
 
 def judge_motion(judge: Judge, motion: ikde.Trajectory) -> tuple[float, float, list[str]]:
@@ -125,6 +129,20 @@ def judge_motion(judge: Judge, motion: ikde.Trajectory) -> tuple[float, float, l
     return min(gaps), between, wrong
 
 
+def try_lift(
+    robot: ikde.Robot, q: np.ndarray, rise_m: float, model: ikde.CollisionModel, row: dict[str, Any]
+) -> ikde.Trajectory:
+    """From the goal's configuration; where that does not lead up, from the one that ikde finds best."""
+    try:
+        motion = follow(robot, q, rise_m, model)
+        row["from_goal"] = "followed" if motion.reached else str(getattr(motion.stop, "text", ""))
+        if motion.reached:
+            return motion
+    except ikde.InputError as error:
+        row["from_goal"] = str(error)
+    return follow(robot, q, rise_m, model, starts_there=False)
+
+
 def run_grasp(robot: ikde.Robot, twin: Twin, pair: Any, options: argparse.Namespace) -> dict[str, Any]:
     """What becomes of one."""
     q, scene, world = read_goal(read_request(pair.request), robot), read_yaml(pair.scene), ikde.load_world(pair.scene)
@@ -136,7 +154,7 @@ def run_grasp(robot: ikde.Robot, twin: Twin, pair: Any, options: argparse.Namesp
         world = world.attach(OBJECT, robot.tool, robot=robot, q=q, may_touch=touch, protrusion_m=fat)
         row["attach_ms"] = 1e3 * (time.perf_counter() - started)
         model = ikde.CollisionModel.of(robot).in_world(world)
-        motion = follow(robot, q, options.lift, model)
+        motion = try_lift(robot, q, options.lift, model, row)
     except ikde.InputError as error:
         return {
             **row,
@@ -155,7 +173,7 @@ def run_grasp(robot: ikde.Robot, twin: Twin, pair: Any, options: argparse.Namesp
     for way in ("lift", "down"):
         row[f"{way}_s"] = motion.search_seconds
         if not motion.reached:
-            return {**row, **tell_stop(judge, motion, way)}
+            return {**row, **tell_stop(judge, motion, way, (robot.lower, robot.upper))}
         least, between, wrong = judge_motion(judge, motion)
         row["wrong"] += [f"{way}: {line}" for line in wrong]
         assert motion.certificate is not None
@@ -168,7 +186,8 @@ def run_grasp(robot: ikde.Robot, twin: Twin, pair: Any, options: argparse.Namesp
     if row["put_back_mm"] > 0.5:
         row["wrong"].append("the can is not where it stood")
     is_free = all(row[way]["certified"] for way in ("lift", "down"))
-    return {**row, "end": "followed" if is_free else "followed, not certified"}
+    other = "" if row["from_goal"] == "followed" else ", from another configuration"
+    return {**row, "end": f"followed{other}" if is_free else "followed, not certified"}
 
 
 def check_refusal(robot: ikde.Robot, twin: Twin, q: np.ndarray, scene: dict[str, Any], world: ikde.World) -> Any:
@@ -182,11 +201,14 @@ def check_refusal(robot: ikde.Robot, twin: Twin, q: np.ndarray, scene: dict[str,
     return {"least_mm": 1e3 * least, "outside": outside, "wrong": wrong}
 
 
-def tell_stop(judge: Judge, motion: ikde.Trajectory, way: str) -> dict[str, Any]:
+def tell_stop(judge: Judge, motion: ikde.Trajectory, way: str, limits: tuple[Any, Any]) -> dict[str, Any]:
     """Why a track ended, and whether this script sees what is named as near."""
-    stop = motion.stop
+    stop, (lower, upper) = motion.stop, limits
     assert stop is not None
     told: dict[str, Any] = {"end": f"refused: {way}, {stop.reason}", "reason": stop.text}
+    if stop.reason == "joint_limit" and len(motion.q):
+        room = float(np.minimum(motion.q[-1] - lower, upper - motion.q[-1]).min())
+        told["wrong"] = [f"a limit is named, {room:.3f} rad away at the last sample"] if room > NEAR_LIMIT_RAD else []
     if stop.pair is not None and len(motion.q):
         gaps = judge.list_gaps(motion.q[-1])
         told["named_mm"] = 1e3 * min((gap for pair, gap in gaps.items() if set(stop.pair) == set(pair)), default=np.inf)
