@@ -165,9 +165,11 @@ def _make_clearance(motion: TrackSummary) -> Number:
     if clearance_m is None:
         return Number("not checked", "self-collision", "no detector")
     certain = f"{length(proof.clearance_m)} certified between" if proof else ""
-    if motion.collision.obstacles and motion.closest_pair is not None:
-        certain = "; ".join(filter(None, (" and ".join(motion.closest_pair), certain)))
-    return Number(length(clearance_m), "smallest clearance at samples", certain)
+    if not motion.collision.obstacles or motion.closest_pair is None or motion.closest_place is None:
+        return Number(length(clearance_m), "smallest clearance at samples", certain)
+    asked_m = motion.collision.limit_m + motion.collision.extra_m(motion.closest_place)
+    where = " and ".join(motion.closest_pair) + (f", {length(asked_m)} asked for" if asked_m else "")
+    return Number(length(clearance_m), "least to spare at samples", "; ".join(filter(None, (where, certain))))
 
 
 def _tell_black(motion: TrackSummary) -> str:

@@ -152,6 +152,7 @@ def test_in_a_world_it_says_which_and_what_comes_nearest(qiao):
     assert motion.collision.world.digest[:12] in facts["world"]
     assert facts["margin"].count("10 mm") == 1
     number = page.lead[-1].items[2]
+    assert number.label == "least to spare at samples"
     assert number.note.startswith(f"{motion.closest_pair[0]} and {motion.closest_pair[1]}; ")
     text = render_html(page)
     assert text.count("Obstacles are grey, violet where anything is too near; the green ring is where") == 2
@@ -165,3 +166,11 @@ def test_of_many_obstacles_it_says_how_many_are_drawn_and_listed(qiao):
     table = list_near(motion)
     assert table.note.endswith(" Of 100 obstacles.")
     assert len(table.rows) == 12
+
+
+def test_what_has_least_to_spare_is_said_with_what_it_was_asked_for(qiao):
+    """Of a margin that only what is asked for makes decisive."""
+    motion = make_among(qiao, 0.06)
+    number = make_page(motion).lead[-1].items[2]
+    assert motion.closest_pair[1] in OBSTACLES
+    assert number.note.startswith(f"{' and '.join(motion.closest_pair)}, 60 mm asked for; ")
