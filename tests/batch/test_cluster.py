@@ -23,12 +23,19 @@ from ikde.errors import InputError
 from ikde.model.generate.module import describe_kernels
 from tests.batch.small import BLINK, ROBOT, make_arm, make_batch, read_files
 
-SLOW = {"population": 30, "generations": 300, "restarts": 1, "position_tolerance_m": 1e-12}
+SLOWLY = """
+import time
+from ikde.batch import cluster, task
+def solve_task(part, threads):
+    time.sleep(0.2)
+    return task.solve_task(part, threads)
+cluster.solve_task = solve_task
+"""  # what workers run first: those that are to be killed at work have to be found at it
 
 
 @pytest.fixture(scope="module")
 def batch():
-    arms = (make_arm("free", detector="none", **SLOW), make_arm("careful", **BLINK))
+    arms = (make_arm("free", detector="none", population=20, generations=30, restarts=1), make_arm("careful", **BLINK))
     return make_batch(arms=arms, graders=(ROBOT.detectors["typical"],), explain=True)
 
 
@@ -43,8 +50,11 @@ def whole(batch, tmp_path_factory):
 @pytest.fixture(scope="module")
 def cluster():
     """Two workers, and a scheduler that gives up a part as soon as one dies of it."""
-    facts = {"threads_per_worker": 1, "dashboard_address": ":0", "memory_limit": None, "silence_logs": SILENT}
-    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), LocalCluster(2, **facts) as started:
+    facts = {"threads_per_worker": 1, "dashboard_address": ":0", "memory_limit": None}
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        LocalCluster(2, silence_logs=SILENT, preload=SLOWLY, **facts) as started,
+    ):
         yield started
 
 
