@@ -43,6 +43,7 @@ BEYOND = {
     "hint",
     "robot",
     "convention",
+    "nearest_obstacle",
     "outside_limits",
     "attempts",
     "motion",
