@@ -9,6 +9,7 @@ import pytest
 
 import ikde
 from ikde.model.bounds import find_bounds
+from ikde.solver.engines import pool
 from ikde.solver.hints import Probe, hint_at_tolerance, meets, try_longer, try_widening
 from ikde.solver.verify import verify
 from tests.endless_robot import ENDLESS
@@ -28,6 +29,12 @@ def hint(robot, target, freeze=None, settings=LM):
     result = ikde.solve(robot, target, settings, freeze=freeze, collision="none")
     assert result.stop_reason == "out_of_reach"
     return result.hint
+
+
+@pytest.fixture
+def few_seeds(monkeypatch):
+    """Pools of few configurations, a second less each: what is told does not depend on where searches start."""
+    monkeypatch.setattr(pool, "DRAWN", pool.DRAWN_NARROW)
 
 
 # ---- what bounds prove
@@ -109,6 +116,7 @@ def excludes(robot, target, frozen, wide):
     return far_m > LM.position_tolerance_m or off_rad > 1e-4
 
 
+@pytest.mark.usefixtures("few_seeds")
 def test_what_bounds_prove_holds_for_random_robots():
     """Each way that is told opens the bound, and nothing of it could be spared; if none is told there is none."""
     kinds = Counter()
@@ -156,6 +164,7 @@ def widen(robot, frozen, names):
     return with_ranges(robot, {name: ranges[name] for name in names if name not in frozen})
 
 
+@pytest.mark.usefixtures("few_seeds")
 def test_what_was_tried_is_done_again_and_reaches():
     """Joints are freed or their ranges widened as told: the same search then reaches."""
     kinds = Counter()
