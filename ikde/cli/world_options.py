@@ -9,7 +9,7 @@ from ikde.cli.output import print_note
 if TYPE_CHECKING:
     from ikde.kernels.arrays import Floats
     from ikde.model.collision_model import CollisionModel
-    from ikde.model.world import World
+    from ikde.model.world import Attached, World
 
 WorldOption = Annotated[
     Path | None,
@@ -101,7 +101,19 @@ def _pick_up(collision: "CollisionModel", world: "World", pick: Pick) -> "World"
 
 def _note_held(model: "CollisionModel", pick: Pick) -> None:
     """Say how what was picked up is compared."""
+    from ikde.report.numbers import count_of
+
     for thing in model.world.attached if pick.text is not None else ():
         out_mm = 1e3 * (thing.protrusion_m or 0.0)
-        spheres = f"{len(thing.spheres)} spheres, up to {out_mm:.3g} mm beyond it"
-        print_note(f"ikde: {thing.frame} holds {thing.name}: {spheres}")
+        spheres = f"{count_of(len(thing.spheres), 'sphere')}, up to {out_mm:.3g} mm beyond it"
+        print_note(f"ikde: {thing.frame} holds {thing.name}, {_tell_distance(thing, pick)}: {spheres}")
+
+
+def _tell_distance(thing: "Attached", pick: Pick) -> str:
+    """How far what is held is from what holds it: far away, it was picked up from the wrong place."""
+    import numpy as np
+
+    T = thing.T_frame_object
+    away_m = np.linalg.norm(thing.spheres[:, :3] @ T[:, :3].T + T[:, 3], axis=1) - thing.spheres[:, 3]
+    where = "home" if pick.q is None else "the joint values given"
+    return f"{1e3 * max(away_m.min(), 0.0):.3g} mm away at {where}"
