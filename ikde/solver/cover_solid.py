@@ -8,12 +8,13 @@ of where it cuts the lines between them.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from ikde.errors import InputError
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, read_only
 from ikde.model.solids import IDENTITY, Solid
 from ikde.solver.plain_world import measure_solid
 from ikde.spheres.primitives import MAX_SPHERES, Rows, cover_box, cover_capsule, cover_cylinder
@@ -29,7 +30,7 @@ class ObjectCover(NamedTuple):
     """Spheres of several solids in the frame of their object."""
 
     spheres: Floats
-    """[n, 4] centre and radius, m."""
+    """[n, 4] centre and radius, m; read-only."""
     protrusion_m: float
     """Of the sphere that stands out of its own solid most."""
 
@@ -45,6 +46,12 @@ def cover_solids(solids: Sequence[Solid], protrusion_m: float | None = None) -> 
         InputError: for solids that have no end or no inside, and for what would take more than 2,000 spheres.
     """
     refuse_endless(solids)
+    return _find_cover(tuple(solids), protrusion_m)
+
+
+@lru_cache(maxsize=64)
+def _find_cover(solids: tuple[Solid, ...], protrusion_m: float | None) -> ObjectCover:
+    """The same object for equal solids: what is picked up again is not covered again."""
     if protrusion_m is not None:
         return _cover_all(solids, protrusion_m, MAX_SPHERES)
     for tried_m in PROTRUSIONS_M:
@@ -70,7 +77,7 @@ def _cover_all(solids: Sequence[Solid], protrusion_m: float, most: int) -> Objec
         out_m = max(out_m, own.protrusion_m)
         if sum(map(len, placed)) > most:
             raise _too_many(most, protrusion_m)
-    return ObjectCover(np.concatenate(placed), max(out_m, 0.0))
+    return ObjectCover(read_only(np.concatenate(placed)), max(out_m, 0.0))
 
 
 def _cover(solid: Solid, protrusion_m: float, most: int) -> Rows:

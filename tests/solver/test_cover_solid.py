@@ -69,3 +69,9 @@ def test_what_has_no_end_or_no_inside_is_refused():
         cover_solids([make_solid("box", (9.0, 9.0, 9.0))], 0.001)
     with pytest.raises(InputError, match="more than 2,000 spheres would be needed"):
         cover_solids([make_solid("cone", (9.0, 9.0))], 0.001)
+
+
+def test_an_equal_object_is_not_covered_again():
+    one, other = (cover_solids([make_solid("cylinder", (0.04, 0.1))]) for _ in range(2))
+    assert one is other
+    assert not one.spheres.flags.writeable
