@@ -48,6 +48,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.check import CheckResults as CheckResults
     from ikde.solver.check import check as check
     from ikde.solver.check import check_many as check_many
+    from ikde.solver.clear_cloud import clear_cloud as clear_cloud
     from ikde.solver.distinct import solve_distinct as solve_distinct
     from ikde.solver.families import family as family
     from ikde.solver.forward import forward as forward
@@ -121,6 +122,7 @@ _HOME = {
     "forward": "ikde.solver.forward",
     "check": "ikde.solver.check",
     "check_many": "ikde.solver.check",
+    "clear_cloud": "ikde.solver.clear_cloud",
     "check_surface": "ikde.paper.surface",
     "CheckResult": "ikde.solver.check",
     "CheckResults": "ikde.solver.check",

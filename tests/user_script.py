@@ -77,6 +77,8 @@ notes = ikde.read_world("kitchen.yaml").notes
 among = ikde.CollisionModel.of("ur5").in_world(world.remove("lamp"), 0.005, {"wrist_3": 0.0})
 result = ikde.solve("ur5", (0.4, 0.2, 0.3), collision=among)
 held: ikde.World = world.attach("can", "tool", robot="ur5", q=np.zeros(6), may_touch=["top"])
+seen, removed = ikde.clear_cloud(held, "ur5", np.zeros(6), padding_m=0.02)
+print(seen.names, removed + 1)
 print(held.attached[0].protrusion_m, held.detach("can", robot="ur5", q=np.ones(6)).names, held.detach("can").digest)
 files: tuple[Path, ...] = ikde.write_world(world, "copy.yaml", ["a note"])
 
