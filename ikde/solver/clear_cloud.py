@@ -26,7 +26,7 @@ def clear_cloud(
 ) -> tuple[World, int]:
     """The world without the points of its clouds that lie on the robot, or on what it holds; and how many those are.
 
-    Other solids stay as they are, and so do clouds that are switched off. A cloud of which no point is left is left out.
+    Other solids stay as they are, and so do clouds that are switched off. A cloud without any point left is left out.
 
     Args:
         world: with clouds in the world, or in frames that no joint moves.
@@ -46,12 +46,14 @@ def clear_cloud(
     own = CollisionModel.of(robot, collision).own
     if not own.spheres:
         raise InputError(f"{robot.name} has no spheres, so that no point is known to lie on it", ("collision",))
-    placed = compute_components(own.in_world(world) if own.pairs else own, read_configuration(robot, q, None))
+    laden = own.in_world(World(attached=world.attached)) if world.attached else own
+    placed = compute_components(laden, read_configuration(robot, q, None))
     centres = np.concatenate([own_centres for own_centres, _ in placed.values()])
     radii = np.concatenate([own_radii for _, own_radii in placed.values()]) + padding_m
     frames, removed, left = find_fixed_frames(robot), 0, []
     for place, obstacle in enumerate(world.obstacles):
-        if obstacle in world.active and any(solid.kind == "cloud" for solid in obstacle.solids):
+        is_on = obstacle.group is None or obstacle.group not in world.switched_off
+        if is_on and any(solid.kind == "cloud" for solid in obstacle.solids):
             if obstacle.frame not in frames:
                 known = nearest(obstacle.frame, frames)
                 raise InputError(f"no frame that stays in its place is called {obstacle.frame!r}{known}", (place,))
@@ -88,8 +90,12 @@ def _find_on(centres: Floats, radii: Floats, points: Floats) -> np.ndarray:
     """Which points [K, 3] are within spheres [n]; those outside the box about all of them are not measured."""
     is_on = np.zeros(len(points), dtype=bool)
     low, high = (centres - radii[:, None]).min(axis=0), (centres + radii[:, None]).max(axis=0)
-    near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
-    own = points[near]
-    for centre, radius in zip(centres, radii.tolist(), strict=True):
-        is_on[near] |= ((own - centre) ** 2).sum(axis=1) <= radius * radius
+    near = np.arange(len(points))
+    for axis in range(3):  # a column at a time: a million points in 20 ms, whole rows take 80
+        column = points[near, axis]
+        near = near[(column >= low[axis]) & (column <= high[axis])]
+    own, touches = np.ascontiguousarray(points[near].T), np.zeros(len(near), dtype=bool)
+    for (x, y, z), radius in zip(centres.tolist(), radii.tolist(), strict=True):
+        touches |= (own[0] - x) ** 2 + (own[1] - y) ** 2 + (own[2] - z) ** 2 <= radius * radius
+    is_on[near] = touches
     return is_on
