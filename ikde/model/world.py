@@ -163,7 +163,8 @@ class World(ByFields):
     def __repr__(self) -> str:
         off = f", off: {', '.join(sorted(self.switched_off))}" if self.switched_off else ""
         held = ", ".join(f"{thing.name} to {thing.frame}" for thing in self.attached)
-        return f"<World of {len(self)} obstacles{off}{f', attached: {held}' if held else ''}>"
+        count = f"{len(self)} obstacle{'s' * (len(self) != 1)}"
+        return f"<World of {count}{off}{f', attached: {held}' if held else ''}>"
 
     def add(self, *obstacles: Obstacle) -> "World":
         """The world with further obstacles."""

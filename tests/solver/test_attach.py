@@ -42,7 +42,7 @@ def test_it_is_held_where_it_was_picked_up(world):
 
 def test_a_line_says_what_is_held_and_how_far_its_spheres_stand_out(world):
     held = world.attach("cup", "tip", robot=ROBOT, q=Q)
-    assert repr(held) == "<World of 1 obstacles, attached: cup to tip>"
+    assert repr(held) == "<World of 1 obstacle, attached: cup to tip>"
     count, out_mm = len(held.attached[0].spheres), 1e3 * held.attached[0].protrusion_m
     assert 5.0 < out_mm <= 7.5
     words = f"<Attached cup to tip: {count} spheres, {out_mm:.3g} mm beyond it at most, may touch hand>"
