@@ -53,7 +53,8 @@ class Fuzzer:
         self.arrays = {name: _npy(array) for name, array in {"n": np.array(names), "p": p, "quat": quat}.items()}
         self.robots = [path.read_text() for path in sorted((ROOT / "ikde" / "robots").glob("*.yaml"))]
         self.runs = [path.read_text() for path in sorted((ROOT / "configs" / "runs").glob("*.yaml"))]
-        self.tracks = [path.read_text() for path in sorted((ROOT / "configs" / "tracks").glob("*.yaml"))]
+        tracks = [path.read_text() for path in sorted((ROOT / "configs" / "tracks").glob("*.yaml"))]
+        self.tracks = [text.replace("../worlds/", f"{ROOT / 'configs' / 'worlds'}/") for text in tracks]
         self.worlds = [path.read_text() for path in sorted((ROOT / "configs" / "worlds").glob("*.yaml"))]
         self.scenes = [
             json.dumps(yaml.safe_load(text)) for text in write_scenes(ikde.load_world(yaml.safe_load(self.worlds[0])))

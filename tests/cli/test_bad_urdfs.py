@@ -164,7 +164,7 @@ class TestMeshes:
         write(tmp_path, MESH)
         (tmp_path / "a.stl").write_bytes(b"\x00" * 200)
         assert import_arm(refuse).replace(str(tmp_path), "") == (
-            "ikde: /a.stl: expected a surface, got 0 triangles without area\n"
+            "ikde: /a.stl: is no STL that can be read: its header tells of 0 triangles, 84 bytes, but it has 200\n"
         )
 
     def test_millimetres_are_suspected_and_how_to_scale_is_said(self, cli, tmp_path):
