@@ -47,7 +47,7 @@ def grade_row(numbers, whole, target, joints, out):
 
 def pack_row(q, metrics, pair, counts, blocked):
     """The row of what is known by its parts: q [N], metrics [METRICS], counts [COUNTS], blocked [P]."""
-    row = np.empty(size_of(len(q), len(blocked)))
+    row = np.full(size_of(len(q), len(blocked)), np.inf)  # no score is known
     row[: len(q)], row[len(q) : len(q) + METRICS] = q, metrics
     whole = row[len(q) + METRICS :].view(np.int64)
     whole[PAIR], whole[FIRST_COUNT:SCORE], whole[BLOCKED:] = pair, counts, blocked

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ikde.kernels.answer import METRICS, PAIR, pack_row
+from ikde.kernels.answer import BLOCKED, METRICS, PAIR, SCORE, pack_row
 from ikde.kernels.arrays import REACHED, Floats
 from ikde.kernels.grade_one import grade_one
 from ikde.model.bounds import find_bounds
@@ -240,6 +240,8 @@ def _search(problem: Problem, target: Target, seed: int, stream: int, attempts: 
     metrics = found.metrics
     measured = metrics.position_error_m[0], metrics.orientation_error_rad[0], metrics.clearance_m[0]
     row = pack_row(found.q[0], measured, metrics.closest_pair[0], found.counts[0], found.pair_counts.row(0))
+    joints = len(problem.lower)
+    row[joints + METRICS + SCORE : joints + METRICS + BLOCKED] = found.score[0]  # by which the best of all is kept
     return row, NAMES[found.engine[0]], bool(metrics.accepted[0] and found.counts[0, REACHED])
 
 

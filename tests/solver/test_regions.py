@@ -226,3 +226,14 @@ def test_from_a_base_region_that_is_too_far_nothing_is_in_reach(qiao):
 def test_a_base_region_is_for_a_base(ur5, goal):
     with pytest.raises(InputError, match="base: ur5 has no planar base"):
         ikde.solve(ur5, Region.of(goal).with_base(ELL))
+
+
+def test_the_best_of_what_is_not_reached_is_kept_by_its_score_without_written_kernels(monkeypatch):
+    seen, search = [], regions._search
+    monkeypatch.setenv("IKDE_KERNELS", "tables")
+    monkeypatch.setattr(regions, "_search", lambda *asked: seen.append(search(*asked)[0]) or (seen[-1], "lm", False))
+    region = Region.box(np.array([[1, 0, 0, 0.4], [0, 1, 0, 0.2], [0, 0, 1, 0.3], [0, 0, 0, 1.0]]), 0.01)
+    ikde.solve("ur5", region, {"restarts": 2}, method="lm")
+    scores = [row[6 + regions.METRICS + regions.SCORE : 6 + regions.METRICS + regions.BLOCKED] for row in seen]
+    assert seen
+    assert all(first in (0.0, 1.0) and np.isfinite(cost) for first, cost in scores)
