@@ -90,12 +90,18 @@ def place_in_world(
 
 def _pick_up(collision: "CollisionModel", world: "World", pick: Pick) -> "World":
     """The world after all that is typed has been picked up."""
+    from ikde.errors import InputError
     from ikde.formats.attached import read_attached
 
     for held in [] if pick.text is None else read_attached(pick.text):
         robot = collision.robot
         known = {"q": robot.home if pick.q is None else pick.q, "may_touch": held.may_touch}
-        world = world.attach(held.name, held.frame, robot=robot, **known)
+        try:
+            world = world.attach(held.name, held.frame, robot=robot, **known)
+        except InputError as error:
+            if error.where[:1] in (("attach",), ("obstacles",)):  # as typed, or a line of the world's file
+                raise
+            raise InputError(error.message, ("attach", held.name)) from None
     return world
 
 

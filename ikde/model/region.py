@@ -298,7 +298,8 @@ def _read_ranges(value: ArrayLike, name: str, most: float) -> Floats:
     if given.shape not in ((), (3,), (3, 2)):
         raise InputError(f"expected a number, three, or least and largest [3, 2], got shape {given.shape}", (name,))
     if not np.all(np.abs(given) <= most):  # so for NaN
-        raise InputError(f"expected finite numbers up to {most:g}, got {quoted(value)}", (name,))
+        unit = "rad" if name.endswith("_rad") else "m"
+        raise InputError(f"expected finite numbers up to {most:g} {unit}, got {quoted(given.tolist())}", (name,))
     if given.ndim < 2:
         if (given < 0.0).any():
             raise InputError(f"inside out: expected at least 0 either way, got {quoted(given.tolist())}", (name,))

@@ -82,16 +82,24 @@ def _cover_all(solids: Sequence[Solid], protrusion_m: float, most: int) -> Objec
 
 def _cover(solid: Solid, protrusion_m: float, most: int) -> Rows:
     """In the solid's own frame."""
-    size = solid.size_m
     if solid.kind == "sphere":
-        return Rows(np.zeros((1, 3)), np.array(size), 0.0)
+        return Rows(np.zeros((1, 3)), np.array(solid.size_m), 0.0)
+    if solid.kind in ("box", "cylinder", "capsule"):
+        try:
+            return _cover_rows(solid, protrusion_m)
+        except InputError:  # it names an option of imports
+            raise _too_many(MAX_SPHERES, protrusion_m) from None
+    return _cover_pieces(solid, protrusion_m, most)
+
+
+def _cover_rows(solid: Solid, protrusion_m: float) -> Rows:
+    """Rows and grids of a box, a cylinder or a capsule."""
+    size = solid.size_m
     if solid.kind == "box":
         return cover_box((size[0], size[1], size[2]), protrusion_m)
     if solid.kind == "cylinder":
         return cover_cylinder(size[0], size[1], protrusion_m)
-    if solid.kind == "capsule":
-        return cover_capsule(size[0], size[1], protrusion_m)
-    return _cover_pieces(solid, protrusion_m, most)
+    return cover_capsule(size[0], size[1], protrusion_m)
 
 
 def _cover_pieces(solid: Solid, protrusion_m: float, most: int) -> Rows:

@@ -148,10 +148,10 @@ def test_what_the_robot_holds_is_picked_up_where_it_is_and_compared(cli, write, 
 @pytest.mark.parametrize(
     ("attach", "message"),
     [
-        ("cap=tip", "no obstacle is called 'cap' (did you mean 'cup'?)"),
-        ("cup=tup", "has no frame 'tup'"),
+        ("cap=tip", "attach.cap: no obstacle is called 'cap' (did you mean 'cup'?)"),
+        ("cup=tup", "attach.cup: three_joints has no frame 'tup'"),
         ("cup=tip,cup=tip", "'cup' is attached to tip already: detach it first"),
-        ("cup=tip:wal", "no component and no obstacle is called 'wal' (did you mean 'wall'?)"),
+        ("cup=tip:wal", "attach.cup: no component and no obstacle is called 'wal' (did you mean 'wall'?)"),
         ("cup", "expected OBJECT=FRAME or OBJECT=FRAME:T+T, got 'cup'"),
     ],
 )

@@ -55,7 +55,10 @@ def test_what_is_found_in_a_region_is_read_only():
         (lambda: Region.box(POSE, [(0.1, 0), (0, 0), (0, 0)]), "position_m: inside out along x: the least, 0.1"),
         (lambda: Region.box(POSE, np.nan), "position_m: expected finite numbers"),
         (lambda: Region.box(POSE, (0.1, 0.2)), r"position_m: expected a number, three, or least and largest \[3, 2\]"),
-        (lambda: Region.box(POSE, 0.1, 4.0), "rotation_rad: expected finite numbers up to 3.14159"),
+        (
+            lambda: Region.box(POSE, 0.1, np.float64(4.0)),
+            "rotation_rad: expected finite numbers up to 3.14159 rad, got 4.0",
+        ),
         (lambda: Region.box(POINT, 0.1, 0.1), "rotation_rad: only a full pose has rotations"),
         (lambda: Region.box(POSE, 0.1, frame="tool"), "frame: expected one of goal, world, got 'tool'"),
         (lambda: Region.turn(AXIS), "target: a turn is about an axis of a full pose"),

@@ -65,8 +65,9 @@ def test_what_has_no_end_or_no_inside_is_refused():
         cover_solids([make_solid("half_space")])
     with pytest.raises(InputError, match="a cloud has no inside: give it as solids"):
         cover_solids([make_solid("cloud", (0.01,), None, [[0, 0, 0]])])
-    with pytest.raises(InputError, match="more than 2,000 spheres"):
-        cover_solids([make_solid("box", (9.0, 9.0, 9.0))], 0.001)
+    for kind, size in (("box", (9.0, 9.0, 9.0)), ("cylinder", (9.0, 9.0))):
+        with pytest.raises(InputError, match=r"protrusion_m: more than 2,000 spheres .* 1 mm at most: allow more$"):
+            cover_solids([make_solid(kind, size)], 0.001)
     with pytest.raises(InputError, match="more than 2,000 spheres would be needed"):
         cover_solids([make_solid("cone", (9.0, 9.0))], 0.001)
 
