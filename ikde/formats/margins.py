@@ -11,9 +11,11 @@ def read_margins(text: str | None, length_m: float) -> tuple[float, dict[str, fl
     """
     margins: dict[str, float] = {}
     for word in [] if text is None else text.split(","):
-        name, _, value = word.rpartition("=")
+        name, equals, value = word.rpartition("=")
         name = name.strip()
         try:
+            if equals and not name:
+                raise ValueError("a component without a name")
             margin_m = float(value) * length_m
         except ValueError:
             raise InputError(f"expected a distance or component=distance, got {quoted(word)}", ("margin",)) from None

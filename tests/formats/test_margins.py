@@ -21,6 +21,8 @@ def test_margins_are_one_for_all_and_those_of_components():
         ("1,", r"^margin: expected a distance or component=distance, got ''$"),
         ("1,hand", r"^margin: expected a distance or component=distance, got 'hand'$"),
         ("hand=", r"^margin: expected a distance or component=distance, got 'hand='$"),
+        ("=5", r"^margin: expected a distance or component=distance, got '=5'$"),
+        ("10, =5", r"^margin: expected a distance or component=distance, got ' =5'$"),
         ("1,2", r"^margin: this margin is given twice$"),
     ],
 )
