@@ -13,6 +13,7 @@ from ikde.cli.progress import show_benchmark
 from ikde.cli.world_options import MarginOption, WorldOption, place_in_world
 
 if TYPE_CHECKING:
+    from ikde.track.plan import TrackPlan
     from ikde.track.spec import TrackMethod
 
 
@@ -57,6 +58,7 @@ def bench_track(
     placed = (place_in_world(plan.collision, world, margin, unit) for plan in plans)
     files = {"world_file": str(world)} if world is not None else {}
     plans = [replace(plan, collision=collision, **files) for plan, collision in zip(plans, placed, strict=True)]
+    _check_moving(plans, chosen)
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)
     with open_folder(out), show_benchmark(count_runs(len(plans), chosen, budget)) as progress:
@@ -71,3 +73,13 @@ def bench_track(
     if as_json:
         print_json(data)
     print_written(*files, as_json=as_json)
+
+
+def _check_moving(plans: "list[TrackPlan]", methods: "list[TrackMethod]") -> None:
+    """Raise `InputError`, before anything is computed, for obstacles that move and a method that does not know them."""
+    from ikde.errors import InputError
+
+    for plan in plans:
+        if plan.moving and methods != ["continuation"]:
+            message = f"obstacles move in {plan.name}, which continuation alone knows: --methods continuation"
+            raise InputError(message, ("--methods",))

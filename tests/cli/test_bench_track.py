@@ -87,3 +87,11 @@ def test_methods_are_compared_in_a_world(cli, spec, tmp_path, monkeypatch):
 
 def test_a_margin_without_a_world_is_refused(refuse, spec):
     assert "a margin needs a --world" in refuse("bench", "track", spec, "--margin", "1")
+
+
+def test_obstacles_that_move_are_for_continuation_alone_and_told_before_anything_runs(refuse, spec, tmp_path):
+    (tmp_path / "world.yaml").write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [0.9, 0.2, 1.6]}}")
+    moves = "world: world.yaml\nmoving: {ball: {times_s: [0, 1], poses: [[0.9, 0.2, 1.6], [0.9, 0.3, 1.6]]}}\n"
+    (tmp_path / "moved.yaml").write_text(SPEC.replace("short", "moved") + moves)
+    words = refuse("bench", "track", spec, tmp_path / "moved.yaml", "--out", tmp_path / "page")
+    assert words == "ikde: --methods: obstacles move in moved, which continuation alone knows: --methods continuation\n"
