@@ -154,8 +154,8 @@ def make_ends_table(compared: Sequence[Compared]) -> Table:
 def _make_task(one: Compared) -> Section:
     blocks: list[Block] = [_make_stops(one)] if any(m.trajectory.stop for m in one.motions.values()) else []
     shown = {method: motion for method, motion in one.motions.items() if motion.started}
-    if shown and (told := tell_world(next(iter(shown.values())))):
-        blocks.append(Text(told))
+    if shown and (words := tell_world(next(iter(shown.values())))):
+        blocks.append(Text(words))
     blocks.append(_beside(shown, lambda motion, prefix: animate(motion, FRAMES, prefix)))
     blocks.append(_beside(shown, lambda motion, prefix: draw_moments(motion, prefix, DPI)))
     for title, drawings in DRAWINGS:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.kernels.arrays import Floats
+from ikde.model.chain import path_to_tool
 from ikde.model.closed_form import find_ur_arm
 from ikde.model.robot import Robot
 from ikde.model.target import Target
@@ -97,7 +98,8 @@ def find_carrier(problem: Problem, target: Target) -> Carrier | None:
     if arm is None or target.kind != "pose":
         return None
     free = [k for k in np.flatnonzero(problem.lower < problem.upper).tolist() if k not in arm.coordinates]
-    if len(free) != 1 or not _carries(robot, free[0], arm.coordinates[0]):
+    on_the_way = [body.joint for body in path_to_tool(robot)[0]]  # the arm's are the last six
+    if len(free) != 1 or free[0] not in on_the_way:
         return None
     (joint,) = free
     lower, upper = float(problem.lower[joint]), float(problem.upper[joint])
@@ -109,18 +111,6 @@ def find_carrier(problem: Problem, target: Target) -> Carrier | None:
     axis, away = T_world_frame[:3, :3] @ frame.axis, target.p_world_tool - T_world_frame[:3, 3]
     lever = float(np.linalg.norm(np.cross(axis, away))) + problem.settings.position_tolerance_m + ROUNDING
     return Carrier(joint, lower, min(upper, lower + TURN), lever, 1.0)
-
-
-def _carries(robot: Robot, joint: int, first: int) -> bool:
-    """Whether the first joint of the arm moves with another joint."""
-    frames = {frame.name: frame for frame in robot.frames}
-    moved = {frame.joint: frame.name for frame in robot.frames if frame.joint is not None}
-    name = frames[moved[robot.joint_names[first]]].parent
-    while name in frames:
-        if frames[name].joint == robot.joint_names[joint]:
-            return True
-        name = frames[name].parent
-    return False
 
 
 def ask_pieces(problem: Problem, target: Target, carrier: Carrier, middles: Floats, half: float) -> Asked:
