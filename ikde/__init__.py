@@ -52,6 +52,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.distinct import solve_distinct as solve_distinct
     from ikde.solver.families import family as family
     from ikde.solver.forward import forward as forward
+    from ikde.solver.jacobian import jacobian as jacobian
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
     from ikde.solver.settings import BulkOptions as BulkOptions
@@ -120,6 +121,7 @@ _HOME = {
     "solve_distinct": "ikde.solver.distinct",
     "family": "ikde.solver.families",
     "forward": "ikde.solver.forward",
+    "jacobian": "ikde.solver.jacobian",
     "check": "ikde.solver.check",
     "check_many": "ikde.solver.check",
     "clear_cloud": "ikde.solver.clear_cloud",

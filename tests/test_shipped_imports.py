@@ -7,9 +7,9 @@ import ikde
 from ikde.io.robots import FOLDER
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.plain import compute_gaps
-from tests.conftest import ROBOTS
+from tests.conftest import BY_HAND
 
-IMPORTED = [name for name in ikde.robot_names() if name not in ROBOTS]
+IMPORTED = [name for name in ikde.robot_names() if name not in BY_HAND]
 LICENCES = ("(Apache-2.0)", "(BSD)", "(BSD-3-Clause)")
 
 

@@ -15,6 +15,9 @@ robot = ikde.load_robot("ur5")
 T_world_tool = ikde.forward(robot, robot.home)["tool"]
 q: np.ndarray = ikde.forward("ur5", [0.0] * 6)["tool"]
 
+J: np.ndarray = ikde.jacobian("qiao2021", np.zeros((5, 9)), frame="O3", axes="frame", by="actuators")
+ikde.jacobian(robot, robot.home, by="wheels")  # type: ignore[arg-type]
+
 targets = [
     ikde.Target((0.4, 0.2, 0.3)),
     ikde.Target.from_matrix(T_world_tool),

@@ -28,7 +28,7 @@ def bench_track(
         str | None, typer.Option(metavar="METHOD,...", help="Compare these alone (default: all three).")
     ] = None,
     drive: Annotated[
-        str | None, typer.Option(help="differential or omnidirectional, instead of what the files say.")
+        str | None, typer.Option(help="differential, omnidirectional or mecanum, instead of what the files say.")
     ] = None,
     world: WorldOption = None,
     margin: MarginOption = None,

@@ -17,6 +17,7 @@ class BaseChoice(StrEnum):
     fixed = "fixed"
     omni = "omni"
     differential = "differential"
+    mecanum = "mecanum"
 
 
 ToolsOption = Annotated[
@@ -40,7 +41,7 @@ def import_robot(
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="The robot file to write.")] = None,
     tool: ToolsOption = None,
     base: Annotated[
-        BaseChoice, typer.Option(help="urdf: as it is. fixed: a floating root is held. omni, differential: x, y, yaw.")
+        BaseChoice, typer.Option(help="urdf: as it is. fixed: a floating root is held. Others: x, y, yaw.")
     ] = BaseChoice.urdf,
     base_reach: Annotated[
         float, typer.Option(metavar="M", help="Limits of the base's x and y, either way, in m.")

@@ -32,7 +32,7 @@ def track(
     method: Annotated[
         str | None, instead(help="continuation (ikde's own), optimized or typical (the paper's).")
     ] = None,
-    drive: Annotated[str | None, instead(help="differential or omnidirectional.")] = None,
+    drive: Annotated[str | None, instead(help="differential, omnidirectional or mecanum.")] = None,
     seed: Annotated[int | None, instead(help="Same seed, same motion.")] = None,
     start: Annotated[
         str | None, instead(metavar="Q", help="Configuration at the first pose (as --q of check).")

@@ -115,10 +115,12 @@ class ConventionEntry(SourcedEntry):
 
 
 class WheelsEntry(SourcedEntry):
-    """The two driven wheels of a base: how large, and how far from its middle."""
+    """The driven wheels of a base: how large, and how far from its middle."""
 
     radius: Number
     half_track: Number
+    half_wheelbase: Number | None = None
+    """Of four mecanum wheels alone: from the middle to the front or the rear axle."""
 
 
 class InertiaEntry(SourcedEntry):
@@ -203,7 +205,7 @@ def _to_robot(file: RobotFile) -> Robot:
     if sum(len(entry.spheres or ()) or entry.count for rows in file.spheres.values() for entry in rows) > MAX_SPHERES:
         raise InputError(f"expected at most {MAX_SPHERES:,} spheres in all", ("spheres",))
     lists: dict[str, Pairs] = {}
-    wheels, errors = file.wheels, ErrorList()
+    errors = ErrorList()
     joints = errors.collect(partial(_to_joint, name, entry, unit[entry.kind]) for name, entry in file.joints.items())
     frames = errors.collect(partial(_to_frame, name, entry, length, angle) for name, entry in file.frames.items())
     approximations = {
@@ -227,10 +229,15 @@ def _to_robot(file: RobotFile) -> Robot:
         convention=file.convention,
         conventions={n: {j: v * angle for j, v in e.offsets.items()} for n, e in file.conventions.items()},
         provenance=_provenance(file),
-        wheels=Wheels(radius_m=wheels.radius * length, half_track_m=wheels.half_track * length) if wheels else None,
+        wheels=_to_wheels(file.wheels, length) if file.wheels else None,
         drive=file.drive,
         inertias={name: _to_inertia(entry, length) for name, entry in file.inertias.items()},
     )
+
+
+def _to_wheels(entry: WheelsEntry, length: float) -> Wheels:
+    base = None if entry.half_wheelbase is None else entry.half_wheelbase * length
+    return Wheels(radius_m=entry.radius * length, half_track_m=entry.half_track * length, half_wheelbase_m=base)
 
 
 def _to_inertia(entry: InertiaEntry, length: float) -> Inertia:

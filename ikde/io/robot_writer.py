@@ -163,6 +163,8 @@ def _base_lines(robot: Robot, sources: _Sources) -> list[str]:
     lines = [f"drive: {robot.drive}"] if robot.drive else []
     if robot.wheels:
         entry = {"radius": robot.wheels.radius_m, "half_track": robot.wheels.half_track_m}
+        if robot.wheels.half_wheelbase_m is not None:
+            entry["half_wheelbase"] = robot.wheels.half_wheelbase_m
         lines.append(f"wheels: {format_flow(sources.add(entry, 'wheels'))}")
     return lines
 

@@ -1,8 +1,9 @@
-"""Bases that drive in the plane: which joints drive one, how it moves between samples, its twist and its wheels.
+"""Bases that drive in the plane: which joints drive one, how it moves between samples, and its twist.
 
 `differential`: two driven wheels, whether the robot's file describes them or not. Between samples the speeds v and
 omega stay, so the base runs along an exact arc and never slips sideways [Qiao2022, eq. 5]. `omnidirectional`: x, y and
-heading run linearly. So does every joint of an arm.
+heading run linearly. So does every joint of an arm. `mecanum`: the same, on four wheels whose speeds follow from the
+twist (`model/wheels.py`).
 """
 
 from functools import lru_cache
@@ -14,7 +15,7 @@ from ikde.kernels.arrays import COORDINATE, PARENT, PRISMATIC, Floats, Ints, rea
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.pairs import component_bodies
-from ikde.model.robot import DRIVES, Drive, Robot, Wheels
+from ikde.model.robot import DRIVES, Drive, Robot
 from ikde.model.tree import build_tree
 
 NO_BASE = read_only(np.array([-1, -1, -1]))
@@ -72,14 +73,17 @@ def base_carries(collision: CollisionModel) -> bool:
 
 
 def usual_drive(robot: Robot) -> Drive:
-    """What the robot's file says, else `differential`; `omnidirectional` for a robot that has no base to drive."""
-    return (robot.drive or "differential") if find_planar_base(robot)[0] >= 0 else "omnidirectional"
+    """What the robot's file says, else what its wheels are for; `omnidirectional` without a base to drive."""
+    if find_planar_base(robot)[0] < 0:
+        return "omnidirectional"
+    is_mecanum = robot.wheels is not None and robot.wheels.half_wheelbase_m is not None
+    return robot.drive or ("mecanum" if is_mecanum else "differential")
 
 
 def find_wheels(robot: Robot, drive: str) -> Ints:
     """Coordinates [3] of x, y and heading of a base that runs on arcs; -1 thrice for a drive without.
 
-    Raises `InputError` for an unknown drive, or a robot that has no base to drive.
+    Raises `InputError` for an unknown drive, a robot that has no base to drive, and wheels that drive otherwise.
     """
     if drive not in DRIVES:
         raise InputError(f"expected one of {', '.join(DRIVES)}, got {drive!r}", ("drive",))
@@ -88,7 +92,50 @@ def find_wheels(robot: Robot, drive: str) -> Ints:
     base = find_planar_base(robot).copy()
     if base[0] < 0:
         raise InputError(f"{robot.name} has no planar base (x, y, yaw)", ("drive",))
-    return base
+    check_wheels(robot, drive)
+    return base if drive == "differential" else np.full(3, -1)
+
+
+def check_wheels(robot: Robot, drive: str | None) -> None:
+    """Raise `InputError`, at `drive`, if the wheels of the robot's file are not those of this drive."""
+    if robot.wheels is None or drive in (None, "omnidirectional"):
+        return
+    is_mecanum = robot.wheels.half_wheelbase_m is not None
+    if drive == "mecanum" and not is_mecanum:
+        raise InputError(f"the wheels of {robot.name} give no `half_wheelbase`, which mecanum wheels have", ("drive",))
+    if drive == "differential" and is_mecanum:
+        raise InputError(f"{robot.name} has mecanum wheels: expected mecanum or omnidirectional", ("drive",))
+
+
+def move_base(start: Floats, twist: Floats, dt_s: Floats | float) -> Floats:
+    """Where a base [..., 3] is after `dt_s` of a constant `twist` [..., 3]: the end of the exact arc, x, y and heading.
+
+    The twist is that of the base in its own frame: m/s forward and to the left, rad/s to the left. In whatever steps
+    one constant twist is added up, it ends at the same place.
+    """
+    angle = twist[..., 2] * dt_s
+    share, middle = np.sinc(0.5 * angle / np.pi) * dt_s, start[..., 2] + 0.5 * angle
+    along, aside, cos, sin = twist[..., 0] * share, twist[..., 1] * share, np.cos(middle), np.sin(middle)
+    return start + np.stack([along * cos - aside * sin, along * sin + aside * cos, angle], axis=-1)
+
+
+def dead_reckon(start: Floats, twists: Floats, dt_s: float) -> Floats:
+    """Places of a base [K + 1, 3] from `start` [3] on, after `dt_s` of each of the `twists` [K, 3] (`move_base`)."""
+    places = np.empty((len(twists) + 1, 3))
+    places[0] = start
+    for k, twist in enumerate(twists):
+        places[k + 1] = move_base(places[k], twist, dt_s)
+    return places
+
+
+def twist_at(twist: Floats, p_base_point: Floats) -> Floats:
+    """The twist [..., 3] of the base as a point that rides on it has it, `p_base_point` [2] m from its middle.
+
+    A point M that lies l_m behind the middle of a differential base, (-l_m, 0), moves sideways by -l_m omega
+    [DongZhao, eq. 1, 2].
+    """
+    omega = twist[..., 2]
+    return np.stack([twist[..., 0] - omega * p_base_point[1], twist[..., 1] + omega * p_base_point[0], omega], axis=-1)
 
 
 def step_base(start: Floats, v: Floats, omega: Floats, dt_s: Floats | float) -> Floats:
@@ -108,8 +155,3 @@ def base_twist(start: Floats, end: Floats, dt_s: float) -> tuple[Floats, Floats,
     along = shift[..., 0] * np.cos(middle) + shift[..., 1] * np.sin(middle)
     across = shift[..., 1] * np.cos(middle) - shift[..., 0] * np.sin(middle)
     return along / np.sinc(0.5 * angle / np.pi) / dt_s, angle / dt_s, across / dt_s
-
-
-def wheel_speeds(wheels: Wheels, v: Floats, omega: Floats) -> Floats:
-    """Speeds of the left and the right wheel [..., 2] in rad/s (6), of `v` m/s and `omega` rad/s [...]."""
-    return np.stack([v - wheels.half_track_m * omega, v + wheels.half_track_m * omega], axis=-1) / wheels.radius_m

@@ -23,7 +23,7 @@ FULL_TURN_RAD = 2.0 * np.pi - 1e-12  # but for rounding
 JointKind = Literal["revolute", "prismatic", "continuous"]
 Origin = Literal["published", "derived", "calibrated"]
 Spacing = Literal["touching", "even"]
-Drive = Literal["differential", "omnidirectional"]
+Drive = Literal["differential", "omnidirectional", "mecanum"]
 DRIVES: tuple[Drive, ...] = get_args(Drive)
 
 
@@ -131,11 +131,13 @@ class Detector:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wheels:
-    """The two driven wheels of a planar base (x, y, yaw), side by side on one axis."""
+    """The driven wheels of a planar base (x, y, yaw): two side by side on one axis, or four mecanum wheels."""
 
     radius_m: float
     half_track_m: float
-    """From the middle of the base, the origin of what its yaw joint moves, to either wheel."""
+    """From the middle of the base, the origin of what its yaw joint moves, to the left or the right."""
+    half_wheelbase_m: float | None = None
+    """From there to the front or the rear axle, of mecanum wheels; None for two wheels."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -191,9 +193,10 @@ class Robot(ReadOnlyValue):
     provenance: Mapping[tuple[str | int, ...], Provenance]
     """Path of a number in the robot's file -> where it comes from."""
     wheels: Wheels | None = None
-    """None for a robot without a base that drives on two wheels, or whose wheel geometry is not given."""
+    """None for a robot without a base that drives on wheels, or whose wheel geometry is not given."""
     drive: Drive | None = None
-    """How a base that drives in the plane moves unless a track says otherwise; None: `differential`."""
+    """How a base that drives in the plane moves unless a track says otherwise; None: as its wheels do, else
+    `differential`."""
     inertias: Mapping[str, Inertia] = field(default_factory=dict)
     """By frame, of those whose mass is known."""
     neighbours: tuple[LeftOutPair, ...] = ()

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ikde.errors import ErrorList, InputError, nearest
-from ikde.model.base_motion import find_planar_base
+from ikde.model.base_motion import check_wheels, find_planar_base, usual_drive
 from ikde.model.detectors import check_detector
 from ikde.model.names import check_printable
 from ikde.model.pairs import component_bodies, find_neighbours, non_adjacent_pairs
@@ -306,8 +306,12 @@ def _check_wheels(robot: Robot) -> None:
     _require(robot.drive is None or robot.drive in DRIVES, f"expected one of {', '.join(DRIVES)}", "drive")
     if wheels is None:
         return
-    for key, what, value in (("radius", "radius", wheels.radius_m), ("half_track", "distance", wheels.half_track_m)):
-        _require(0.0 < value <= MAX_MAGNITUDE, f"expected a {what} above 0, up to {MAX_MAGNITUDE:g} m", "wheels", key)
+    sizes = {"radius": wheels.radius_m, "half_track": wheels.half_track_m, "half_wheelbase": wheels.half_wheelbase_m}
+    for key, value in sizes.items():
+        what = "radius" if key == "radius" else "distance"
+        is_good = value is None or 0.0 < value <= MAX_MAGNITUDE
+        _require(is_good, f"expected a {what} above 0, up to {MAX_MAGNITUDE:g} m", "wheels", key)
+    check_wheels(robot, usual_drive(robot))
 
 
 def _check_inertias(robot: Robot) -> None:

@@ -126,7 +126,8 @@ def _frame_table(robot: Robot, units: Units) -> Any:
 
 def _wheel_table(robot: Robot, wheels: Wheels, units: Units) -> Any:
     table = make_table("wheels", f">[{units.length}]", "from", title="wheels")
-    for key, value in (("radius", wheels.radius_m), ("half_track", wheels.half_track_m)):
+    sizes = {"radius": wheels.radius_m, "half_track": wheels.half_track_m, "half_wheelbase": wheels.half_wheelbase_m}
+    for key, value in [(key, value) for key, value in sizes.items() if value is not None]:
         table.add_row(key, f"{value / LENGTHS_M[units.length]:.6g}", _source_kind(robot, "wheels", key))
     return table
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.kernels.tracking import REACHED, track_sample
-from ikde.model.base_motion import wheel_speeds
 from ikde.model.bounds import find_bounds
 from ikde.model.pack import pack_robot
 from ikde.model.robot import MAX_MAGNITUDE
+from ikde.model.wheels import wheel_speeds
 from ikde.solver.digits import at_least
 from ikde.solver.result import SolveResult, StopReason
 from ikde.track.drive import max_steps

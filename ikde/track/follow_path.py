@@ -55,8 +55,9 @@ def follow_path(
     Args:
         robot: the robot, its name or the path of its file.
         path: poses of the tool, a sample every `path.dt_s`.
-        drive: `differential`, a base with two wheels, or `omnidirectional`: every joint by itself. None: on arcs if
-            the robot has a base. `typical` ignores it: every joint moves independently.
+        drive: `differential`, a base with two wheels, or `omnidirectional` and `mecanum`: every joint by itself. None:
+            that of the robot's file, else on arcs if the robot has a base. `typical` ignores it: every joint moves
+            independently.
         method: `continuation`; or one of the paper's: `optimized`, which keeps the limits at samples only, or
             `typical`, which goes on to the end whatever it violates: see `Trajectory.violations`.
         limits: None for the robot's own speeds and accelerations, and the paper's limits (`MotionLimits.of`).
@@ -105,7 +106,7 @@ def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
     around = None if moving is None else Around(moving, path.times_s[: len(q)])
     graded = verify_track(plan.collision, path, q, drive=drive, limits=limits, moving=moving)
     deviation_m, deviation_rad = measure_deviation(robot, path, q, drive)
-    v, omega = base_speeds(robot, graded.speeds) if drive == "omnidirectional" else (graded.v, graded.omega)
+    v, omega = base_speeds(robot, graded.speeds) if drive != "differential" else (graded.v, graded.omega)
     return Trajectory(
         path=path,
         joint_names=robot.joint_names,
@@ -116,7 +117,7 @@ def grade_motion(plan: TrackPlan, followed: Followed) -> Trajectory:
         q=q,
         v=v,
         omega=omega,
-        wheel_speeds=None if drive == "omnidirectional" or robot.wheels is None else graded.wheel_speeds,
+        wheel_speeds=None if drive != "differential" or robot.wheels is None else graded.wheel_speeds,
         stop=followed.stop,
         seconds=followed.seconds,
         search_seconds=followed.search_seconds,

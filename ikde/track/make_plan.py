@@ -22,7 +22,7 @@ from ikde.solver.standing import refuse_touching
 from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path
 from ikde.track.moving import ObjectMotion
-from ikde.track.plan import TrackPlan
+from ikde.track.plan import NO_MECANUM_LIMIT, TrackPlan
 from ikde.track.spec import LimitsEntry, TrackSpec
 from ikde.track.starts import settle_start
 
@@ -127,6 +127,8 @@ def _read_limits(spec: TrackSpec, robot: Robot, drive: Drive) -> MotionLimits:
             raise InputError(f"{robot.name} has no wheels: its file has no `wheels`", ("wheel_speed",))
         if limits.wheel_speed is not None and drive == "omnidirectional":
             raise InputError("an omnidirectional drive has no such wheels", ("wheel_speed",))
+        if limits.wheel_speed is not None and drive == "mecanum":
+            raise InputError(NO_MECANUM_LIMIT, ("wheel_speed",))
         _check_center(limits, robot)
         return MotionLimits(
             ranges=limits.ranges,

@@ -18,6 +18,8 @@ from ikde.track.path import ToolPath
 from ikde.track.settings import TrackSettings, check_method
 from ikde.track.spec import TrackMethod
 
+NO_MECANUM_LIMIT = "a track limits the wheel speed of a differential drive alone, not of a mecanum one"
+
 Settings = TypeVar("Settings", bound=TrackSettings)
 
 
@@ -56,6 +58,8 @@ class TrackPlan:
         check_method(self.method, self.settings)
         find_wheels(self.robot, self.drive)
         self.limits.check(self.robot)
+        if self.drive == "mecanum" and self.limits.wheel_speed_rad_s is not None and self.method != "typical":
+            raise InputError(NO_MECANUM_LIMIT, ("limits", "wheel_speed_rad_s"))
         check_moving(self.collision, self.moving, self.path.duration_s)
         if self.moving and self.method != "continuation":
             message = f"obstacles that move need the method continuation, {self.method} does not know them"

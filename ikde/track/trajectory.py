@@ -76,7 +76,7 @@ class Trajectory:
     """A motion through the samples 0 .. M of a path of K: all of them, M = K, or those before the stop.
 
     Between samples joints run linearly; the base of a differential drive runs on an arc of constant `v` and `omega`,
-    that of an omnidirectional one linearly in x, y and heading.
+    that of an omnidirectional or mecanum one linearly in x, y and heading.
     """
 
     path: ToolPath
@@ -90,11 +90,11 @@ class Trajectory:
     q: Floats
     """[M + 1, N] in the robot's own convention, m and rad."""
     v: Floats
-    """[M] m/s, forward, from sample k to k + 1; of an omnidirectional drive [M, 2], along x and y of the world."""
+    """[M] m/s, forward, from sample k to k + 1; of any other drive [M, 2], along x and y of the world."""
     omega: Floats
     """[M] rad/s, to the left."""
     wheel_speeds: Floats | None
-    """[M, 2] rad/s, left and right; None for an omnidirectional drive, and for a robot without `wheels`."""
+    """[M, 2] rad/s, left and right, of a differential drive; None for any other, and for a robot without `wheels`."""
     stop: TrackStop | None
     """Why the motion ends before its path does; None if it does not."""
     seconds: Floats

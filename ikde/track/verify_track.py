@@ -11,9 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
-from ikde.model.base_motion import base_twist, find_wheels, step_base, wheel_speeds
+from ikde.model.base_motion import base_twist, find_wheels, step_base
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
+from ikde.model.wheels import wheel_speeds
 from ikde.solver.plain import compute_frames, compute_gaps
 from ikde.solver.verify import Bools, compute_orientation_errors
 from ikde.track.limits import MotionLimits

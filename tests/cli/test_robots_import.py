@@ -34,6 +34,7 @@ def test_all_that_is_asked_for_arrives(cli, tmp_path):
     joints = cli("robots", "import", path, *asked, "--json").data["joints"]
     assert [joint["name"] for joint in joints] == ["base_x", "base_y", "base_yaw", "shoulder", "slide"]
     assert (joints[0]["upper"], joints[3]["home"]) == (7.0, 0.5)
+    assert cli("robots", "import", path, "--base", "mecanum", "--no-spheres", "--json").data["drive"] == "mecanum"
     refused = cli("robots", "import", path, "--package-path", tmp_path)
     assert refused.code == 2
     assert "the mesh 'package://arm/a.stl' is not in this folder" in refused.err

@@ -36,6 +36,10 @@ def test_every_robot_comes_back(any_robot):
     assert_comes_back(any_robot)
 
 
+def test_mecanum_wheels_come_back():
+    assert_comes_back(ikde.load_robot("ur5e_mecanum"))
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_random_robots_come_back(seed):
     assert_comes_back(random_robot(seed))

@@ -350,6 +350,8 @@ def test_wheels_have_a_size(qiao, value):
         with pytest.raises(InputError) as caught:
             check_robot(unchecked(replace(qiao, wheels=wheels)))
         assert (caught.value.message, caught.value.where) == (message, ("wheels", key))
+    with pytest.raises(InputError, match=r"wheels\.half_wheelbase: expected a distance above 0"):
+        check_robot(unchecked(replace(qiao, wheels=Wheels(radius_m=0.1, half_track_m=0.2, half_wheelbase_m=value))))
 
 
 def unchecked(robot):
@@ -362,7 +364,15 @@ def test_a_base_may_have_wheels_or_not(qiao, unwheeled):
     assert check_robot(unchecked(unwheeled)).wheels is None
 
 
-def test_a_drive_needs_a_base_and_is_one_of_two(qiao):
+def test_a_drive_has_wheels_of_its_own(qiao):
+    four = Wheels(radius_m=0.1, half_track_m=0.2, half_wheelbase_m=0.3)
+    assert check_robot(unchecked(replace(qiao, wheels=four))).drive is None
+    for wheels, drive in ((four, "differential"), (replace(four, half_wheelbase_m=None), "mecanum")):
+        with pytest.raises(InputError, match=r"drive: .*mecanum wheels"):
+            check_robot(unchecked(replace(qiao, wheels=wheels, drive=drive)))
+
+
+def test_a_drive_needs_a_base_and_is_one_of_those_known(qiao):
     reject("a drive needs a planar base, prismatic along x", "drive", drive="omnidirectional")
     with pytest.raises(InputError, match="drive: expected one of differential, omnidirectional"):
         check_robot(unchecked(replace(qiao, drive="legs")))

@@ -128,6 +128,53 @@ def test_kernel_jacobian_is_that_of_pinocchio(any_robot, configurations):
         np.testing.assert_allclose(kernel_jacobian(any_robot, q), oracle.jacobian(q), rtol=0, atol=EXACT)
 
 
+class PlanarOracle:
+    """A base as Pinocchio's planar joint, whose speeds are the twist in the base's own frame."""
+
+    def __init__(self, robot, joints=3):
+        self.model = pin.Model()
+        carrier = {"world": (0, pin.SE3.Identity())}
+        for frame in robot.frames:
+            joint_id, placement = carrier[frame.parent]
+            placement = placement * pin.SE3(frame.R_parent_frame, frame.p_parent_frame)
+            place = robot.joint_names.index(frame.joint) if frame.joint else 0
+            if frame.joint and place >= joints - 1:
+                kind = joint_model(robot, frame) if place >= joints else pin.JointModelPlanar()
+                joint_id, placement = self.model.addJoint(joint_id, kind, placement, frame.joint), pin.SE3.Identity()
+            carrier[frame.name] = (joint_id, placement)
+            self.model.addFrame(pin.Frame(f"frame {frame.name}", joint_id, 0, placement, pin.FrameType.OP_FRAME))
+        self.data = self.model.createData()
+
+    def jacobian(self, q, frame, axes):
+        planar = np.concatenate([q[:2], [np.cos(q[2]), np.sin(q[2])], q[3:]])
+        return pin.computeFrameJacobian(self.model, self.data, planar, self.model.getFrameId(f"frame {frame}"), axes)
+
+
+@pytest.mark.parametrize("name", ["qiao2021", "qiao2021_dh", "ur5e_mecanum"])
+def test_by_twist_and_by_wheels_a_jacobian_is_that_of_pinocchio_s_planar_base(name, rng):
+    robot = ikde.load_robot(name)
+    oracle, R, side = PlanarOracle(robot), robot.wheels.radius_m, robot.wheels.half_track_m
+    if robot.wheels.half_wheelbase_m is None:  # twist = map @ wheels, as the papers have it
+        kept, wheels = [0, 2], np.array([[R / 2, R / 2], [-R / (2 * side), R / (2 * side)]])
+    else:
+        turn = 1.0 / (side + robot.wheels.half_wheelbase_m)
+        kept, wheels = [0, 1, 2], R / 4 * np.array([[1, 1, 1, 1], [-1, 1, -1, 1], [-turn, -turn, turn, turn]])
+    for q in random_q(robot, rng, 20):
+        for axes, theirs in (("world", "LOCAL_WORLD_ALIGNED"), ("frame", "LOCAL")):
+            for frame in (robot.tool, robot.frames[6].name):
+                J = oracle.jacobian(q, frame, getattr(pin.ReferenceFrame, theirs))
+                base, arm = J[:, kept], J[:, 3:]
+                ours = {by: ikde.jacobian(robot, q, frame=frame, axes=axes, by=by) for by in ("twist", "actuators")}
+                np.testing.assert_allclose(ours["twist"], np.hstack([base, arm]), rtol=0, atol=EXACT)
+                np.testing.assert_allclose(ours["actuators"], np.hstack([base @ wheels, arm]), rtol=0, atol=EXACT)
+
+
+def test_jacobian_by_joints_is_that_of_pinocchio(any_robot, rng):
+    oracle = Oracle(any_robot)
+    for q in random_q(any_robot, rng, 20):
+        np.testing.assert_allclose(ikde.jacobian(any_robot, q), oracle.jacobian(q), rtol=0, atol=EXACT)
+
+
 def test_kernel_jacobian_is_the_derivative_of_forward(any_robot, rng):
     for q in random_q(any_robot, rng, COUNT):
         expected = difference_jacobian(any_robot, q)

@@ -85,7 +85,11 @@ def test_wheels_are_shown_with_their_sources(qiao, unwheeled):
     assert words_of(text, "radius") == ["radius", "100", "published"]
     assert words_of(text, "half_track") == ["half_track", "259", "calibrated"]
     assert words_of(format_robot(CollisionModel.of(qiao, "none"), Units()), "half_track")[1] == "0.259"
-    assert robot_json(CollisionModel.of(qiao))["wheels"] == {"radius_m": 0.1, "half_track_m": 0.259}
+    assert robot_json(CollisionModel.of(qiao))["wheels"] == {
+        "radius_m": 0.1,
+        "half_track_m": 0.259,
+        "half_wheelbase_m": None,
+    }
     assert "half_track" not in format_robot(CollisionModel.of(replace(unwheeled, provenance={}), "none"), MM_DEG)
     assert robot_json(CollisionModel.of(unwheeled, "none"))["wheels"] is None
 

@@ -6,15 +6,17 @@ import pytest
 import ikde
 from ikde.io.robots import robot_path
 from ikde.io.yaml_file import read_yaml
-from tests.conftest import ROBOTS, random_q
+from ikde.model.robot import Wheels
+from tests.conftest import BY_HAND, random_q
 
 TOUCHES_AT_HOME = {("qiao2021", "single")}  # one sphere a component: the platform's reaches into link 1's
-DETECTORS = [(name, detector) for name in ROBOTS for detector in ikde.load_robot(name).detectors]
+DETECTORS = [(name, detector) for name in BY_HAND for detector in ikde.load_robot(name).detectors]
 NAMED_ENTRIES = ("conventions", "pairs", "detectors")
 WITH_SPHERES = sorted({name for name, _ in DETECTORS})
 FOLDED_DEG = {
     "qiao2021": (0, 0, 0, 90, 0, 150, 90, 0, 0),  # wrist back at the upper arm
     "ur5": (0, -90, 170, 0, 0, 0),  # the same
+    "ur5e_mecanum": (0, 0, 0, 180, -90, 170, 0, 0, 0),
     "panda": (0, 101, 0, -176, 0, 115, 0),  # leaning forward, wrist back at the base
 }
 
@@ -26,6 +28,14 @@ UR5_DH = [  # classical: Universal Robots, "DH parameters for calculations of ki
     (0.10915, 0.0, np.pi / 2, 0.0),
     (0.09465, 0.0, -np.pi / 2, 0.0),
     (0.0823, 0.0, 0.0, 0.0),
+]
+UR5E_DH = [  # classical: the same page; [Zhang2022, Table 2] prints d4 = 0.133, and the fifth alpha without its minus
+    (0.1625, 0.0, np.pi / 2, 0.0),
+    (0.0, -0.425, 0.0, 0.0),
+    (0.0, -0.3922, 0.0, 0.0),
+    (0.1333, 0.0, np.pi / 2, 0.0),
+    (0.0997, 0.0, -np.pi / 2, 0.0),
+    (0.0996, 0.0, 0.0, 0.0),
 ]
 PANDA_MODIFIED_DH = [  # Franka Control Interface documentation, "Robot and interface specifications"
     (0.333, 0.0, 0.0, 0.0),
@@ -109,7 +119,7 @@ def joint_numbers(data):
     return [("joints", name, key) for name, joint in data["joints"].items() for key in keys if key in joint]
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", BY_HAND)
 def test_a_shipped_robot_bears_the_name_of_its_file(name):
     assert ikde.load_robot(name).name == name
 
@@ -117,6 +127,15 @@ def test_a_shipped_robot_bears_the_name_of_its_file(name):
 def test_only_the_papers_robot_has_wheels(any_robot):
     told = any_robot.wheels and (any_robot.wheels.radius_m, any_robot.wheels.half_track_m)
     assert told == ((0.1, 0.259) if any_robot.name.startswith("qiao2021") else None)
+
+
+def test_the_ur5e_on_its_platform_is_the_makers_table(rng):
+    robot = ikde.load_robot("ur5e_mecanum")
+    assert robot.wheels == Wheels(radius_m=0.0825, half_track_m=0.24, half_wheelbase_m=0.36)
+    for q in random_q(robot, rng, 20):
+        T_world_platform = shift(x=q[0], y=q[1]) @ turn_z(q[2])  # [Zhang2022, eq. 3] with the minus in its first row
+        T = T_world_platform @ shift(x=0.3, z=0.35) @ classical_dh(UR5E_DH, q[3:])[-1]
+        np.testing.assert_allclose(ikde.forward(robot, q)["tool"], T, rtol=0, atol=1e-14)
 
 
 def test_home_lies_inside_the_limits(any_robot):
@@ -160,7 +179,7 @@ def test_every_pair_is_free_in_some_pose_with_the_default_detector(name, rng):
     assert min(best.values()) > 0.0
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", BY_HAND)
 def test_every_entry_with_numbers_names_its_source(name):
     provenance = ikde.load_robot(name).provenance
     entries = number_entries(read_yaml(robot_path(name)).data)
@@ -168,7 +187,7 @@ def test_every_entry_with_numbers_names_its_source(name):
     assert [entry for entry in entries if entry not in named] == []
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", BY_HAND)
 def test_every_limit_and_home_names_its_source(name):
     provenance = ikde.load_robot(name).provenance
     numbers = joint_numbers(read_yaml(robot_path(name)).data)

@@ -59,7 +59,7 @@ def test_what_is_wanted_otherwise_replaces_what_was(qiao):
     ("changes", "words"),
     [
         ({"method": "magic"}, "method: expected one of continuation, optimized, typical, got 'magic'"),
-        ({"drive": "legs"}, "drive: expected one of differential, omnidirectional, got 'legs'"),
+        ({"drive": "legs"}, "drive: expected one of differential, omnidirectional, mecanum, got 'legs'"),
         ({"seed": -1}, "seed: expected a whole number"),
         ({"start": [0.0]}, "start: expected"),
     ],
@@ -83,3 +83,12 @@ def test_a_drive_without_wheels_has_no_limit_of_theirs(qiao):
         made.with_changes(drive="omnidirectional")
     assert made.with_changes(drive="differential").drive == "differential"
     assert made.with_changes(method="typical", drive="omnidirectional").drive == "omnidirectional"
+
+
+def test_mecanum_wheels_keep_no_limit_on_a_track():
+    robot = ikde.load_robot("ur5e_mecanum")
+    assert TrackPlan.of(robot, PATH).base_drive == "mecanum"
+    with pytest.raises(
+        InputError, match=r"^limits.wheel_speed_rad_s: a track limits the wheel speed of a differential"
+    ):
+        TrackPlan.of(robot, PATH, limits=MotionLimits.of(robot, wheel_speed_rad_s=2.0))

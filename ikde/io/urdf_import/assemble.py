@@ -18,7 +18,7 @@ from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import NO_DETECTOR, WORLD, Drive, FreeSpheres, Joint, Robot
 from ikde.model.validate import check_robot
 
-DRIVES: dict[str, Drive] = {"omni": "omnidirectional", "differential": "differential"}
+DRIVES: dict[str, Drive] = {"omni": "omnidirectional", "differential": "differential", "mecanum": "mecanum"}
 
 
 def assemble(description: Description, skeleton: Skeleton, tool: str, options: ImportOptions) -> Robot:

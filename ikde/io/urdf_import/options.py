@@ -11,7 +11,7 @@ from ikde.formats.reading import read_path
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE
 
-Base = Literal["urdf", "fixed", "omni", "differential"]
+Base = Literal["urdf", "fixed", "omni", "differential", "mecanum"]
 REACH_M = 100.0
 
 
@@ -23,8 +23,8 @@ class ImportOptions:
     """The link that targets are for; None: the only leaf that a joint moves. Several links by name: joints that move
     any of them move, and the first one is the tool unless another is chosen (`Robot.with_tool`)."""
     base: Base = "urdf"
-    """`urdf`: the file as it is. `fixed`: a floating or planar joint of its root is held. `omni` and `differential`:
-    x, y and a continuous yaw under the root."""
+    """`urdf`: the file as it is. `fixed`: a floating or planar joint of its root is held. `omni`, `differential`
+    and `mecanum`: x, y and a continuous yaw under the root."""
     base_reach_m: float = REACH_M
     """Limits of x and y of a base, either way."""
     hold: Mapping[str, float] = field(default_factory=dict, hash=False)
@@ -54,7 +54,7 @@ class ImportOptions:
     @property
     def drives(self) -> bool:
         """Whether a base that drives is put under the root."""
-        return self.base in ("omni", "differential")
+        return self.base not in ("urdf", "fixed")
 
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):

@@ -12,7 +12,7 @@ from ikde.io.urdf_import.read_urdf import import_urdf, read_urdf
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"base": "legs"}, "base: expected one of urdf, fixed, omni, differential, got 'legs'"),
+        ({"base": "legs"}, "base: expected one of urdf, fixed, omni, differential, mecanum, got 'legs'"),
         ({"base_reach_m": 0.0}, "base_reach_m: expected a number above 0, up to 100000 m"),
         ({"mesh_scale": 0.0}, "mesh_scale: expected a number above 0, up to 100000"),
         ({"protrusion_m": -0.1}, "protrusion_m: expected a number above 0"),
