@@ -35,7 +35,7 @@ OUT = Path(__file__).parent / "results"
 POSITION_M, ANGLE_RAD = 1e-5, 1e-4
 PROTRUSIONS_M = (0.02, 0.01, 0.005)
 FREE_SHARE, DRAWN = 1 / 200, 500
-MAX_SPHERE_PAIRS = 3e8  # of an arm's answers together, which Pinocchio measures one by one: 3 minutes
+MAX_SPHERE_PAIRS = 1e9  # of an arm's answers together, which Pinocchio measures one by one: 2 minutes
 
 
 def find_tool(path):

@@ -6,6 +6,7 @@ matrices: their bits would depend on the machine.
 """
 
 from types import FunctionType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from ikde.kernels.trig import fold_angle
 STREAM = np.uint64(2**64 - 2)  # in place of a user's seed: the pool is the same for all solves
 DRAWS = 16  # for each configuration that is wanted, before there seem to be none that are free
 CHUNK = 4096  # rows at a time: their numbers stay in the processor's cache
+GROUP = 16  # spheres of a component that are asked together
+SLACK = 1e-9  # of the room that spheres around groups have for rounding, as a share
 
 
 def draw(numbers: Ints, lower: Floats, upper: Floats) -> Floats:
@@ -58,35 +61,80 @@ def place_tools(robot: RobotArrays, q: Floats) -> Floats:
 
 
 def find_free(collision: CollisionArrays, T_world_body: Floats) -> NDArray[np.bool_]:
-    """Which [K] of some poses of all bodies [B, 3, 4, K] keep every pair farther apart than the safe distance."""
+    """Which [K] of some poses of all bodies [B, 3, 4, K] keep every pair farther apart than the safe distance.
+
+    Pairs of few spheres are asked first: what touches there is not asked about any other.
+    """
     is_free = np.ones(T_world_body.shape[-1], dtype=bool)
+    counts = collision.components[:, LAST] - collision.components[:, FIRST]
     bounds = [
         _place(T_world_body[int(part[BODY])], bound[:3, None])[:, 0]
         for part, bound in zip(collision.components, collision.bounds, strict=True)
     ]
-    for a, b in collision.pairs.tolist():
+    groups: dict[int, list[Group]] = {}
+    for a, b in collision.pairs[np.argsort(counts[collision.pairs].prod(axis=1), kind="stable")].tolist():
         reach = collision.bounds[a, 3] + collision.bounds[b, 3] + collision.safe_distance
         near = np.flatnonzero((_square(bounds[a] - bounds[b]) <= reach * reach) & is_free)
         if len(near):
-            is_free[near] = ~_touch(collision, a, b, T_world_body, near)
+            for part in {a, b} - groups.keys():
+                groups[part] = group_spheres(collision, part)
+            is_free[near] = ~_touch(collision, groups[a], groups[b], T_world_body, near)
     return is_free
 
 
-def _touch(collision: CollisionArrays, a: int, b: int, T_world_body: Floats, rows: Ints) -> NDArray[np.bool_]:
-    """In which of some rows a sphere of component `a` is within the safe distance of one of `b`."""
-    (centres, radii), (others, other_radii) = (_spheres(collision, part, T_world_body, rows) for part in (a, b))
+class Group(NamedTuple):
+    """Spheres of a component that are near each other."""
+
+    body: int
+    centres: Floats  # [3, S] m, in the body
+    radii: Floats  # [S] m
+    middle: Floats  # [3, 1] of a sphere around them all
+    radius: float
+
+
+def group_spheres(collision: CollisionArrays, component: int) -> list[Group]:
+    """The spheres of a component, halved across their longest way until there are `GROUP` at most in each."""
+    body, first, last = (int(collision.components[component, column]) for column in (BODY, FIRST, LAST))
+    waiting, groups = [np.arange(first, last)], []
+    while waiting:
+        rows = waiting.pop()
+        centres, radii = collision.p_body_sphere[:, rows], collision.radius[rows]
+        low, high = (centres - radii).min(axis=1), (centres + radii).max(axis=1)
+        if len(rows) > GROUP:
+            order = np.argsort(centres[np.argmax(high - low)], kind="stable")
+            waiting += [rows[order[: len(rows) // 2]], rows[order[len(rows) // 2 :]]]
+            continue
+        middle = 0.5 * (low + high)[:, None]
+        radius = float((np.sqrt(_square(centres - middle)) + radii).max())
+        groups.append(Group(body, centres, radii, middle, radius * (1.0 + SLACK)))
+    return groups
+
+
+def _touch(
+    collision: CollisionArrays, groups: list[Group], others: list[Group], T_world_body: Floats, rows: Ints
+) -> NDArray[np.bool_]:
+    """In which of some rows a sphere of a component is within the safe distance of one of another."""
     touching = np.zeros(len(rows), dtype=bool)
-    for k, radius in enumerate(other_radii.tolist()):
-        reach = radii + radius + collision.safe_distance
-        touching |= (_square(centres - others[:, k, None]) <= (reach * reach)[:, None]).any(axis=0)
+    (T, T_other), safe = (T_world_body[own[0].body][:, :, rows] for own in (groups, others)), collision.safe_distance
+    middles = [_place(T, group.middle)[:, 0] for group in groups]
+    for other in others:
+        middle = _place(T_other, other.middle)[:, 0]
+        for group, own in zip(groups, middles, strict=True):
+            reach = (group.radius + other.radius + safe) * (1.0 + SLACK)
+            near = np.flatnonzero((_square(own - middle) <= reach * reach) & ~touching)
+            if len(near):
+                touching[near] = _touch_in(group, T[:, :, near], other, T_other[:, :, near], safe)
     return touching
 
 
-def _spheres(collision: CollisionArrays, component: int, T_world_body: Floats, rows: Ints) -> tuple[Floats, Floats]:
-    """Centres [3, S, rows] and radii [S] of the spheres of a component."""
-    body, first, last = (int(collision.components[component, column]) for column in (BODY, FIRST, LAST))
-    T = np.take(T_world_body[body], rows, axis=2)
-    return _place(T, collision.p_body_sphere[:, first:last]), collision.radius[first:last]
+def _touch_in(group: Group, T: Floats, other: Group, T_other: Floats, safe_m: float) -> NDArray[np.bool_]:
+    """The same of two groups, in rows where both bodies stand at `T` [3, 4, K]."""
+    touching = np.zeros(T.shape[-1], dtype=bool)
+    centres, others = _place(T, group.centres), _place(T_other, other.centres)
+    for k, radius in enumerate(other.radii.tolist()):
+        reach = group.radii + radius + safe_m
+        touching |= (_square(centres - others[:, k, None]) <= (reach * reach)[:, None]).any(axis=0)
+    return touching
 
 
 def _place(T: Floats, points: Floats) -> Floats:

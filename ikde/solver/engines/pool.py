@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats, Ints, SeedArrays, read_only
+from ikde.kernels.arrays import FIRST, LAST, Floats, Ints, SeedArrays, read_only
 from ikde.kernels.seeds import COMPARED
 from ikde.model.base_motion import NO_BASE, find_planar_base
 from ikde.model.collision_model import CollisionModel
@@ -24,6 +24,10 @@ from ikde.solver.engines.pool_files import Kept, load_cached, load_shipped, save
 from ikde.solver.problem import NEAR_FIRST_BOX, Problem, pack_searched
 
 DRAWN, DRAWN_NARROW = 2**16, 2**11  # configurations: within the joint limits, within ranges of a problem's own
+MIN_DRAWN, MANY_PAIRS = (
+    2**12,
+    2**14,
+)  # drawn at least; pairs of spheres beyond which fewer are, each of which takes longer
 PER_CELL = 8  # kept of each cell: poses that few configurations have would else be lost among those that many have
 X, Y, Z = 3, 7, 11  # entries of the transform [3, 4], row by row
 TILT_X, TILT_Y, TILT_Z = 8, 9, 10  # those that the yaw of a base cannot change, beside Z
@@ -149,8 +153,11 @@ def make_pool(collision: CollisionModel, kind: str, lower: Floats, upper: Floats
 
 
 def make_whole_pool(collision: CollisionModel, kind: str) -> Pool:
-    """The pool of the joint limits."""
-    return make_pool(collision, kind, *collision.robot.drawn, DRAWN)
+    """The pool of the joint limits: a smaller one where each draw takes long, which serves as well."""
+    arrays = collision.arrays
+    spheres = arrays.components[:, LAST] - arrays.components[:, FIRST]
+    share = MANY_PAIRS / max(MANY_PAIRS, int(spheres[arrays.pairs].prod(axis=1).sum()))
+    return make_pool(collision, kind, *collision.robot.drawn, max(int(DRAWN * share), min(MIN_DRAWN, DRAWN)))
 
 
 def digest_pool(pool: Pool, collision: CollisionModel) -> str:

@@ -62,6 +62,29 @@ def test_free_is_what_plain_numpy_calls_free(case, rng):
     assert sure.sum() > 200
 
 
+def test_of_many_spheres_in_groups_none_that_touch_is_missed(qiao, monkeypatch):
+    """Two clouds of spheres about the base and a link of the arm, against all distances at once."""
+    draw = np.random.default_rng(4)
+    arrays, searched = pack_searched(CollisionModel.of(qiao))
+    spread, small = np.array([[0.5], [0.2], [0.1]]), np.array([[0.1], [0.1], [0.02]])
+    p = np.concatenate([draw.normal(size=(3, 50)) * spread, draw.normal(size=(3, 37)) * small], axis=1)
+    radius, last = draw.uniform(0.02, 0.09, 87), len(arrays.bodies) - 1
+    near = np.array([[0.0, 0, 0, 9.0], [0, 0, 0, 9.0]])
+    parts, pairs = np.array([[2, 0, 50], [last, 50, 87]]), np.array([[0, 1]])
+    many = searched._replace(p_body_sphere=p, radius=radius, components=parts, bounds=near, pairs=pairs)
+    T = draws.place_bodies(arrays, draws.draw(np.arange(400), qiao.lower, qiao.upper))
+    own, other = (
+        np.einsum("ijk,js->isk", T[body, :, :3], p[:, first:end]) + T[body, :, 3, None] for body, first, end in parts
+    )
+    away = np.linalg.norm(own[:, :, None] - other[:, None], axis=0) - (radius[:50, None] + radius[50:])[..., None]
+    expected = away.min(axis=(0, 1)) > many.safe_distance
+    assert 0.1 < expected.mean() < 0.9
+    for most in (1, 7, 100):
+        monkeypatch.setattr(draws, "GROUP", most)
+        assert (draws.find_free(many, T) == expected).all()
+        assert max(len(group.radii) for group in draws.group_spheres(many, 0)) <= most
+
+
 def test_without_pairs_everything_is_free(qiao, rng):
     arrays, searched = pack_searched(CollisionModel.of(qiao, "none"))
     assert draws.find_free(searched, draws.place_bodies(arrays, random_q(qiao, rng, 9))).all()

@@ -19,6 +19,7 @@ from ikde.solver.engines import pool_files
 from ikde.solver.engines.frozen import ROWS
 from ikde.solver.engines.pool import (
     DRAWN,
+    MIN_DRAWN,
     PER_CELL,
     digest_pool,
     draw_kept,
@@ -110,6 +111,16 @@ def test_other_ranges_have_a_pool_of_their_own(qiao):
         assert seeds.q[:, 4].min() < -0.4
         assert seeds.q[:, 5].max() > 0.15
         assert (seeds.q[:, 8].min() < qiao.lower[8]) == (wide[8] < qiao.lower[8])
+
+
+def test_fewer_are_drawn_of_a_robot_with_many_spheres(qiao, monkeypatch):
+    collision = CollisionModel.of(qiao)  # 383 pairs of spheres
+    assert make_whole_pool(collision, "pose").wanted == DRAWN
+    monkeypatch.setattr(module, "MANY_PAIRS", 100)
+    assert make_whole_pool(collision, "pose").wanted == int(DRAWN * 100 / 383)
+    monkeypatch.setattr(module, "MANY_PAIRS", 1)
+    assert make_whole_pool(collision, "pose").wanted == MIN_DRAWN
+    assert make_whole_pool(CollisionModel.of(qiao, "none"), "pose").wanted == DRAWN
 
 
 def test_a_joint_without_limits_is_drawn_once_around_home():
