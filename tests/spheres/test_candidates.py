@@ -1,8 +1,9 @@
 """Where spheres may stand, and what they cover there."""
 
 import numpy as np
+import pytest
 
-from ikde.spheres.candidates import find_candidates, grid_inside
+from ikde.spheres.candidates import _Around, _neighbours, find_candidates, grid_inside
 from ikde.spheres.patches import make_patches
 from ikde.spheres.solid import Solid, Triangles
 from tests.mesh_bodies import box, make_l, solid_of
@@ -36,3 +37,49 @@ def test_each_sphere_is_as_large_as_its_depth_allows_and_names_the_patches_insid
     for index in range(0, len(candidates.radii), 17):
         inside = patches.reach(candidates.centres[index][None])[0] <= candidates.radii[index]
         np.testing.assert_array_equal(np.flatnonzero(inside), np.sort(candidates.covers[index]))
+
+
+def test_every_line_of_the_grid_counts_the_faces_over_it() -> None:
+    """Two boxes one in the other: inside both is inside, and so is all of the outer one; turned inside out is not."""
+    outer, inner = box(0.2, 0.2, 0.2), box(0.1, 0.1, 0.1) + 0.051
+    whole = grid_inside(solid_of(outer), 0.02, 10**6)
+    np.testing.assert_array_equal(grid_inside(solid_of(np.concatenate([outer, inner])), 0.02, 10**6), whole)
+    hollow = grid_inside(solid_of(np.concatenate([outer, inner[:, ::-1]])), 0.02, 10**6)
+    is_inner = ((hollow > 0.051) & (hollow < 0.151)).all(axis=1)
+    assert not is_inner.any()
+    assert len(hollow) == len(whole) - ((whole > 0.051) & (whole < 0.151)).all(axis=1).sum()
+    assert not len(grid_inside(solid_of(outer[:, ::-1]), 0.02, 10**6))
+
+
+def test_the_grid_is_as_fine_as_the_protrusion_asks_unless_that_makes_too_many() -> None:
+    solid = solid_of(box(0.12, 0.06, 0.03))
+    assert len(grid_inside(solid, 0.02, 10**6)) == 20 * 10 * 5
+    assert len(grid_inside(solid, 0.02, 27)) == 6 * 3 * 2
+    x = np.unique(grid_inside(solid, 0.02, 10**6)[:, 0])
+    np.testing.assert_allclose(np.diff(x), 0.006)
+    assert x[0] == pytest.approx(0.4981 * 0.006)
+
+
+def test_near_points_stand_in_one_block_each_once() -> None:
+    points = np.random.default_rng(2).uniform(-0.05, 0.05, (500, 3))
+    blocks = list(_neighbours(points, 0.03))
+    assert sorted(np.concatenate(blocks).tolist()) == list(range(500))
+    assert max(map(len, blocks)) <= 64
+    assert max(np.ptp(points[block], axis=0).max() for block in blocks) <= 0.03
+    many = list(_neighbours(np.zeros((200, 3)), 0.03))
+    assert [len(block) for block in many] == [50] * 4
+
+
+def test_no_triangle_that_is_nearest_and_no_patch_that_is_covered_is_missed() -> None:
+    """For blocks of points inside, outside and on the surface."""
+    solid = solid_of(make_l())
+    patches, draw = make_patches(solid.surface.corners, 0.015), np.random.default_rng(6)
+    for spread in (0.0, 0.005, 0.05):
+        for middle in ([0.05, 0.05, 0.05], [0.15, 0.15, 0.05], [0.2, 0.0, 0.1]):
+            block = middle + spread * draw.uniform(-1.0, 1.0, (6, 3))
+            around = _Around(patches, block)
+            some = solid.surface.take(around.find_triangles())
+            np.testing.assert_array_equal(some.distances(block), solid.surface.distances(block))
+            radii = solid.surface.distances(block) + 0.02
+            held = np.flatnonzero((patches.reach(block) <= radii[:, None]).any(axis=0))
+            assert set(held) <= set(around.find_patches(0.02))

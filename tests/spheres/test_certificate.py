@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ikde.spheres import certificate as module
 from ikde.spheres.certificate import certify
 from tests.mesh_bodies import box, make_l, on_surface
 
@@ -50,6 +51,76 @@ def test_pieces_that_are_left_open_hold_all_that_is_bare() -> None:
 def test_a_triangle_whose_corners_lie_in_different_spheres_only_is_not_proved_at_once() -> None:
     triangle = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
     assert certify(triangle, triangle[0], np.full(3, 0.1), halvings=0).covered == 0.0
+
+
+def test_the_share_is_one_of_area() -> None:
+    triangles = np.array([[[0.0, 0, 0], [2, 0, 0], [0, 1, 0]], [[9.0, 0, 0], [11, 0, 0], [9, 0, 3]]])
+    certificate = certify(triangles, np.array([[0.5, 0.5, 0.0]]), np.array([2.0]), halvings=0)
+    assert (certificate.area_m2, certificate.covered) == (4.0, 0.25)
+    assert certificate.open_pieces[..., 0].min() == 9.0
+
+
+@pytest.mark.parametrize(("less", "covered"), [(1.2e-12, 1.0), (0.8e-12, 0.0), (0.0, 0.0), (-1e-6, 0.0)])
+def test_a_corner_is_inside_only_below_the_radius_by_more_than_rounding(less: float, covered: float) -> None:
+    triangle = np.array([[[1.0 - less, 0, 0], [0, 0.5, 0], [0, 0, -0.5]]])
+    for turn in range(3):
+        assert certify(np.roll(triangle, turn, axis=1), np.zeros((1, 3)), np.ones(1), halvings=0).covered == covered
+        assert certify(np.roll(triangle, turn, axis=2), np.zeros((1, 3)), np.ones(1), halvings=0).covered == covered
+
+
+@pytest.mark.parametrize("turn", range(3))
+def test_what_is_in_no_sphere_is_halved_at_its_longest_edge_so_often(turn: int) -> None:
+    triangle = np.roll(np.array([[[0.0, 0, 0], [8, 0, 0], [4, 1, 0]]]), turn, axis=1)
+    centres, radii = np.array([[2.0, 0.25, 0], [6.0, 0.25, 0]]), np.array([2.2, 2.2])
+    assert certify(triangle, centres, radii, halvings=0).covered == 0.0
+    assert certify(triangle, centres, radii, halvings=1).covered == 1.0
+    one = certify(triangle, centres[:1], radii[:1], halvings=1)
+    assert one.covered == 0.5
+    assert one.open_pieces.shape == (2, 3, 3)
+
+
+def test_fourteen_times_unless_asked_otherwise() -> None:
+    """A quarter of a large triangle is bare, so that every halving leaves some of what is not decided."""
+    triangle, centre = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]]), np.array([[0.0, 0, 0]])
+    usual = certify(triangle, centre, np.array([0.8]))
+    assert usual.covered == certify(triangle, centre, np.array([0.8]), halvings=14).covered
+    assert usual.covered > certify(triangle, centre, np.array([0.8]), halvings=13).covered
+    assert usual.covered < certify(triangle, centre, np.array([0.8]), halvings=15).covered
+
+
+@pytest.mark.parametrize(("share", "covered"), [(0.9e-8, 0.0), (1.1e-8, 1.0)])
+def test_what_is_too_small_is_given_up_and_left_open(share: float, covered: float) -> None:
+    """Spheres hold its halves, and all of a triangle that has nearly all of the area."""
+    large = np.array([[0.0, 0, 9], [2, 0, 9], [0, 1, 9]])
+    small = np.array([[0.0, 0, 0], [8, 0, 0], [4, 1, 0]]) * np.sqrt(share / 4.0)
+    centres = np.array([[2.0, 0.25, 0], [6.0, 0.25, 0]]) * np.sqrt(share / 4.0)
+    radii = np.array([2.2, 2.2]) * np.sqrt(share / 4.0)
+    proved = certify(
+        np.array([large, small]), np.concatenate([centres, [[0.5, 0.5, 9]]]), np.append(radii, 2.0), halvings=1
+    )
+    assert proved.covered == (1.0 if covered else pytest.approx(1.0 - share, abs=1e-12))
+    assert (proved.covered == 1.0) == (not len(proved.open_pieces)) == bool(covered)
+
+
+def test_what_is_proved_and_what_is_left_open_make_up_the_surface() -> None:
+    draw = np.random.default_rng(7)
+    triangles, centres, radii = draw.random((20, 3, 3)), draw.random((30, 3)), draw.uniform(0.1, 0.3, 30)
+    certificate = certify(triangles, centres, radii, halvings=6)
+    left = certificate.open_pieces
+    areas = 0.5 * np.linalg.norm(np.cross(left[:, 1] - left[:, 0], left[:, 2] - left[:, 0]), axis=1)
+    assert 0.1 < certificate.covered < 0.9
+    assert certificate.covered * certificate.area_m2 + areas.sum() == pytest.approx(certificate.area_m2, rel=1e-12)
+
+
+def test_many_spheres_are_asked_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    draw = np.random.default_rng(8)
+    triangles, centres, radii = draw.random((20, 3, 3)), draw.random((30, 3)), draw.uniform(0.1, 0.3, 30)
+    whole = certify(triangles, centres, radii, halvings=4)
+    for block in (1, 9 * 30 * 7):
+        monkeypatch.setattr(module, "BLOCK", block)
+        again = certify(triangles, centres, radii, halvings=4)
+        assert again.covered == whole.covered
+        np.testing.assert_array_equal(again.open_pieces, whole.open_pieces)
 
 
 def test_no_sphere_proves_nothing() -> None:

@@ -1,14 +1,17 @@
 """Meshes covered with spheres: all of the surface, and no farther out than asked."""
 
 import hashlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from ikde.errors import InputError
 from ikde.spheres import cover_mesh as module
+from ikde.spheres import patches
 from ikde.spheres.certificate import certify
-from ikde.spheres.cover_mesh import convex_hull, cover_mesh, cover_solid, drop_needless
+from ikde.spheres.cover_mesh import MeshCover, bound_protrusion, convex_hull, cover_mesh, cover_solid, drop_needless
+from ikde.spheres.parts import PartCounts
 from ikde.spheres.primitives import Rows
 from tests.mesh_bodies import box, make_l, on_surface, solid_of, write_stl
 
@@ -59,19 +62,55 @@ def test_the_same_body_gets_the_same_bits(covered) -> None:
     assert len(digests) == 1
 
 
-def test_a_candidate_that_is_too_large_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("more_m", [9.0, 0.002])
+def test_a_candidate_that_is_too_large_is_not_taken(more_m: float, monkeypatch: pytest.MonkeyPatch) -> None:
     real = module.find_candidates
 
     def enlarge(*own):
         candidates = real(*own)
-        candidates.radii[0] = 9.0
-        candidates.covers[0] = np.arange(10_000)[: len(own[1].centres)]
+        candidates.radii[0] += more_m
+        candidates.covers[0] = np.arange(len(own[1].centres))
         return candidates
 
     monkeypatch.setattr(module, "find_candidates", enlarge)
-    rows = cover_solid(solid_of(BODIES["box"]), 0.02)
-    assert rows.radii.max() < 0.1
+    monkeypatch.setattr(module, "EXCHANGES", 0)
+    solid = solid_of(BODIES["box"])
+    rows = cover_solid(solid, 0.02)
+    assert bound_protrusion(solid, rows.centres, rows.radii) <= 0.02
     assert certify(BODIES["box"], rows.centres, rows.radii).covered == 1.0
+
+
+def test_how_far_spheres_stand_out_is_bounded_by_the_one_that_is_out_most() -> None:
+    solid = solid_of(box(1, 1, 1))
+    centres = np.array([[0.5, 0.5, 0.5], [0.5, 0.5, 0.9], [0.5, 0.5, 1.2]])
+    assert bound_protrusion(solid, centres, np.array([0.6, 0.3, 0.05])) == pytest.approx(0.25)
+    assert bound_protrusion(solid, centres[:2], np.array([0.6, 0.3])) == pytest.approx(0.2)
+    assert bound_protrusion(solid, centres[:2], np.array([0.3, 0.05])) == 0.0
+
+
+def test_protrusion_of_a_cover_of_hulls_is_that_from_the_mesh(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One sphere in the notch of an L, 50 mm from it: all of its radius and as much again stand out."""
+    pytest.importorskip("trimesh")
+    path = write_stl(tmp_path / "l.stl", make_l())
+    many, coarse = Rows(np.zeros((61, 3)), np.full(61, 0.02), 0.02), Rows(np.array([[0.15, 0.15, 0.05]]), np.ones(1), 9)
+    covers = [MeshCover(rows, 1.0, 1.0, PartCounts(1, 0, 0), ()) for rows in (many, coarse)]
+    monkeypatch.setattr(module, "_cover_surface", lambda *own: covers[own[1].hulls])
+    cover = cover_mesh(path, (1.0, 1.0, 1.0), 0.02)
+    assert (cover.only_hulls, cover.rows.protrusion_m) == (True, pytest.approx(1.05))
+    covers[1] = replace(covers[1], rows=many)
+    assert not cover_mesh(path, (1.0, 1.0, 1.0), 0.02).only_hulls
+    covers[0] = replace(covers[0], rows=Rows(many.centres[1:], many.radii[1:], 0.02))
+    covers[1] = replace(covers[1], rows=coarse)
+    assert not cover_mesh(path, (1.0, 1.0, 1.0), 0.02).only_hulls
+
+
+def test_the_share_is_that_of_the_surface_and_its_spheres(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    pytest.importorskip("trimesh")
+    half = Rows(np.array([[0.25, 0.5, 0.5]]), np.array([0.8]), 0.02)
+    monkeypatch.setattr(module, "cover_solid", lambda solid, protrusion_m: half)
+    cover = cover_mesh(write_stl(tmp_path / "box.stl", box(1, 1, 1)), (1.0, 1.0, 1.0), 0.02)
+    assert (cover.covered, cover.area_m2) == (certify(box(1, 1, 1), *half[:2]).covered, pytest.approx(6.0))
+    assert 0.1 < cover.covered < 0.9
 
 
 def test_an_open_box_is_covered_as_its_hull(tmp_path) -> None:
@@ -110,7 +149,8 @@ def test_where_a_mesh_takes_too_many_spheres_its_hull_is_covered(tmp_path, monke
     assert again.covered == 1.0
 
 
-def test_a_mesh_too_large_to_cover_is_suspected_to_be_in_mm(tmp_path) -> None:
+def test_a_mesh_too_large_to_cover_is_suspected_to_be_in_mm(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(patches, "MAX_PIECES", 30_000)
     path = write_stl(tmp_path / "box.stl", box(120, 50, 40))
     with pytest.raises(
         InputError, match=r"^box\.stl is 120 m large; if it is given in mm, use --mesh-scale 0\.001; the"
