@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ikde.errors import InputError, nearest
-from ikde.kernels.arrays import Floats, Ints
+from ikde.kernels.arrays import Floats
 from ikde.kernels.flat_arguments import ATTACHED_PAIRS, GRID_COLUMNS, HEADER, SOLID_COLUMNS, unpack_world
+from ikde.model.cloud_cells import SortedCloud, find_sorted
 from ikde.model.hull import measure_normals
 from ikde.model.per_obstacle import PerObstacle, find_changed
 from ikde.model.robot import WORLD, Robot
@@ -17,20 +18,9 @@ from ikde.model.solids import IDENTITY, KINDS, Solid
 from ikde.model.tree import build_tree
 from ikde.model.world import Obstacle, World
 
-CLOUD_PITCH_M = 0.04  # 171 ns a check of 1e5 points, with a field built in 16 ms; 2 cm: 122 ns, 377 ms
 GRID_PITCH_M = 0.08  # 149 ns a check in a bookshelf of 21 solids; 4 cm 238, 2 cm 298: the cache is missed
-MAX_CELLS = 2_000_000
-MIN_FOR_GRID = 30  # solids
+MIN_FOR_GRID, MAX_CELLS = 30, 2_000_000  # solids
 _EYE = np.eye(4)
-FAR_CELLS = 12  # cells that a cloud's field looks away
-
-
-class Cells(NamedTuple):
-    """A grid over points: its row of numbers, the first entry of each cell, and how far occupied ones are, m."""
-
-    numbers: Floats
-    starts: Ints
-    far: Floats
 
 
 class PackedObstacle(NamedTuple):
@@ -38,7 +28,7 @@ class PackedObstacle(NamedTuple):
 
     rows: Floats
     faces: list[tuple[int, Floats]]
-    clouds: list[tuple[int, Cells, Floats]]
+    clouds: list[tuple[int, SortedCloud]]
 
 
 class Packed(NamedTuple):
@@ -103,7 +93,7 @@ class WorldPacker:
             if solid.kind == "hull":
                 faces.append((place, _faces(solid)))
             elif solid.kind == "cloud":
-                clouds.append((place, *sort_cloud(solid.points, CLOUD_PITCH_M)))  # type: ignore[arg-type]
+                clouds.append((place, find_sorted(solid.points)))  # type: ignore[arg-type]
         return PackedObstacle(np.array(rows), faces, clouds)
 
 
@@ -143,13 +133,13 @@ def _join_obstacles(packed: list[PackedObstacle], asked: Floats, reach_m: float)
         for place, own in obstacle.faces:
             solids[first + place, 19:21] = sum(map(len, faces)), len(own)
             faces.append(own)
-        for place, cells, sorted_points in obstacle.clouds:
+        for place, (cells, by_cell) in obstacle.clouds:
             solids[first + place, 14:16] = sum(map(len, starts)), len(clouds)
             clouds.append(cells.numbers)
             starts.append(cells.starts + count)
             far.append(np.append(cells.far, 0.0))
-            points.append(sorted_points)
-            count += len(sorted_points)
+            points.append(by_cell)
+            count += by_cell.shape[1]
         first += len(obstacle.rows)
     parts = [solids, _spheres(solids), asked, _stack(faces, 12), _join_points(points), _stack(clouds, GRID_COLUMNS)]
     parts += [np.concatenate([*starts, np.empty(0)]), np.concatenate([*far, np.empty(0)])]
@@ -162,48 +152,6 @@ def find_fixed_frames(robot: Robot) -> dict[str, Floats]:
     """T_world_frame [4, 4] of the frames that no joint moves, the world among them."""
     tree = build_tree(robot)
     return {WORLD: np.eye(4), **{name: tree.T_body_frame[name] for name, body in tree.frame_body.items() if body == 0}}
-
-
-def sort_cloud(points: Floats, pitch: float) -> tuple[Cells, Floats]:
-    """Points [K, 3] sorted by cell, and the cells."""
-    P = np.ascontiguousarray(points.T)  # along each axis at once: the smallest of a column took 80 times as long
-    low, high = P.min(axis=1), P.max(axis=1)
-    while np.prod(np.floor((high - low) / pitch) + 1.0) > MAX_CELLS:
-        pitch *= 1.5
-    dims = (np.floor((high - low) / pitch) + 1).astype(np.int64)
-    cells = np.zeros(len(points), dtype=np.int32)
-    for k, count in enumerate(dims.tolist()):
-        place = ((P[k] - low[k]) / pitch).astype(np.int32)
-        cells *= count
-        cells += np.minimum(place, count - 1, out=place)
-    counts = np.bincount(cells, minlength=int(dims.prod()))
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    numbers = np.array([*low, pitch, *dims], dtype=float)
-    found = Cells(numbers, starts, _measure_far(counts.reshape(dims) > 0, pitch))
-    return found, P[:, _find_order(cells)].T
-
-
-def _find_order(cells: np.ndarray) -> np.ndarray:
-    """The order that sorts numbers below 2^32, equals as they come: numpy counts 16 bits, of more it compares."""
-    order = np.argsort(cells.astype(np.uint16), kind="stable")
-    high = (cells >> 16).astype(np.uint16)
-    return order[np.argsort(high[order], kind="stable")] if high.any() else order
-
-
-def _measure_far(occupied: np.ndarray, pitch: float) -> Floats:
-    """Distance [cells] from each cell to the nearest occupied one, box to box, m; at most `FAR_CELLS` cells of it."""
-    most = float(FAR_CELLS**2)
-    field = np.where(occupied, 0.0, most)
-    for axis in range(3):
-        found = field.copy()
-        for step in range(1, min(FAR_CELLS, field.shape[axis] - 1) + 1):
-            cost = float((step - 1) ** 2)
-            here, there = [slice(None)] * 3, [slice(None)] * 3
-            here[axis], there[axis] = slice(step, None), slice(None, -step)
-            np.minimum(found[tuple(here)], field[tuple(there)] + cost, out=found[tuple(here)])
-            np.minimum(found[tuple(there)], field[tuple(here)] + cost, out=found[tuple(there)])
-        field = found
-    return pitch * np.sqrt(np.minimum(field, most)).ravel()
 
 
 def _solid_row(solid: Solid, T: Floats) -> list[float]:
@@ -221,8 +169,10 @@ def _bound(solid: Solid, sizes: list[float]) -> float:
     """Radius of a sphere about the solid's origin that holds all of it, m."""
     if solid.kind == "half_space":
         return np.inf
+    if solid.kind == "cloud" and solid.points is not None:
+        return find_sorted(solid.points).radius_m + sizes[0]
     if solid.points is not None:
-        return float(np.linalg.norm(solid.points, axis=1).max()) + (sizes[0] if len(sizes) else 0.0)
+        return float(np.linalg.norm(solid.points, axis=1).max())
     if solid.kind == "sphere":
         return sizes[0]
     return (sum(sizes) if solid.kind == "capsule" else math.sqrt(math.fsum(size * size for size in sizes))) * (
@@ -308,8 +258,8 @@ def _stack(rows: list[Floats], columns: int) -> Floats:
 
 
 def _join_points(points: list[Floats]) -> Floats:
-    """Points [3, K] of clouds [K, 3]; of one alone, which may be large, without a copy."""
-    return points[0].T if len(points) == 1 else _stack(points, 3).T
+    """Points [3, K] of clouds; of one alone, which may be large, without a copy."""
+    return points[0] if len(points) == 1 else np.hstack([np.empty((3, 0)), *points])
 
 
 def _whole(T: Floats) -> Floats:

@@ -79,8 +79,8 @@ def read_points(points: ArrayLike | None, most: int) -> Floats:
         raise InputError(f"expected points [K, 3], got shape {P.shape}", ("points",))
     if len(P) > most:
         raise InputError(f"expected at most {most:,} points, got {len(P):,}", ("points",))
-    good = (np.abs(P) <= MAX_MAGNITUDE).all(axis=1)  # False for NaN
-    if not good.all():
+    if not (P.min() >= -MAX_MAGNITUDE and P.max() <= MAX_MAGNITUDE):  # or NaN: row by row it took 30 ms for 10^6
+        good = (np.abs(P) <= MAX_MAGNITUDE).all(axis=1)
         row = int(np.argmin(good))
         others = int(len(P) - good.sum()) - 1
         more = f", and {others:,} more like it" if others else ""

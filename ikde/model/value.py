@@ -67,8 +67,8 @@ class ReadOnlyValue(MadeAnew, Value):
 class ByFields(MadeAnew):
     """Equal are two of one class whose fields are, arrays to the bit; arrays are read-only, also after they travelled.
 
-    Nothing is written down for it, since a cloud of points may be large: a hash takes of an array its shape, and its
-    numbers if they are few.
+    Nothing is written down for it, since a cloud of points may be large: a hash takes of an array its shape, and a few
+    of its numbers, so that two clouds are hardly ever compared number by number.
     """
 
     __slots__ = ("_hash",)
@@ -100,7 +100,8 @@ def _is_same(a: Any, b: Any) -> bool:
     if a is b:
         return True
     if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
-        return a.shape == b.shape and a.tobytes() == b.tobytes()
+        bits = f"u{a.dtype.itemsize}"
+        return a.dtype == b.dtype and np.array_equal(a.view(bits), b.view(bits))
     return a == b
 
 
@@ -108,7 +109,7 @@ def _key(value: Any) -> Any:
     """What of a field a hash is of."""
     if not isinstance(value, np.ndarray):
         return value
-    return value.tobytes() if value.size <= FEW else value.shape
+    return value.tobytes() if value.size <= FEW else (value.shape, value.flat[:: value.size // FEW].tobytes())
 
 
 def _keep(value: Any) -> Any:

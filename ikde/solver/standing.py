@@ -9,6 +9,7 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike
+from ikde.model.cloud_cells import find_sorted
 from ikde.model.collision_model import CollisionChoice, CollisionModel
 from ikde.model.pack_world import find_fixed_frames
 from ikde.model.per_obstacle import PerObstacle
@@ -16,7 +17,7 @@ from ikde.model.robot import WORLD
 from ikde.model.solids import IDENTITY, Solid
 from ikde.model.world import Obstacle
 from ikde.solver.plain import compute_components, compute_frames
-from ikde.solver.plain_world import measure_obstacle
+from ikde.solver.plain_world import measure_solid
 from ikde.solver.touching import CONFIGURATIONS as TRIED
 from ikde.solver.touching import find_always_touching
 
@@ -80,31 +81,53 @@ class Watched:
         T, own, found = self._frames[obstacle.frame], obstacle.T_world_obstacle, []
         balls = [(self._place(obstacle, solid), _measure_ball(solid)) for solid in obstacle.solids]
         for name, middle, radius_m, centres, radii in self.parts:
-            reach_m = radius_m + within_m
             near = [
                 solid
                 for solid, (place, ball_m) in zip(obstacle.solids, balls, strict=True)
-                if math.dist(place, middle) <= ball_m + reach_m
+                if math.dist(place, middle) <= ball_m + radius_m + within_m
             ]
-            if any(solid.kind == "cloud" for solid in near):
-                in_frame = (np.array(middle) - T[:3, 3]) @ T[:3, :3]
-                near = [*filter(None, (_thin(solid, (in_frame - own[:, 3]) @ own[:, :3], reach_m) for solid in near))]
             if near:
-                P = (centres - T[:3, 3]) @ T[:3, :3]
-                gaps = (measure_obstacle(replace(obstacle, solids=tuple(near)), P) - radii).min(axis=-1)
-                if np.ptp(gaps) <= SAME_M and gaps[0] <= within_m:
-                    found.append((name, float(gaps[0])))
+                P = ((centres - T[:3, 3]) @ T[:3, :3] - own[:, 3]) @ own[:, :3]
+                gap_m = _find_same(near, P, radii, within_m)
+                if gap_m is not None:
+                    found.append((name, gap_m))
         return found
 
 
-def _thin(solid: Solid, middle: Floats, reach_m: float) -> Solid | None:
-    """What is left of a cloud within a distance of a point of its obstacle's frame; other solids as they are."""
-    if solid.kind != "cloud" or solid.points is None:
-        return solid
-    R, p = solid.T_obstacle_solid[:, :3], solid.T_obstacle_solid[:, 3]
-    reach_m, own = reach_m + solid.size_m[0], (middle - p) @ R
-    is_near = np.logical_and.reduce([abs(solid.points[:, k] - own[k]) <= reach_m for k in range(3)])
-    return replace(solid, points=solid.points[is_near]) if is_near.any() else None
+def _find_same(solids: list[Solid], P: Floats, radii: Floats, within_m: float) -> float | None:
+    """The distance that spheres keep from solids in all configurations, if it is one of at most `within_m`, m.
+
+    `P` [K, n, 3] in the obstacle's frame, m. One configuration is measured first, and clouds one after the other.
+    """
+    first_m = _measure(solids, P[0], radii, within_m)
+    if first_m > within_m:
+        return None
+    least_m = most_m = first_m
+    for own in P[1:]:
+        gap_m = _measure(solids, own, radii, within_m)
+        least_m, most_m = min(least_m, gap_m), max(most_m, gap_m)
+        if most_m - least_m > SAME_M:
+            return None
+    return first_m
+
+
+def _measure(solids: list[Solid], P: Floats, radii: Floats, within_m: float) -> float:
+    """Smallest distance of spheres at `P` [n, 3] from solids, m; that of clouds only if it is at most `within_m`."""
+    least_m = math.inf
+    for solid in solids:
+        near = _thin(solid, P, radii, within_m) if solid.kind == "cloud" else solid
+        if near is not None:
+            least_m = min(least_m, float((measure_solid(near, P) - radii).min()))
+    return least_m
+
+
+def _thin(cloud: Solid, P: Floats, radii: Floats, within_m: float) -> Solid | None:
+    """What is left of a cloud within a distance of the box about some spheres, by its cells."""
+    assert cloud.points is not None
+    own, reach = (P - cloud.T_obstacle_solid[:, 3]) @ cloud.T_obstacle_solid[:, :3], radii[:, None]
+    low, high, wide_m = (own - reach).min(axis=0), (own + reach).max(axis=0), within_m + cloud.size_m[0]
+    points = find_sorted(cloud.points).find_within(low - wide_m, high + wide_m)
+    return replace(cloud, points=points) if len(points) else None
 
 
 def _bound(centres: Floats, radii: Floats) -> tuple[list[float], float]:
@@ -117,8 +140,10 @@ def _measure_ball(solid: Solid) -> float:
     """Radius of a ball about a solid's origin that holds it, m."""
     if solid.kind == "half_space":
         return math.inf
+    if solid.kind == "cloud" and solid.points is not None:
+        return find_sorted(solid.points).radius_m + solid.size_m[0]
     if solid.points is not None:
-        return math.sqrt(float(np.einsum("ki,ki->k", solid.points, solid.points).max())) + sum(solid.size_m)
+        return float(np.linalg.norm(solid.points, axis=1).max())
     return sum(solid.size_m) if solid.kind == "capsule" else math.hypot(*_halve(solid))
 
 

@@ -8,7 +8,7 @@ import pytest
 from ikde.errors import InputError
 from ikde.kernels.flat_arguments import unpack_world
 from ikde.model.collision_model import CollisionModel
-from ikde.model.pack_world import WorldPacker, pack_world, sort_cloud
+from ikde.model.pack_world import WorldPacker, pack_world
 from ikde.model.robot import WORLD
 from ikde.model.solids import make_solid
 from ikde.model.world import make_obstacle, make_world
@@ -50,14 +50,6 @@ def test_margins_that_do_not_fit_are_refused():
             OWN.in_world(world, margin_m, margins_m)
     with pytest.raises(InputError, match=r"^world: expected a World, got 3"):
         OWN.in_world(3)
-
-
-def test_points_are_sorted_by_cell(rng):
-    points = rng.uniform(-1.0, 1.0, (500, 3))
-    cells, sorted_points = sort_cloud(points, 0.3)
-    assert sorted(map(tuple, points.tolist())) == sorted(map(tuple, sorted_points.tolist()))
-    assert cells.starts[-1] == 500
-    assert (cells.far[np.diff(cells.starts) > 0] == 0.0).all()
 
 
 def crowd(count, rng):

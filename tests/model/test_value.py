@@ -124,4 +124,7 @@ def test_worlds_are_equal_if_all_of_them_is():
     ]
     assert cloud(POINTS.copy()) == WORLD != "crumbs"
     assert all(other != WORLD for other in others)
+    as_columns = cloud(np.asfortranarray(POINTS))
+    assert as_columns == WORLD
+    assert hash(as_columns) == hash(WORLD)
     assert WORLD.remove("box").add(WORLD["box"]) == WORLD

@@ -9,7 +9,7 @@ import ikde
 from ikde.model.collision_model import CollisionModel
 from ikde.solver import plain_cloud as module
 from ikde.solver.plain import compute_components, compute_world_gaps
-from ikde.solver.plain_cloud import find_boxes, find_cloud_gaps, make_boxes
+from ikde.solver.plain_cloud import CloudBoxes, find_boxes, find_cloud_gaps
 from ikde.solver.plain_world import measure_obstacle
 
 CLOUDS = {
@@ -52,32 +52,72 @@ def test_many_spheres_are_asked_in_parts_that_may_cut_a_group(rng, monkeypatch):
 
 
 def test_boxes_hold_their_points_and_one_another(rng):
-    points = rng.normal(size=(5000, 3))
-    boxes = make_boxes(points)
+    points = rng.normal(size=(5000, 3)) * [1.0, 1.0, 0.01]
+    boxes = CloudBoxes(points)
     assert len(boxes.sizes) > 1
     assert sorted(boxes.order.tolist()) == list(range(5000))
     assert len(boxes.sizes[0].middle) <= 512
-    assert len(points) / len(boxes.sizes[-1].middle) <= module.LEAF
-    inside = points[boxes.order].T, points[boxes.order].T
+    inside, cells = points[boxes.order].T, boxes.sizes[-1]
     for low, high, middle, first in boxes.sizes[::-1]:
         for k in range(len(middle)):
             some = slice(first[k], first[k + 1])
-            np.testing.assert_array_equal(low[:, k], inside[0][:, some].min(axis=1))
-            np.testing.assert_array_equal(high[:, k], inside[1][:, some].max(axis=1))
+            assert (low[:, k] <= inside[:, some].min(axis=1)).all()
+            assert (high[:, k] >= inside[:, some].max(axis=1)).all()
         assert ((low <= points[middle].T) & (high >= points[middle].T)).all()
-        inside = low, high
+        firsts = np.arange(len(inside.T))[first[:-1]]
+        inside = inside[:, firsts]  # one point of each, which the box about it holds as well
+    for some in np.array_split(rng.permutation(len(cells.middle)), 5):
+        boxes.open(points, some)
+        boxes.open(points, some)  # which changes nothing
+    found = []
+    for cell in range(len(cells.middle)):
+        leaves = range(boxes.blocks[1][boxes.first[cell]], boxes.blocks[1][boxes.last[cell]])
+        own = slice(boxes.leaves[1][leaves[0]], boxes.leaves[1][leaves[-1] + 1])
+        found.append(boxes.points[:, own])
+        there = points[boxes.order[cells.first[cell] : cells.first[cell + 1]]]
+        assert sorted(found[-1].T.tolist()) == sorted(there.tolist())
+    assert np.concatenate(found, axis=1).shape == (3, 5000)
+    for (bounds, first), inside in ((boxes.leaves, boxes.points), (boxes.blocks, boxes.leaves[0])):
+        for k in range(boxes._ends[1 if inside is boxes.points else 2]):
+            some = slice(first[k], first[k + 1])
+            assert 0 < some.stop - some.start <= module.LEAF
+            np.testing.assert_array_equal(bounds[:3, k], inside[:3, some].min(axis=1))
+            np.testing.assert_array_equal(bounds[3:, k], inside[-3:, some].max(axis=1))
+
+
+def test_only_what_is_near_is_cut(rng):
+    points = rng.uniform(-1.0, 1.0, (20_000, 3))
+    points.setflags(write=False)
+    P = np.array([[0.5, 0.5, 0.5]])
+    find_cloud_gaps(points, P, np.array([0.1]), np.array([0]), 1)
+    boxes = find_boxes(points)
+    opened = (boxes.first >= 0).sum()
+    assert 0 < opened < 0.01 * len(boxes.first)
 
 
 def test_boxes_are_made_once_and_go_with_their_points(rng):
     points = rng.normal(size=(100, 3))
-    assert find_boxes(points).order is not find_boxes(points).order  # they may change
+    assert find_boxes(points) is not find_boxes(points)  # they may change
     points.setflags(write=False)
     first, known = find_boxes(points), len(module._KNOWN)
-    assert find_boxes(points).order is first.order
-    assert find_boxes(points).points is points
+    assert find_boxes(points) is first
     del first, points
     gc.collect()
     assert len(module._KNOWN) == known - 1
+
+
+@pytest.mark.parametrize("beyond_m", [-1e-6, -1e-9, 0.0, 1e-9, 1e-6])
+def test_verdicts_beside_contact_are_those_of_every_point(rng, beyond_m):
+    points = rng.uniform(-1.0, 1.0, (4000, 3))
+    P, radii = rng.uniform(-1.0, 1.0, (60, 3)), rng.uniform(0.01, 0.3, 60)
+    touched = points[np.linalg.norm(P[:, None] - points, axis=-1).argmin(axis=1)]
+    out = (P - touched) / np.linalg.norm(P - touched, axis=1, keepdims=True)
+    P = touched + out * (radii + beyond_m)[:, None]
+    found, groups = find_cloud_gaps(points, P, radii, np.arange(60), 60), np.arange(60)
+    expected = brute(points, P, radii, groups, 60)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-15)
+    sure = abs(expected) > 1e-12
+    assert ((found <= 0.0) == (expected <= 0.0))[sure].all()
 
 
 def test_a_robot_among_clouds_is_as_far_as_every_point_says(qiao, rng):
