@@ -42,7 +42,7 @@ def bench_track(
 
     Example: ikde bench track configs/tracks/qiao2022_task?.yaml --out report/tracks
     """
-    from ikde.io.plan_file import load_track
+    from ikde.io.plan_file import in_track_file, load_track
     from ikde.io.report_folder import RESULTS, format_results, open_folder, write_report
     from ikde.report.html import render_html
     from ikde.report.track_comparison import compare_json, make_comparison_page
@@ -55,9 +55,11 @@ def bench_track(
     in_metres = unit if unit != LengthUnit.m else None
     given = {"methods": methods, "drive": drive, "world": world, "margin": margin, "unit": in_metres}
     plans = [load_track(path).with_changes(drive=drive) for path in tracks]  # type: ignore[arg-type]
-    placed = (place_in_world(plan.collision, world, margin, unit) for plan in plans)
-    files = {"world_file": str(world)} if world is not None else {}
-    plans = [replace(plan, collision=collision, **files) for plan, collision in zip(plans, placed, strict=True)]
+    for place, plan in enumerate(plans):
+        placed = place_in_world(plan.collision, world, margin, unit)
+        with in_track_file(plan):
+            named = plan.world_file if world is None else str(world)
+            plans[place] = replace(plan, collision=placed, world_file=named)
     _check_moving(plans, chosen)
     for robot in {plan.robot.name: plan.robot for plan in plans if not plan.collision.pairs}.values():
         note_unchecked(robot)

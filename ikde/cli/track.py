@@ -55,7 +55,7 @@ def track(
 
     Example: ikde track configs/tracks/qiao2022_task1.yaml --out runs/task1
     """
-    from ikde.io.plan_file import load_track
+    from ikde.io.plan_file import in_track_file, load_track
     from ikde.io.report_folder import open_folder
     from ikde.io.trajectory_files import write_track
     from ikde.report.track import format_track, track_json
@@ -64,9 +64,10 @@ def track(
     plan = load_track(spec)
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     picked = Pick(attach, plan.start if begin is None else begin)
-    plan = replace(plan, collision=place_in_world(plan.collision, world, margin, unit, picked))
-    plan = plan if world is None else replace(plan, world_file=str(world))
-    plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
+    placed = place_in_world(plan.collision, world, margin, unit, picked)
+    with in_track_file(plan):
+        plan = replace(plan, collision=placed, world_file=plan.world_file if world is None else str(world))
+        plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]
     given = {
         "method": method,
         "drive": drive,

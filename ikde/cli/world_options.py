@@ -94,10 +94,9 @@ def _pick_up(collision: "CollisionModel", world: "World", pick: Pick) -> "World"
     from ikde.formats.attached import read_attached
 
     for held in [] if pick.text is None else read_attached(pick.text):
-        robot = collision.robot
-        known = {"q": robot.home if pick.q is None else pick.q, "may_touch": held.may_touch}
+        known = {"q": collision.robot.home if pick.q is None else pick.q, "may_touch": held.may_touch}
         try:
-            world = world.attach(held.name, held.frame, robot=robot, **known)
+            world = world.attach(held.name, held.frame, robot=collision.own, **known)
         except InputError as error:
             if error.where[:1] in (("attach",), ("obstacles",)):  # as typed, or a line of the world's file
                 raise

@@ -2,7 +2,8 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator
+from pydantic_core import PydanticCustomError
 
 from ikde.formats.entries import Entry, Interval, Number, OrientationEntry, UnitsEntry, Vector
 from ikde.model.base_region import MAX_CORNERS, MAX_HOLES
@@ -25,7 +26,30 @@ Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Corners = Annotated[list[Point], Field(max_length=MAX_CORNERS)]
 
 
-class TurnEntry(Entry):
+def _leave_out_null(schema: dict[str, Any]) -> None:
+    """What may be left out may not be null."""
+    for entry in schema.get("properties", {}).values():
+        kinds = [kind for kind in entry.get("anyOf", ()) if kind.get("type") != "null"]
+        if kinds and entry.get("default", kinds) is None:
+            entry.pop("default")
+            entry.pop("anyOf")
+            entry.update(kinds[0] if len(kinds) == 1 else {"anyOf": kinds})
+
+
+class FilledEntry(Entry):
+    """An entry whose keys have values: an empty `base:` is a mistake, not nothing."""
+
+    model_config = ConfigDict(json_schema_extra=_leave_out_null)
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _refuse_nothing(cls, value: Any) -> Any:
+        if value is None:
+            raise PydanticCustomError("nothing", "expected a value, got nothing; leave the key out")
+        return value
+
+
+class TurnEntry(FilledEntry):
     """Turns of a full pose about an axis through the tool's origin."""
 
     axis: Vector = [0.0, 0.0, 1.0]
@@ -34,7 +58,7 @@ class TurnEntry(Entry):
     """Least and largest; by default any."""
 
 
-class SightEntry(Entry):
+class SightEntry(FilledEntry):
     """A point that the tool's z axis points at."""
 
     point: Vector
@@ -47,7 +71,7 @@ class SightEntry(Entry):
     """How far from that it may be; by default any."""
 
 
-class GoalEntry(OrientationEntry):
+class GoalEntry(FilledEntry, OrientationEntry):
     """A target in the world, with at most one of `rotation`, `turn` and `cone`; or `look_at` alone."""
 
     position: Vector | None = None
@@ -64,7 +88,7 @@ class GoalEntry(OrientationEntry):
     look_at: SightEntry | None = None
 
 
-class BaseEntry(Entry):
+class BaseEntry(FilledEntry):
     """Where the origin of a planar base may stand."""
 
     corners: Corners
@@ -80,7 +104,7 @@ class BaseRegionFile(BaseEntry):
     """Of this file."""
 
 
-class GoalFile(Entry):
+class GoalFile(FilledEntry):
     """The whole file: `goal` or `any_of`."""
 
     units: UnitsEntry = UnitsEntry()

@@ -1,6 +1,7 @@
 """Files that name a robot and say what to do with it, run files and track files: how they become plans."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -72,6 +73,19 @@ def load_track(source: str | Path | Mapping[str, Any]) -> "TrackPlan":
         return make_plan(spec, robot, folder=folder, file=file, read_world=partial(_read_track_world, folder))
 
     return _load_plan(source, "track", TrackSpec, make)
+
+
+@contextmanager
+def in_track_file(plan: "TrackPlan") -> Iterator[None]:
+    """What a track file says moves may not fit what a caller wants otherwise: the error names its line and key."""
+    try:
+        yield
+    except FileError:
+        raise
+    except InputError as error:
+        if plan.file is None or error.where[:1] != ("moving",):
+            raise
+        raise read_yaml(Path(plan.file)).error(error.message, error.where) from None
 
 
 def _load_plan(source: Any, kind: str, model: type[Spec], make: Callable[..., Plan]) -> Plan:

@@ -35,8 +35,6 @@ LIMITS = {
     "less_than": ("less than", "lt"),
 }
 
-KEY_ITSELF = "[key]"  # pydantic's last step to a key that is wrong, where others lead to values
-
 
 class Given:
     """Data that came from no file: errors name the key alone."""
@@ -92,7 +90,8 @@ class _Complaint(NamedTuple):
 
 def _place(data: Any, complaint: Mapping[str, Any]) -> _Complaint:
     steps = complaint["loc"]
-    return _Complaint(complaint["type"], _real_path(data, steps), str(steps[-1]) if steps else "", complaint)
+    where = _real_path(data, steps, is_missing=complaint["type"] == "missing")
+    return _Complaint(complaint["type"], where, str(steps[-1]) if steps else "", complaint)
 
 
 def _is_misspelt(complaint: _Complaint, all_of_them: Sequence[_Complaint], model: type[BaseModel]) -> bool:
@@ -132,11 +131,11 @@ def _describe_length(kind: str, context: Mapping[str, Any]) -> str:
     return f"expected {most if most <= FEW else f'at most {most:,}'} values, got {got}"
 
 
-def _real_path(data: Any, loc: tuple[Any, ...]) -> Where:
-    """Pydantic's location without the union branches it adds, which are no keys of the file."""
+def _real_path(data: Any, loc: tuple[Any, ...], *, is_missing: bool) -> Where:
+    """Pydantic's location without the union branches it adds, which are no keys of the file; a missing key is one."""
     where: list[str | int] = []
     for position, key in enumerate(loc):
-        if isinstance(data, dict) and (key in data or (position == len(loc) - 1 and key != KEY_ITSELF)):
+        if isinstance(data, dict) and (key in data or (is_missing and position == len(loc) - 1)):
             where.append(key)
             data = data.get(key)
         elif isinstance(data, list) and isinstance(key, int):

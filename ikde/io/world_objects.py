@@ -81,7 +81,10 @@ def _to_attached(name: str, entry: AttachedEntry, units: UnitsEntry, frames: Fra
         least_m = FINEST_M if entry.spheres is None else 0.0
         out_m = read_protrusion(entry.protrusion * units.length_m, ("protrusion",), least_m)
     if entry.spheres is None:
-        spheres, out_m = cover_solids(solids, out_m)
+        try:
+            spheres, out_m = cover_solids(solids, out_m)
+        except InputError as error:
+            raise InputError(error.message, ("protrusion",) if out_m is not None else error.where) from None
     else:
         spheres = read_spheres(np.array(entry.spheres) * units.length_m)
     return Attached(

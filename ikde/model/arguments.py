@@ -45,6 +45,20 @@ class HasAsMatrix(Protocol):
         """[4, 4]."""
 
 
+class HasDetector(Protocol):
+    """A robot and what is compared on it: as `CollisionModel` is."""
+
+    @property
+    def robot(self) -> Robot:
+        """Whose it is."""
+        ...
+
+    @property
+    def detector(self) -> Any:
+        """What it compares."""
+        ...
+
+
 RobotLike = Robot | str | PathLike[str]
 """A robot, the name of one that ships with ikde, or the path of a file; a file is read at each call."""
 Pose = HasHomogeneous | HasA | HasAsMatrix

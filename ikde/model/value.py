@@ -68,7 +68,8 @@ class ByFields(MadeAnew):
     """Equal are two of one class whose fields are, arrays to the bit; arrays are read-only, also after they travelled.
 
     Nothing is written down for it, since a cloud of points may be large: a hash takes of an array its shape, and a few
-    of its numbers, so that two clouds are hardly ever compared number by number.
+    of its numbers, so that two clouds are hardly ever compared number by number. Fields with
+    `compare=False` do not count.
     """
 
     __slots__ = ("_hash",)
@@ -84,15 +85,15 @@ class ByFields(MadeAnew):
             return True
         if type(other) is not type(self):
             return NotImplemented
-        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        names = [field.name for field in fields(self) if field.compare]  # type: ignore[arg-type]
         return hash(self) == hash(other) and all(_is_same(getattr(self, name), getattr(other, name)) for name in names)
 
     def __hash__(self) -> int:
         try:
             return self._hash
         except AttributeError:
-            known = tuple(_key(getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
-            object.__setattr__(self, "_hash", hash(known))
+            compared = [field.name for field in fields(self) if field.compare]  # type: ignore[arg-type]
+            object.__setattr__(self, "_hash", hash(tuple(_key(getattr(self, name)) for name in compared)))
             return self._hash
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import Floats
-from ikde.model.arguments import Pose, RobotLike, find_matrix
+from ikde.model.arguments import HasDetector, Pose, RobotLike, find_matrix
 from ikde.model.names import check_printable
 from ikde.model.numbers import is_number
 from ikde.model.robot import MAX_MAGNITUDE, WORLD
@@ -61,6 +61,8 @@ class Attached(ByFields):
     """How far the spheres stand out of the object at most, m; None of spheres that were given."""
     may_touch: tuple[str, ...] = ()
     """Components of the robot, obstacles and other attached objects that it may touch."""
+    place: int | None = field(default=None, compare=False)
+    """Which obstacle it was, with all that is attached where it stood before: there it is put back; None: the last."""
 
     @property
     def name(self) -> str:
@@ -175,10 +177,7 @@ class World(ByFields):
         gone = {self._place(name) for name in names}
         left = tuple(o for place, o in enumerate(self.obstacles) if place not in gone)
         off = self.switched_off & {o.group for o in left if o.group is not None}
-        held = tuple(
-            replace(thing, may_touch=tuple(name for name in thing.may_touch if name not in names))
-            for thing in self.attached
-        )
+        held = tuple(self._forget(thing, gone, names) for thing in self.attached)
         return World(obstacles=left, switched_off=off, attached=held)
 
     def move(self, name: str, T_world_obstacle: "ArrayLike | Pose") -> "World":
@@ -206,7 +205,7 @@ class World(ByFields):
         name: str,
         to: str | None = None,
         *,
-        robot: RobotLike | None = None,
+        robot: RobotLike | HasDetector | None = None,
         q: ArrayLike | Mapping[str, float] | None = None,
         T_frame_object: "ArrayLike | Pose | None" = None,
         may_touch: Iterable[str] = (),
@@ -222,7 +221,7 @@ class World(ByFields):
         Args:
             name: of an obstacle that counts.
             to: a frame of the robot that a joint moves; None: the tool, by `robot`.
-            robot: the robot, its name or the path of its file.
+            robot: the robot, its name or the path of its file, or a `CollisionModel`: its detector sees what touches.
             q: the joint values [N], m and rad, or by name, at which it is picked up from where it stands; None: home.
                 What it touches of the robot there is refused unless it may be touched.
             T_frame_object: its pose [4, 4] in the frame, m, in place of that.
@@ -247,7 +246,7 @@ class World(ByFields):
         robot: RobotLike | None = None,
         q: ArrayLike | Mapping[str, float] | None = None,
     ) -> "World":
-        """The world in which an attached object is an obstacle again.
+        """The world in which an attached object is an obstacle again, at its old place in their order.
 
         Args:
             name: of what is attached.
@@ -259,6 +258,14 @@ class World(ByFields):
             InputError: for what is not attached, or joint values without a robot.
         """
         return import_module("ikde.solver.attach").detach(self, name, T_world_object, robot=robot, q=q)
+
+    def _forget(self, thing: Attached, gone: set[int], names: tuple[str, ...]) -> Attached:
+        """What is attached when obstacles are no more: it touches none of them, and stood that much farther ahead."""
+        touch, place = tuple(name for name in thing.may_touch if name not in names), thing.place
+        if place is not None:
+            before = place - sum(other.place is not None and other.place < place for other in self.attached)
+            place -= sum(number < before for number in gone)
+        return replace(thing, may_touch=touch, place=place)
 
     @cached_property
     def _places(self) -> dict[str, int]:

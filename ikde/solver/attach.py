@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import Floats
-from ikde.model.arguments import Pose, RobotLike, find_matrix, read_robot
+from ikde.model.arguments import HasDetector, Pose, RobotLike, find_matrix, read_robot
 from ikde.model.carried import find_carrier
 from ikde.model.collision_model import CollisionModel
 from ikde.model.names import check_printable
@@ -31,7 +31,7 @@ def attach(
     name: str,
     to: str | None = None,
     *,
-    robot: RobotLike | None = None,
+    robot: RobotLike | HasDetector | None = None,
     q: JointValues | None = None,
     T_frame_object: ArrayLike | Pose | None = None,
     may_touch: Iterable[str] = (),
@@ -39,7 +39,9 @@ def attach(
     protrusion_m: float | None = None,
 ) -> World:
     """As `World.attach`, which says what all this is."""
-    own = None if robot is None else read_robot(robot)
+    is_model = isinstance(robot, CollisionModel | None)
+    model = robot if is_model else CollisionModel.of(read_robot(cast(RobotLike, robot)))
+    own = None if model is None else model.robot
     _check_free(world, name)
     obstacle = world[name]
     frame = _choose_frame(own, to)
@@ -55,8 +57,7 @@ def attach(
     else:
         Ts_world = compute_frames(own, values)
         T = _find_pose(Ts_world, frame, obstacle.frame, _whole(obstacle.T_world_obstacle), name)
-    known = None if own is None else CollisionModel.of(own).components
-    touch = _read_touch(world, name, may_touch, known)
+    touch = _read_touch(world, name, may_touch, None if model is None else model.own.components)
     given = None if spheres is None else read_spheres(spheres)
     least_m = FINEST_M if given is None else 0.0
     out_m = None if protrusion_m is None else read_protrusion(protrusion_m, least_m=least_m)
@@ -64,9 +65,10 @@ def attach(
     cover = (given, out_m) if given is not None else cover_solids(obstacle.solids, out_m)
     touch = tuple(dict.fromkeys((*touch, *obstacle.ignore)))
     known_of = {"spheres": pack_floats(cover[0]), "protrusion_m": cover[1], "may_touch": touch}
-    thing = Attached(obstacle=obstacle, frame=frame, T_frame_object=T, **known_of)
-    if own is not None and values is not None and (T_frame_object is None or q is not None):
-        _refuse_touching(own, values, world.attached, thing)
+    place = _list_whole(world).index(name)
+    thing = Attached(obstacle=obstacle, frame=frame, T_frame_object=T, place=place, **known_of)
+    if model is not None and values is not None and (T_frame_object is None or q is not None):
+        _refuse_touching(model.own, values, world.attached, thing)
     left = tuple(other for other in world.obstacles if other is not obstacle)
     off = world.switched_off & {other.group for other in left if other.group is not None}
     return World(obstacles=left, switched_off=off, attached=(*world.attached, thing))
@@ -100,7 +102,17 @@ def detach(
         T = compute_frames(own, read_configuration(own, q))[thing.frame] @ _whole(thing.T_frame_object)
         obstacle = replace(obstacle, frame=WORLD, T_world_obstacle=read_pose(T, ("q",)))
     left = tuple(other for other in world.attached if other is not thing)
-    return World(obstacles=(*world.obstacles, obstacle), switched_off=world.switched_off, attached=left)
+    place = len(world) if thing.place is None else sum(n in world for n in _list_whole(world)[: thing.place])
+    others = world.obstacles[:place], world.obstacles[place:]
+    return World(obstacles=(*others[0], obstacle, *others[1]), switched_off=world.switched_off, attached=left)
+
+
+def _list_whole(world: World) -> list[str]:
+    """Names of obstacles, with those of what is attached where it stood among them."""
+    names = [*world.names]
+    for thing in sorted((one for one in world.attached if one.place is not None), key=lambda one: one.place or 0):
+        names.insert(thing.place or 0, thing.name)
+    return names
 
 
 def _check_free(world: World, name: Any) -> None:
@@ -173,9 +185,8 @@ def read_protrusion(given: Any, where: tuple[str | int, ...] = ("protrusion_m",)
     return float(given)
 
 
-def _refuse_touching(robot: Robot, q: Floats, others: tuple[Attached, ...], thing: Attached) -> None:
+def _refuse_touching(own: CollisionModel, q: Floats, others: tuple[Attached, ...], thing: Attached) -> None:
     """Raise `InputError` for what it touches of the robot where it is picked up, unless it may."""
-    own = CollisionModel.of(robot)
     if not own.pairs:
         return
     known = {*own.components, *(other.name for other in others), thing.name}

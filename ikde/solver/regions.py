@@ -213,7 +213,8 @@ class RegionSearch:
         return Ts_world[robot.tool], grade_frames(self._asked.region, robot, Ts_world, self._problem.settings)
 
     def _make(self, tried: Tried) -> SolveResult:
-        asked, maker = self._asked, ResultMaker(tried.problem, tried.engine)
+        asked = self._asked
+        maker = ResultMaker(asked.problem, tried.engine)  # motions begin at its `near`, wherever the base may stand
         result = maker.make(tried.row, tried.target, asked.seed, asked.stream, time.perf_counter() - self._started)
         return change_result(result, region=asked.region, alternative=tried.alternative, **self._tally.spent)
 

@@ -102,6 +102,23 @@ def test_the_summary_and_the_page_name_what_moves(cli, spec, tmp_path):
     assert "ball, can" in page
 
 
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (("--world", "other.yaml"), "moving.ball: no obstacle that counts is called 'ball'"),
+        (("--method", "typical"), "moving: obstacles that move need the method continuation, typical does not know"),
+    ],
+)
+def test_what_moves_and_does_not_fit_options_is_named_in_the_file(refuse, spec, tmp_path, monkeypatch, options, line):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "far.yaml").write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [9, 0, 0]}}")
+    (tmp_path / "other.yaml").write_text("obstacles: {can: {sphere: {radius: 0.05}, position: [9, 0, 0]}}")
+    moves = "{ball: {times_s: [0, 1], poses: [[9, 0, 0], [9, 1, 0]]}}"
+    spec.write_text(f"{SPEC}world: far.yaml\nmoving: {moves}\n")
+    number = spec.read_text().splitlines().index(f"moving: {moves}") + 1
+    assert f"{spec}:{number} → {line}" in refuse("track", spec, *options)
+
+
 def test_a_margin_that_makes_it_always_touch_is_refused(refuse, spec, tmp_path):
     (tmp_path / "floor.yaml").write_text("obstacles: {floor: {half_space: {}, position: [0, 0, -0.1]}}")
     spec.write_text(SPEC + "world: floor.yaml\n")

@@ -85,6 +85,7 @@ def test_it_is_shown_with_how_far_its_spheres_stand_out(write):
         ("cylinder: {radius: 20, height: 60}", "half_space: {}", 7, "a half-space has no end"),
         ("cylinder: {radius: 20, height: 60}", "columns: {heights: [[1]], cell: 1}", 9, "a height field cannot be"),
         ("    frame: grip\n", "", 7, "this key is missing"),
+        ("protrusion: 8", "protrusion: 0.2", 13, "protrusion: more than 2,000 spheres would be needed"),
         ("protrusion: 8", "protrusion: 0", 13, "expected a length of at least 0.0001 m"),
         ("protrusion: 8", "spheres: [[0, 0, 0, -1]]", 13, "a radius of at least 1e-06 m"),
         ("  cup:", "  wall:", 7, "'wall' is attached to tip, and another object has its name"),

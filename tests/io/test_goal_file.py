@@ -96,6 +96,8 @@ def test_a_base_region_has_a_file_of_its_own(tmp_path):
             "any_of:\n  - {position: [0, 0, 0]}\n  - {position: [0, 0, 0], box: -1}",
             r":3 → any_of\[1\].box: inside out",
         ),
+        ("goal: {position: [0, 0, 0]}\nbase:", ":2 → base: expected a value, got nothing; leave the key out"),
+        ("goal:\n  position: [0, 0, 0]\n  cone:", ":3 → goal.cone: expected a value, got nothing"),
         ("goal: {position: [0, 0, 0]}\nbase: {corners: [[0, 0], [1, 0]]}", ":2 → base.corners: expected at least 3"),
     ],
 )

@@ -102,6 +102,8 @@ WALL = "obstacles: {wall: {box: [1, 1, 1], position: [9, 0, 0]}}"
         ("world: nothing.yaml", WALL, "track.yaml:14 → world: no such file: nothing.yaml"),
         ("world: 5", WALL, "track.yaml:14 → world: expected text, got 5"),
         ("world: world.yaml\nmargin: -1", WALL, "track.yaml:15 → margin: expected at least 0, got -1"),
+        ("world: world.yaml\nmargin: {}", WALL, "track.yaml:15 → margin: expected a number, got {}"),
+        ("world: world.yaml\nmargin: {a: 1}", WALL, "track.yaml:15 → margin: expected a number, got {'a': 1}"),
         ("world: world.yaml\nmargin: ten", WALL, "track.yaml:15 → margin: expected a distance or component=distance"),
         ("world: world.yaml\nmargin: 1,hnad=2", WALL, "track.yaml:15 → margin.hnad: no component is called 'hnad'"),
         ("margin: 1", WALL, "track.yaml:14 → margin: a margin needs a `world` to be kept from"),

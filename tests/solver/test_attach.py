@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,6 +77,40 @@ def test_it_is_put_down_where_the_robot_holds_it(world):
     assert held.detach("cup", place(1.0))["cup"].T_world_obstacle[0, 3] == 1.0
     back = held.detach("cup", robot=ROBOT, q=Q)["cup"]
     assert np.allclose(back.T_world_obstacle, world["cup"].T_world_obstacle, atol=1e-12)
+
+
+def test_it_is_put_back_among_the_obstacles_where_it_stood(world):
+    ball = [make_solid("sphere", (0.1,))]
+    world = make_world(make_obstacle(name, ball, place(5.0 + k)) for k, name in enumerate("abcdef"))
+    known = {"T_frame_object": place(), "spheres": STICK}
+    held = world
+    for name in "dba":
+        held = held.attach(name, "tip", **known)
+    assert held.names == ("c", "e", "f")
+    for order in ("dba", "abd", "bda", "adb"):
+        back = held
+        for name in order:
+            back = back.detach(name)
+        assert back.names == tuple("abcdef")
+        assert back == world
+    assert held.detach("b").names == tuple("bcef")
+    less = held.remove("c", "f").detach("d").attach("e", "tip", **known).detach("a")
+    assert less.names == ("a", "d")
+    assert less.detach("e").detach("b").names == tuple("abde")
+    assert held.add(make_obstacle("g", ball)).detach("d").names == tuple("cdefg")
+    last = replace(held.attached[0], place=None)
+    assert make_world(held.obstacles, (), [last]).detach("d").names == tuple("cefd")
+    assert last == held.attached[0]
+
+
+def test_what_touches_where_it_is_picked_up_is_said_by_the_detector_that_is_given(world):
+    moved = world.move("cup", ikde.forward(ROBOT, Q)["mouth"])
+    detector = CollisionModel.of(ROBOT).detector
+    near = CollisionModel(robot=ROBOT, detector=replace(detector, safe_distance_m=-1.0))
+    assert moved.attach("cup", "tip", robot=near, q=Q).attached[0].name == "cup"
+    wide = CollisionModel(robot=ROBOT, detector=replace(detector, safe_distance_m=1.0)).in_world(moved)
+    with pytest.raises(InputError, match=r"^attach.cup: cup is .* where it is picked up"):
+        world.attach("cup", "tip", robot=wide, q=Q)
 
 
 def test_other_changes_keep_what_is_held(world):

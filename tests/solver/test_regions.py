@@ -209,6 +209,17 @@ def test_the_base_stands_in_its_region(qiao, base):
     assert all(base.contains(each.q[None, :2]).all() for each in ikde.solve_distinct(qiao, goals[0], 3))
 
 
+def test_motions_begin_at_near_also_where_the_base_may_not_stand(qiao):
+    near = qiao.home + np.array([-2.0, 1.0, 0, 0, 0, 0, 0, 0, 0])
+    region = Region.of(TARGET).with_base(ELL)
+    rows = ikde.solve_many(qiao, [region], near=near)
+    weights = rows.problem.weights
+    assert rows[0].reached
+    assert rows[0].near.tolist() == near.tolist()
+    assert rows[0].motion == pytest.approx(np.sqrt(np.sum((weights * (rows.q[0] - near)) ** 2)), rel=1e-12)
+    assert rows[0].motion == pytest.approx(rows.motion[0], rel=1e-12)
+
+
 def test_a_place_that_the_grader_refuses_is_none(qiao, monkeypatch):
     monkeypatch.setattr(region_grade, "measure_base", lambda *_: 1.0)
     result = ikde.solve(qiao, Region.of(TARGET).with_base(ELL), {"restarts": 4})
