@@ -73,7 +73,7 @@ def _is_of_kind(name: str, kind: pa.DataType) -> bool:
         return pa.types.is_dictionary(kind) and pa.types.is_string(kind.value_type)
     if name == "reached" or _is_verdict(name):
         return pa.types.is_boolean(kind)
-    if name in ("target", "repeat", "attempts", "blocked"):
+    if name in ("target", "repeat", "attempts", "poses", "alternative", "blocked"):
         return pa.types.is_integer(kind)
     return pa.types.is_integer(kind) or pa.types.is_float64(kind)
 

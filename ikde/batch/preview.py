@@ -4,16 +4,18 @@ Compiling is no part of that time: it is done first, measured apart, and on the 
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import pyarrow as pa
 
 from ikde.batch.options import check_options
 from ikde.batch.parts import Part, seal_part, serialize
 from ikde.batch.plan import Arm, Batch
-from ikde.batch.sources import ListSource
+from ikde.batch.sources import GoalSource, ListSource
 from ikde.batch.task import Answer, Task, make_task, solve_task
 from ikde.kernels.cache_folder import CACHE_IS_WRITABLE
 from ikde.kernels.jit import compile_clock
+from ikde.model.target import Targets
 from ikde.solver.engine_table import SEVERAL
 from ikde.solver.search import usable_cores
 
@@ -129,10 +131,11 @@ def _take_sample(batch: Batch, arm: Arm, size: int) -> Task:
     """A task of solves that are evenly spread over all targets."""
     chosen = [index * batch.source.count // size for index in range(size)]
     names = batch.source.names
-    sample = ListSource(
-        targets=[batch.source.read(target, target + 1)[0] for target in chosen],
-        names=tuple(names[target] for target in chosen) if names else None,
-    )
+    own = tuple(names[target] for target in chosen) if names else None
+    cut = [batch.source.read(target, target + 1) for target in chosen]
+    goals: list[Any] = [some[0] for some in cut]
+    is_exact = isinstance(cut[0], Targets)
+    sample = ListSource(targets=goals, names=own) if is_exact else GoalSource(goals=goals, names=own)
     return make_task(replace(batch, source=sample, repeats=1), Part(arm.name, 0, 0, size))
 
 

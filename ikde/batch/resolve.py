@@ -8,6 +8,7 @@ from ikde.batch.columns import place_grader
 from ikde.batch.parts import MAX_PARTS, PLAIN_NAME
 from ikde.batch.plan import Arm, Batch
 from ikde.batch.recipe import as_plain, ikde_version, robot_digest
+from ikde.batch.sources import FreedomSource, GoalSource
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
 from ikde.batch.worlds import Read, make_worlds
@@ -19,6 +20,7 @@ from ikde.model.robot import Detector, Robot
 
 MAX_SOLVES = 10**9  # of an arm
 MIN_CHUNK, MAX_CHUNK = 1000, 10_000
+MIN_GOALS, MAX_GOALS = 20, 1000  # of goals with freedom, each of which takes milliseconds, and a thread has them alone
 
 
 def make_batch(
@@ -41,7 +43,8 @@ def make_batch(
     source, targets = make_source(spec, shared.problem, folder)
     if source.count * spec.repeats > MAX_SOLVES:
         raise InputError(f"{source.count:,} targets make more than {MAX_SOLVES:,} solves an arm", ("repeats",))
-    chunk = spec.chunk or choose_chunk(source.count * spec.repeats)
+    is_free = isinstance(source, FreedomSource | GoalSource)
+    chunk = spec.chunk or choose_chunk(source.count * spec.repeats, has_freedom=is_free)
     parts = len(arms) * -(-source.count * spec.repeats // chunk)
     if parts > MAX_PARTS:
         raise InputError(f"this makes {parts:,} files; expected at most {MAX_PARTS:,}", ("chunk",))
@@ -67,9 +70,10 @@ def make_batch(
     )
 
 
-def choose_chunk(solves: int) -> int:
+def choose_chunk(solves: int, *, has_freedom: bool = False) -> int:
     """Solves a part: a hundredth of an arm's; a part costs 10 ms beside its solves, and a kill costs some parts."""
-    return min(max(solves // 100, MIN_CHUNK), MAX_CHUNK)
+    least, most = (MIN_GOALS, MAX_GOALS) if has_freedom else (MIN_CHUNK, MAX_CHUNK)
+    return min(max(solves // 100, least), most)
 
 
 def _check_graders(arm: Arm, graders: tuple[Detector, ...]) -> None:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, get_args
 
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from ikde.formats.entries import (
     AnyTarget,
@@ -20,6 +20,7 @@ from ikde.formats.entries import (
     UnitsEntry,
     Vector,
 )
+from ikde.formats.goal_entries import FreedomEntry, NamedGoalEntry, refuse_nothing
 from ikde.formats.names import Name, Text
 from ikde.kernels.mutation import REPAIRS, STRATEGIES
 from ikde.model.target import TargetKind
@@ -91,6 +92,8 @@ class TargetsEntry(Entry):
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
     inline: Annotated[list[AnyTarget], Field(min_length=1)] | None = None
     """A list, written here."""
+    goals: Annotated[list[NamedGoalEntry], Field(min_length=1)] | None = None
+    """A list of goals with freedom."""
     file: FileEntry | None = None
     """A table: CSV, Parquet or NPZ."""
     reachable: ReachableEntry | None = None
@@ -207,6 +210,8 @@ class BatchSpec(Entry):
     """Units of everything written here."""
     targets: TargetsEntry
     """What to reach."""
+    freedom: Annotated[FreedomEntry | None, BeforeValidator(refuse_nothing)] = None
+    """How far off each target the tool may be, and where a planar base may stand: makes goals with freedom of them."""
     solve: SolveEntry = SolveEntry()
     """How to solve."""
     world: WorldChoice | None = None
@@ -223,7 +228,7 @@ class BatchSpec(Entry):
     """Same seed, same answers."""
     chunk: Annotated[int, Field(strict=True, ge=1, le=10**6)] | None = None
     """Solves in one file of the results: a kill costs at most a file a thread and one more (default: a hundredth of an
-    arm's solves, 1000 to 10000)."""
+    arm's solves, 1000 to 10000; of goals with freedom 20 to 1000)."""
     explain: bool = True
     """Whether to find out why a target was not reached."""
     output: OutputEntry = OutputEntry()

@@ -1,5 +1,6 @@
 """From the `targets` of a run file to a source, and to what of it belongs into the recipe."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -7,13 +8,18 @@ import numpy as np
 
 from ikde.batch.generators import ReachableSource, make_ball, make_box, make_grid
 from ikde.batch.recipe import array_digest, as_plain, digest
-from ikde.batch.sources import ListSource, TargetSource
+from ikde.batch.sources import FreedomSource, GoalSource, ListSource, TargetSource
 from ikde.batch.spec import BallEntry, BatchSpec, BoxEntry, GridEntry, ReachableEntry
+from ikde.errors import InputError
 from ikde.formats.entries import FileEntry, InlineTarget, OrientationEntry, UnitsEntry, only_key
 from ikde.formats.error_path import prefix_errors
+from ikde.formats.goal_entries import NamedGoalEntry
+from ikde.formats.goals import make_freedom, make_named_goal
 from ikde.formats.poses import read_orientation, read_position
 from ikde.formats.table_targets import TableSource, read_targets
+from ikde.model.base_motion import need_base
 from ikde.model.collision_model import CollisionModel
+from ikde.model.region import Region
 from ikde.model.target import Target, Targets
 from ikde.solver.problem import Problem
 
@@ -27,10 +33,41 @@ def make_source(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[Target
         InputError: with the path of the key inside the run file.
         FileError: for what is wrong inside a table.
     """
+    source, recipe = _make_targets(spec, problem, folder)
+    if spec.freedom is None:
+        return source, recipe
+    with prefix_errors("freedom"):
+        if isinstance(source, GoalSource):
+            raise InputError("`goals` say by themselves what freedom they have")
+        loosen = make_freedom(spec.freedom, spec.units)
+        for target in _list_kinds(source):
+            _check_base(loosen(target), problem)
+    written = spec.freedom.model_dump(exclude_unset=True)
+    freedom = {"freedom": {**written, "units": spec.units.model_dump()}}
+    return FreedomSource(source=source, loosen=loosen), {**recipe, **freedom}
+
+
+def _list_kinds(source: TargetSource) -> list[Target]:
+    """A target of each kind: all but a list's are of one."""
+    targets = Targets.of(source.read(0, source.count if isinstance(source, ListSource) else 1))  # type: ignore[arg-type]
+    return [targets[row] for row in np.unique(targets.kind, return_index=True)[1].tolist()]
+
+
+def _check_base(goal: Target | Region, problem: Problem) -> None:
+    """Raise `InputError` for a base that may stand somewhere, of a robot that has none."""
+    if isinstance(goal, Region) and goal.base is not None:
+        need_base(problem.robot)
+
+
+def _make_targets(spec: BatchSpec, problem: Problem, folder: Path) -> tuple[TargetSource, Recipe]:
     with prefix_errors("targets"):
         key = only_key(spec.targets)
         entry, units = getattr(spec.targets, key), spec.units
         with prefix_errors(key):
+            if key == "goals":
+                source = _make_goals(entry, units, problem)
+                written = [goal.model_dump(exclude_unset=True) for goal in entry]
+                return source, {key: written, "units": units.model_dump()}
             if isinstance(entry, FileEntry):
                 table = read_targets(folder / entry.path, entry.columns, entry.units or units)
                 return table, {key: _describe_table(table)}
@@ -65,9 +102,23 @@ def _make_inline(entries: list[InlineTarget], units: UnitsEntry) -> ListSource:
         with prefix_errors(index):
             position = read_position("position", entry.position, units)
             targets.append(Target(position, **read_orientation(entry, units)))
-    named = any(entry.name for entry in entries)
-    names = tuple(entry.name or f"target {index}" for index, entry in enumerate(entries)) if named else None
-    return ListSource(targets=Targets.of(targets), names=names)
+    return ListSource(targets=Targets.of(targets), names=_list_names(entries))
+
+
+def _make_goals(entries: list[NamedGoalEntry], units: UnitsEntry, problem: Problem) -> GoalSource:
+    goals = []
+    for index, entry in enumerate(entries):
+        with prefix_errors(index):
+            goals.append(make_named_goal(entry, units))
+            _check_base(goals[-1], problem)
+    return GoalSource(goals=goals, names=_list_names(entries))
+
+
+def _list_names(entries: Sequence[InlineTarget] | Sequence[NamedGoalEntry]) -> tuple[str, ...] | None:
+    """Of all, if some have one."""
+    if not any(entry.name for entry in entries):
+        return None
+    return tuple(entry.name or f"target {index}" for index, entry in enumerate(entries))
 
 
 def _make_reachable(entry: ReachableEntry, problem: Problem, seed: int) -> ReachableSource:

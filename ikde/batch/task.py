@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypedDict
 
 import numpy as np
 import pyarrow as pa
@@ -9,12 +10,21 @@ import pyarrow as pa
 from ikde.batch.columns import keep_own_words, make_solutions, make_timing
 from ikde.batch.parts import Part
 from ikde.batch.plan import Arm, Batch
+from ikde.batch.sources import Goals, take_goals
 from ikde.kernels.arrays import Ints
 from ikde.model.robot import Detector
 from ikde.model.target import Targets
 from ikde.solver.background import WAIT, compile_way
+from ikde.solver.region_rows import solve_goals
 from ikde.solver.results import SolveResults, solve_rows
 from ikde.solver.settings import BulkOptions
+
+
+class Where(TypedDict):
+    """Of the random numbers of a part."""
+
+    seed: int
+    first_stream: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -23,7 +33,7 @@ class Task:
 
     part: Part
     arm: Arm
-    targets: Targets
+    targets: Goals
     """Each once, the first being that of the first solve."""
     names: tuple[str, ...] | None
     """A name a target, if they have names."""
@@ -66,14 +76,11 @@ def solve_task(task: Task, threads: int | None = None) -> Answer:
 
 def search_task(task: Task, threads: int | None = None) -> SolveResults:
     """Solve and grade one part."""
+    goals, where = take_goals(task.targets, _places(task)), Where(seed=task.seed, first_stream=task.part.first)
     with compile_way(WAIT):  # others follow, for which it is compiled at last
-        return solve_rows(
-            task.arm.problem,
-            task.targets.take(_places(task)),
-            BulkOptions(threads=threads, explain=task.explain),
-            seed=task.seed,
-            first_stream=task.part.first,
-        )
+        if not isinstance(goals, Targets):
+            return solve_goals(task.arm.problem, goals, **where)
+        return solve_rows(task.arm.problem, goals, BulkOptions(threads=threads, explain=task.explain), **where)
 
 
 def _places(task: Task) -> Ints:

@@ -1,4 +1,4 @@
-"""What a goal file says: a target with freedom, or several, and where a base may stand."""
+"""What files say of goals: a target with freedom, or several, and where a base may stand."""
 
 from typing import Annotated, Any, Literal
 
@@ -6,6 +6,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator
 from pydantic_core import PydanticCustomError
 
 from ikde.formats.entries import Entry, Interval, Number, OrientationEntry, UnitsEntry, Vector
+from ikde.formats.names import Name
 from ikde.model.base_region import MAX_CORNERS, MAX_HOLES
 from ikde.model.region import MAX_ALTERNATIVES
 
@@ -36,6 +37,13 @@ def _leave_out_null(schema: dict[str, Any]) -> None:
             entry.update(kinds[0] if len(kinds) == 1 else {"anyOf": kinds})
 
 
+def refuse_nothing(value: Any) -> Any:
+    """A value as it is; an empty key is an error."""
+    if value is None:
+        raise PydanticCustomError("nothing", "expected a value, got nothing; leave the key out")
+    return value
+
+
 class FilledEntry(Entry):
     """An entry whose keys have values: an empty `base:` is a mistake, not nothing."""
 
@@ -44,9 +52,7 @@ class FilledEntry(Entry):
     @field_validator("*", mode="before")
     @classmethod
     def _refuse_nothing(cls, value: Any) -> Any:
-        if value is None:
-            raise PydanticCustomError("nothing", "expected a value, got nothing; leave the key out")
-        return value
+        return refuse_nothing(value)
 
 
 class TurnEntry(FilledEntry):
@@ -71,13 +77,11 @@ class SightEntry(FilledEntry):
     """How far from that it may be; by default any."""
 
 
-class GoalEntry(FilledEntry, OrientationEntry):
-    """A target in the world, with at most one of `rotation`, `turn` and `cone`; or `look_at` alone."""
+class SlackEntry(FilledEntry):
+    """How far off a target the tool may be: a box of places, and at most one of `rotation`, `turn` and `cone`."""
 
-    position: Vector | None = None
-    """Where the tool should be."""
     box: Ranges | None = None
-    """How far off that the tool's origin may be, along the axes of `frame`."""
+    """How far off its position the tool's origin may be, along the axes of `frame`."""
     frame: Literal["goal", "world"] = "goal"
     """Whose axes the box has; a goal without a full orientation has the world's."""
     rotation: Ranges | None = None
@@ -85,6 +89,13 @@ class GoalEntry(FilledEntry, OrientationEntry):
     turn: TurnEntry | None = None
     cone: Number | None = None
     """Angle between the tool's z axis and the goal's; the rotation about it is free."""
+
+
+class GoalEntry(SlackEntry, OrientationEntry):
+    """A target in the world, and how far off it the tool may be; or `look_at` alone."""
+
+    position: Vector | None = None
+    """Where the tool should be."""
     look_at: SightEntry | None = None
 
 
@@ -104,13 +115,36 @@ class BaseRegionFile(BaseEntry):
     """Of this file."""
 
 
+Alternatives = Annotated[list[GoalEntry], Field(min_length=1, max_length=MAX_ALTERNATIVES)]
+
+
+class FreedomEntry(SlackEntry):
+    """What each target of a run may be off by, and where a planar base may stand."""
+
+    base: BaseEntry | None = None
+    """By default anywhere in its ranges."""
+
+
+class NamedGoalEntry(GoalEntry):
+    """A goal of a run, or alternatives under `any_of`."""
+
+    any_of: Alternatives | None = None
+    """Alternatives, in place of one."""
+    take: Literal["first", "best"] = "first"
+    """Of alternatives: the first that is reached, or of all that are reached the one with the least motion."""
+    base: BaseEntry | None = None
+    """Where a planar base may stand; by default anywhere in its ranges."""
+    name: Name | None = None
+    """What to call it in the results."""
+
+
 class GoalFile(FilledEntry):
     """The whole file: `goal` or `any_of`."""
 
     units: UnitsEntry = UnitsEntry()
     """Of this file."""
     goal: GoalEntry | None = None
-    any_of: Annotated[list[GoalEntry], Field(min_length=1, max_length=MAX_ALTERNATIVES)] | None = None
+    any_of: Alternatives | None = None
     """Alternatives."""
     take: Literal["first", "best"] = "first"
     """Of alternatives: the first that is reached, or of all that are reached the one with the least motion."""

@@ -15,7 +15,7 @@ from ikde.solver.engines.search_state import SearchState
 from ikde.solver.grade import Outcomes
 from ikde.solver.metrics import Clearances, Metrics
 from ikde.solver.problem import Problem
-from ikde.solver.result import STOP_REASONS
+from ikde.solver.result import STOP_REASONS, SolveResult
 from ikde.solver.verify import MaskedBools
 
 Columns = dict[str, Any]
@@ -43,6 +43,11 @@ class Rows(Protocol):
     @property
     def streams(self) -> Sequence[int]:
         """Random streams [T]."""
+        ...
+
+    @property
+    def singles(self) -> Sequence[SolveResult] | None:
+        """The rows as they are, where some goals have freedom."""
         ...
 
     @property
@@ -101,10 +106,12 @@ def _clearance(rows: Rows) -> Columns:
 
 
 def _cost(rows: Rows) -> Columns:
+    drawn = {} if rows.singles is None else {"poses": [single.poses for single in rows.singles]}
     return {
         "attempts": make_integers(rows.found.counts[:, ATTEMPTS]),
         "evaluations": pa.array(rows.found.counts[:, EVALUATIONS]),
         "rejected": make_integers(rows.found.counts[:, COLLIDING]),
+        **{name: pa.array(counts, pa.int32()) for name, counts in drawn.items()},
     }
 
 
@@ -169,13 +176,17 @@ def _words_and_codes(words: Sequence[str | None]) -> tuple[list[str], list[int]]
 
 
 def _target(rows: Rows) -> Columns:
-    """What was asked for. Of an axis target only the quaternion's z axis counts; a position target has none."""
+    """What was asked for. Of an axis target only the quaternion's z axis counts; a position target has none. Of a goal
+    with freedom the exact pose that was drawn, and which alternative that is of."""
     targets, quats = rows.targets, np.zeros((len(rows), 4))
     oriented = targets.kind != POSITION
     if oriented.any():
         quats[oriented] = quat_wxyz_from_rotation(targets.R_world_tool[oriented])
+    singles = rows.singles
+    part = {} if singles is None else {"alternative": pa.array([one.alternative for one in singles], pa.int32())}
     return (
-        {"target_kind": make_coded(targets.kind, KINDS)}
+        part
+        | {"target_kind": make_coded(targets.kind, KINDS)}
         | {f"target_{axis}_m": pa.array(targets.p_world_tool[:, k]) for k, axis in enumerate("xyz")}
         | {f"target_q{axis}": pa.array(quats[:, k], mask=~oriented) for k, axis in enumerate("wxyz")}
     )

@@ -8,6 +8,7 @@ from ikde.kernels.answer import BLOCKED, METRICS, PAIR, SCORE, size_of
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, COUNTS, EVALUATIONS, REACHED
 from ikde.model.region import Region
 from ikde.model.target import Target, Targets
+from ikde.solver.cancellation import get_cancel_check
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.search_state import PairCounts, SearchState
 from ikde.solver.explain import Explanation
@@ -21,9 +22,12 @@ from ikde.solver.results import SolveResults, solve_rows
 Goals = Sequence[Target | Region]
 
 
-def solve_goals(problem: Problem, goals: Goals, *, seed: int) -> SolveResults:
-    """Rows of goals, each graded by plain numpy, too."""
-    rows = [_solve(problem, goal, seed, stream) for stream, goal in enumerate(goals)]
+def solve_goals(problem: Problem, goals: Goals, *, seed: int, first_stream: int = 0) -> SolveResults:
+    """Rows of goals, each graded by plain numpy, too; goal k searches the stream (seed, first_stream + k)."""
+    streams, rows, check_cancelled = range(first_stream, first_stream + len(goals)), [], get_cancel_check()
+    for stream, goal in zip(streams, goals, strict=True):
+        check_cancelled()
+        rows.append(_solve(problem, goal, seed, stream))
     found = _gather(problem, rows)
     stories = {
         place: Explanation(stop_reason=r.stop_reason, reason=r.reason, hint=r.hint, blocking_pairs=r.blocking_pairs)
@@ -42,7 +46,7 @@ def solve_goals(problem: Problem, goals: Goals, *, seed: int) -> SolveResults:
         problem=problem,
         targets=Targets.of([row.target for row in rows]),
         seed=seed,
-        streams=range(len(rows)),
+        streams=streams,
         found=found,
         outcomes=outcomes,
         compile_seconds=sum(row.compile_seconds for row in rows),

@@ -6,11 +6,13 @@ import pytest
 
 import ikde
 from ikde.batch.preview import preview_batch
-from ikde.batch.sources import ListSource
+from ikde.batch.sources import GoalSource, ListSource
 from ikde.batch.task import solve_task
+from ikde.model.region import Region
 from ikde.solver.engine_table import SEVERAL
 from tests.batch.small import BLINK, ROBOT, make_arm, make_batch, make_targets, read_files
 
+ROBOT_TOOL = ikde.Target((0.8, 0.1, 0.9))
 ARMS = (make_arm("a", **BLINK), make_arm("b", detector="none", **BLINK))
 
 
@@ -25,6 +27,13 @@ def test_it_says_what_would_run(batch):
     assert [(arm.name, arm.detector) for arm in preview.arms] == [("a", "improved"), ("b", "none")]
     assert preview.threads == 1
     assert {"arm", "q_q1", "typical_collides"} <= set(preview.columns)
+
+
+def test_a_sample_of_goals_has_the_columns_of_the_run():
+    source = GoalSource(goals=[ROBOT_TOOL, Region.box(ROBOT_TOOL, 0.1)], names=("a", "b"))
+    preview = preview_batch(make_batch(source=source, repeats=1), threads=1)
+    assert {"alternative", "poses", "target_name"} <= set(preview.columns)
+    assert preview.targets == 2
 
 
 def test_short_arms_are_sampled_whole(batch):

@@ -121,6 +121,15 @@ def test_a_part_is_a_hundredth_of_an_arm_within_reason(qiao, count, repeats, ask
     assert make(qiao, targets=box, repeats=repeats, chunk=asked).chunk == chunk
 
 
+def test_a_part_of_goals_with_freedom_is_smaller(qiao):
+    goals = {"goals": [{"position": [0.8, 0, 1], "box": 0.1}]}
+    chunks = [make(qiao, targets=goals, repeats=repeats).chunk for repeats in (1, 5000, 10**6)]
+    assert chunks == [20, 50, 1000]
+    grid = {"grid": {"from": [0, 0, 0], "to": [1, 1, 1], "counts": [10, 10, 10]}}
+    assert make(qiao, targets=grid, freedom={"box": 0.1}).chunk == 20
+    assert make(qiao, targets=grid, freedom={"box": 0.1}).hash != make(qiao, targets=grid).hash
+
+
 def test_the_two_kinds_of_kernels_are_never_mixed_in_a_run(qiao, monkeypatch, tmp_path):
     with claim_folder(tmp_path, make(qiao), overwrite=False):
         pass

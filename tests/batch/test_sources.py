@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ikde.batch.sources import ListSource, PointSource
+from ikde.batch.sources import FreedomSource, GoalSource, ListSource, PointSource, take_goals
 from ikde.formats.table_targets import TableSource
+from ikde.model.region import Region
 from ikde.model.target import Target
 from tests.batch.small import target_bits
 
@@ -46,3 +47,16 @@ def test_a_row_becomes_its_kind_of_target(source, kind):
     target = SOURCES[source].read(4, 5)[0]
     assert target.kind == kind
     np.testing.assert_array_equal(target.p_world_tool, POSITIONS[4])
+
+
+def test_goals_with_freedom_are_lists_however_they_are_cut():
+    free = GoalSource(goals=[Region.box(p, 0.1) for p in POSITIONS[:5]], names=tuple("abcde"))
+    same = FreedomSource(source=SOURCES["points"], loosen=lambda target: Region.box(target, 0.1))
+    for source in (free, same):
+        whole = source.read(0, 99)
+        assert len(whole) == source.count
+        assert source.read(1, 3) + source.read(3, 5) == whole[1:5]
+        assert take_goals(whole, np.array([4, 0, 0])) == [whole[4], whole[0], whole[0]]
+    assert (free.names, same.names) == (tuple("abcde"), None)
+    assert GoalSource(goals=[Target(POSITIONS[0])]).read(0, 1) == [Target(POSITIONS[0])]
+    assert target_bits(take_goals(SOURCES["list"].read(0, 9), np.array([2]))) == target_bits([Target(POSITIONS[2])])

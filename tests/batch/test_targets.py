@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 
+import ikde
 from ikde.batch.arms import make_arm
 from ikde.batch.recipe import digest
 from ikde.batch.spec import BatchSpec, SolveEntry
 from ikde.batch.targets import make_source
 from ikde.errors import InputError
+from ikde.model.base_region import BaseRegion
+from ikde.model.region import Region
+from ikde.model.target import Target
 from tests.endless_robot import ENDLESS
 from tests.robot_files import load_text
 
@@ -20,8 +24,9 @@ BALL = {"center": [1000, 0, 0], "radius": 500, "count": 4}
 
 @pytest.fixture
 def make(qiao, tmp_path):
-    def call(solve=None, units=UNITS, **targets):
-        spec = BatchSpec.model_validate({"robot": "qiao2021", "units": units, "targets": targets, "solve": solve or {}})
+    def call(solve=None, units=UNITS, freedom=None, **targets):
+        known = {"robot": "qiao2021", "units": units, "targets": targets, "solve": solve or {}}
+        spec = BatchSpec.model_validate(known if freedom is None else {**known, "freedom": freedom})
         return make_source(spec, make_arm("a", qiao, spec.solve, spec.units).problem, tmp_path)
 
     return call
@@ -94,8 +99,15 @@ def test_a_table_counts_by_its_numbers_and_not_by_its_name(make, tmp_path):
 @pytest.mark.parametrize(
     ("targets", "expected"),
     [
-        ({}, "targets: expected one of inline, file, reachable, grid, box, sphere, got none"),
-        ({"grid": GRID, "box": BOX}, "targets.box: expected one of inline, file"),
+        ({}, "targets: expected one of inline, goals, file, reachable, grid, box, sphere, got none"),
+        ({"grid": GRID, "box": BOX}, "targets.box: expected one of inline, goals, file"),
+        ({"goals": [{"position": [1, 2, 3]}, {"position": [1, 2, 3], "box": -1}]}, "targets.goals[1].box: inside out"),
+        ({"goals": [{"position": [1, 2, 3]}], "freedom": {"box": 1}}, "freedom: `goals` say by themselves"),
+        (
+            {"inline": [{"position": [1, 2, 3], **DOWN}, {"position": [1, 2, 3]}], "freedom": {"cone": 1}},
+            "freedom.cone",
+        ),
+        ({"grid": GRID, "freedom": {"turn": {}}}, "freedom.turn: a turn is about an axis of a full pose"),
         ({"inline": [{"position": [1, 2, 3], "axis": [0, 0, 0]}]}, "targets.inline[0].axis: an axis of length 0"),
         (
             {"inline": [{"position": [1, 2, 3], "rpy": [0, 0, 0], **DOWN}]},
@@ -129,3 +141,38 @@ def test_what_is_wrong_is_named(make, complaint, targets, expected):
 def test_targets_beyond_a_thousand_kilometres_are_refused(complaint, targets, key):
     message = complaint(units={"length": "m"}, **targets)
     assert message.startswith(f"targets.{key}: expected finite numbers up to 1e+06")
+
+
+CORNERS = [[0, 0], [1000, 0], [1000, 1000]]
+
+
+def test_goals_with_freedom_may_have_names(make):
+    entries = [{"position": [1, 2, 3], "box": 5, "name": "near"}, {"position": [1, 2, 3]}]
+    source, recipe = make(goals=entries)
+    first, second = source.read(0, 9)
+    assert (source.count, source.names) == (2, ("near", "target 1"))
+    assert first == Region.box((1e-3, 2e-3, 3e-3), 5e-3)
+    assert second == Target((1e-3, 2e-3, 3e-3))
+    assert digest(recipe) != digest(make(goals=entries[:1])[1])
+    assert digest(recipe) != digest(make(goals=entries, units={"length": "m"})[1])
+
+
+def test_freedom_makes_goals_of_the_targets_of_any_source(make):
+    plain, exact = make(grid=GRID)
+    source, recipe = make(grid=GRID, freedom={"box": 5, "base": {"corners": CORNERS}})
+    goals, targets = source.read(1, 99), plain.read(1, 99)
+    assert (source.count, source.names, len(goals)) == (6, None, 5)
+    base = BaseRegion(np.array(CORNERS) / 1e3)
+    assert goals == [Region.box(target, 5e-3).with_base(base) for target in targets]
+    assert {key: recipe[key] for key in exact} == exact
+    assert digest(recipe) != digest(make(grid=GRID, freedom={"box": 5})[1])
+
+
+def test_a_base_that_may_stand_somewhere_needs_one(tmp_path):
+    ways = {"goals": [{"position": [0, 0, 0], "base": {"corners": CORNERS}}]}, {"inline": [{"position": [0, 0, 0]}]}
+    for targets, freedom in ((ways[0], None), (ways[1], {"base": {"corners": CORNERS}})):
+        more = {"freedom": freedom} if freedom else {}
+        spec = BatchSpec.model_validate({"robot": "ur5", "targets": targets, **more})
+        problem = make_arm("a", ikde.load_robot("ur5"), spec.solve, spec.units).problem
+        with pytest.raises(InputError, match=r"(goals\[0\]|freedom).base: ur5 has no planar base"):
+            make_source(spec, problem, tmp_path)

@@ -169,7 +169,10 @@ def test_rows_are_what_single_calls_give(ur5, goal):
     part = rows[[3, 1]]
     assert part.reached.tolist() == [False, True]
     assert part[1].region == goals[1]
-    assert part.to_arrow().column("reached").to_pylist() == [False, True]
+    table = part.to_arrow().to_pydict()
+    assert (table["reached"], table["alternative"], table["poses"]) == ([False, True], [0, 0], [1, 1])
+    assert rows.to_arrow()["alternative"].to_pylist()[0] is None
+    assert "alternative" not in ikde.solve_many(ur5, [goal]).to_arrow().column_names
 
 
 def test_distinct_solutions_of_a_region(ur5, goal):

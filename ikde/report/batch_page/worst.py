@@ -121,6 +121,8 @@ def _list_facts(data: dict[str, Any]) -> Iterator[tuple[str, str]]:
         ("clearance_m", "clearance", length),
         ("attempts", "attempts", "{:,}".format),
         ("evaluations", "evaluations", "{:,}".format),
+        ("poses", "poses of the goal tried", "{:,}".format),
+        ("alternative", "alternative of the goal, from 0", str),
     ):
         if data.get(column) is not None:
             yield name, write(data[column])

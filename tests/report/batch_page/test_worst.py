@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ikde.batch.one_row import Row
-from ikde.report.batch_page.worst import make_worst, repeat_command
+from ikde.report.batch_page.worst import _list_facts, make_worst, repeat_command
 from ikde.report.page import Code, Details, Facts
 
 
@@ -45,3 +45,10 @@ def test_without_a_file_there_is_no_command(answers):
 
 def test_a_run_without_answers_has_no_worst(bare):
     assert make_worst(replace(bare, arms=())) is None
+
+
+def test_of_a_goal_with_freedom_it_says_which_alternative_and_how_many_poses():
+    facts = dict(_list_facts({"poses": 1200, "alternative": 0, "target_x_m": 1, "target_y_m": 2, "target_z_m": 3}))
+    assert facts["poses of the goal tried"] == "1,200"
+    assert facts["alternative of the goal, from 0"] == "0"
+    assert "poses of the goal tried" not in dict(_list_facts({"poses": None, "alternative": None}))
