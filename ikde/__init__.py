@@ -44,6 +44,8 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.model.target import Targets as Targets
     from ikde.model.world import World as World
     from ikde.paper.surface import check_surface as check_surface
+    from ikde.solver.analysis import Analysis as Analysis
+    from ikde.solver.analysis import analyze as analyze
     from ikde.solver.check import CheckResult as CheckResult
     from ikde.solver.check import CheckResults as CheckResults
     from ikde.solver.check import check as check
@@ -123,6 +125,8 @@ _HOME = {
     "forward": "ikde.solver.forward",
     "jacobian": "ikde.solver.jacobian",
     "check": "ikde.solver.check",
+    "analyze": "ikde.solver.analysis",
+    "Analysis": "ikde.solver.analysis",
     "check_many": "ikde.solver.check",
     "clear_cloud": "ikde.solver.clear_cloud",
     "check_surface": "ikde.paper.surface",

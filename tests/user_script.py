@@ -16,6 +16,8 @@ T_world_tool = ikde.forward(robot, robot.home)["tool"]
 q: np.ndarray = ikde.forward("ur5", [0.0] * 6)["tool"]
 
 J: np.ndarray = ikde.jacobian("qiao2021", np.zeros((5, 9)), frame="O3", axes="frame", by="actuators")
+analysis: ikde.Analysis = ikde.analyze("qiao2021", np.zeros(9), by="actuators", length_m=0.3)
+print(analysis.scaled["arm"]["translation"].manipulability, analysis.additions[0].pose, analysis.limit_margin)
 ikde.jacobian(robot, robot.home, by="wheels")  # type: ignore[arg-type]
 
 targets = [

@@ -9,6 +9,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ikde import __version__
+from ikde.cli.analyze import analyze
 from ikde.cli.batch import batch
 from ikde.cli.bench import bench
 from ikde.cli.check import check
@@ -69,7 +70,7 @@ def root(
     """
 
 
-for command in (solve, fk, check, batch, report, track, schema, warmup, doctor, completion):
+for command in (solve, fk, check, analyze, batch, report, track, schema, warmup, doctor, completion):
     app.command(cls=Command)(command)
 app.add_typer(robots, name="robots")
 app.add_typer(worlds, name="worlds")

@@ -8,10 +8,12 @@ from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats
 from ikde.model.base_motion import find_planar_base, usual_drive
 from ikde.model.robot import Robot
-from ikde.model.wheels import twist_by_wheels, wheel_names
+from ikde.model.wheels import twist_by_wheels, wheel_names, wheels_by_twist
 
 By = Literal["joints", "twist", "actuators"]
 TWIST = ("base_forward", "base_left", "base_turn")
+DEFAULT_SPEED = {"prismatic": 0.5, "revolute": 0.5 * np.pi, "continuous": 0.5 * np.pi}
+"""m/s and rad/s where a robot gives none: the print's 10 as 10 mm in a sample of 20 ms [Qiao2022, section 4]."""
 
 
 def actuator_names(robot: Robot, by: By) -> tuple[str, ...]:
@@ -61,3 +63,25 @@ def speeds_by(robot: Robot, q: Floats, by: By) -> Floats:
     for column, name in enumerate(names[count:], count):
         out[..., robot.joint_names.index(name), column] = 1.0
     return out
+
+
+def joint_speeds(robot: Robot) -> Floats:
+    """Speed limits [N] of the joints, m/s and rad/s; where the robot's file gives none, 0.5 m/s or pi/2 rad/s."""
+    return np.array([joint.max_speed or DEFAULT_SPEED[joint.kind] for joint in robot.joints])
+
+
+def speed_limits(robot: Robot, by: By) -> Floats:
+    """Speed limits [A] of the actuators, m/s and rad/s; columns and errors are those of `actuator_names`.
+
+    A base drives with the lower of the limits of its x and y; a wheel as fast as the limits of the base need at most.
+    """
+    names, base, joints = actuator_names(robot, by), find_planar_base(robot), joint_speeds(robot)
+    if by == "joints" or base[0] < 0:
+        return joints
+    straight = min(joints[base[0]], joints[base[1]])
+    twist = np.array([straight, straight, joints[base[2]]])
+    others = [joints[robot.joint_names.index(name)] for name in names if name in robot.joint_names]
+    drive = usual_drive(robot)
+    if by == "actuators" and drive != "omnidirectional" and robot.wheels is not None:
+        return np.array([*(np.abs(wheels_by_twist(robot.wheels)) @ twist), *others])
+    return np.array([*(twist[::2] if drive == "differential" else twist), *others])

@@ -99,10 +99,14 @@ def smallest_singular_values(
 
 def arm_jacobian(robot: Robot, q: Floats, base_joints: tuple[str, ...] = ()) -> Floats:
     """Velocity and angular velocity of the tool in its own frame [..., 6, n], by the joints of the arm."""
-    joint_of = {frame.name: frame.joint for frame in robot.frames}
-    moving = [joint_of[name] for name in _chain(robot, robot.tool)]
-    places = [robot.joint_names.index(name) for name in moving if name and name not in base_joints]
+    places = [place for place in find_chain(robot, robot.tool) if robot.joint_names[place] not in base_joints]
     return frame_jacobian(robot, q, robot.tool, "frame")[..., places]
+
+
+def find_chain(robot: Robot, frame: str) -> list[int]:
+    """Places in q of the joints that move a frame, from the world on."""
+    joint_of = {own.name: own.joint for own in robot.frames}
+    return [robot.joint_names.index(joint) for name in _chain(robot, frame) if (joint := joint_of[name])]
 
 
 def _chain(robot: Robot, frame: str) -> list[str]:

@@ -8,11 +8,9 @@ from numpy.typing import ArrayLike
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats, read_only
+from ikde.model.actuators import joint_speeds
 from ikde.model.robot import WORLD, Robot
 from ikde.solver.settings import SolveSettings
-
-DEFAULT_SPEED = {"prismatic": 0.5, "revolute": 0.5 * np.pi, "continuous": 0.5 * np.pi}
-"""m/s and rad/s where a robot gives none: the print's 10 as 10 mm in a sample of 20 ms [Qiao2022, section 4]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,9 +63,8 @@ class MotionLimits:
 
         Where it gives none: 0.5 m/s for a prismatic joint, pi/2 rad/s for a revolute one [Qiao2022], any acceleration.
         """
-        speed = [joint.max_speed or DEFAULT_SPEED[joint.kind] for joint in robot.joints]
         acceleration = np.array([joint.max_acceleration or np.inf for joint in robot.joints])
-        own = {"speed": speed, "acceleration": acceleration if np.isfinite(acceleration).any() else None}
+        own = {"speed": joint_speeds(robot), "acceleration": acceleration if np.isfinite(acceleration).any() else None}
         return cls(**{**own, **changes})  # type: ignore[arg-type]
 
     @property

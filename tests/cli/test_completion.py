@@ -69,7 +69,9 @@ printf '%s\n' "${{COMPREPLY[@]}}"
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
-@pytest.mark.parametrize(("line", "words"), [("ikde robots sh", ["show"]), ("ikde check --robot ur", ["ur5"])])
+@pytest.mark.parametrize(
+    ("line", "words"), [("ikde robots sh", ["show"]), ("ikde check --robot ur", ["ur5", "ur5e_mecanum"])]
+)
 def test_bash_completes(tmp_path, line, words):
     command = tmp_path / "ikde"
     command.write_text(f'#!/bin/sh\nexec {sys.executable} -m ikde "$@"\n')
