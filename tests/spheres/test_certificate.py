@@ -76,7 +76,18 @@ def test_what_is_in_no_sphere_is_halved_at_its_longest_edge_so_often(turn: int) 
     assert certify(triangle, centres, radii, halvings=1).covered == 1.0
     one = certify(triangle, centres[:1], radii[:1], halvings=1)
     assert one.covered == 0.5
-    assert one.open_pieces.shape == (2, 3, 3)
+    assert one.open_pieces.shape == (4, 3, 3)  # long beside its radius: once more
+    assert certify(triangle, centres[:1], 50.0 * radii[:1] + 50.0, halvings=1).covered == 1.0
+    far = certify(triangle, centres[:1] + 999.0, 100.0 * radii[:1], halvings=1)
+    assert (far.covered, far.open_pieces.shape) == (0.0, (2, 3, 3))
+
+
+def test_a_long_thin_triangle_is_halved_more_often() -> None:
+    """After 14 halvings pieces are a 128th as long, and a sphere holds a 160th."""
+    triangle = np.array([[[0.0, 0, 0], [1, 0, 0], [0.5, 1e-4, 0]]])
+    centres = np.linspace([0.0, 0, 0], [1, 0, 0], 301)
+    assert certify(triangle, centres, np.full(301, 0.003)).covered == 1.0
+    assert certify(triangle, np.delete(centres, 7, axis=0), np.full(300, 0.003)).covered < 1.0
 
 
 def test_fourteen_times_unless_asked_otherwise() -> None:
@@ -91,15 +102,20 @@ def test_fourteen_times_unless_asked_otherwise() -> None:
 @pytest.mark.parametrize(("share", "covered"), [(0.9e-8, 0.0), (1.1e-8, 1.0)])
 def test_what_is_too_small_is_given_up_and_left_open(share: float, covered: float) -> None:
     """Spheres hold its halves, and all of a triangle that has nearly all of the area."""
-    large = np.array([[0.0, 0, 9], [2, 0, 9], [0, 1, 9]])
-    small = np.array([[0.0, 0, 0], [8, 0, 0], [4, 1, 0]]) * np.sqrt(share / 4.0)
-    centres = np.array([[2.0, 0.25, 0], [6.0, 0.25, 0]]) * np.sqrt(share / 4.0)
-    radii = np.array([2.2, 2.2]) * np.sqrt(share / 4.0)
+    size = 7.0  # the share is one of all area, however large that is
+    large = np.array([[0.0, 0, 9], [2, 0, 9], [0, 1, 9]]) * size
+    small = np.array([[0.0, 0, 0], [8, 0, 0], [4, 1, 0]]) * size * np.sqrt(share / 4.0)
+    centres = np.array([[2.0, 0.25, 0], [6.0, 0.25, 0]]) * size * np.sqrt(share / 4.0)
+    radii = np.array([2.2, 2.2]) * size * np.sqrt(share / 4.0)
     proved = certify(
-        np.array([large, small]), np.concatenate([centres, [[0.5, 0.5, 9]]]), np.append(radii, 2.0), halvings=1
+        np.array([large, small]),
+        np.concatenate([centres, [[0.5 * size, 0.5 * size, 9 * size]]]),
+        np.append(radii, 2.0 * size),
+        halvings=1,
     )
     assert proved.covered == (1.0 if covered else pytest.approx(1.0 - share, abs=1e-12))
     assert (proved.covered == 1.0) == (not len(proved.open_pieces)) == bool(covered)
+    assert len(proved.open_pieces) == (not covered)
 
 
 def test_what_is_proved_and_what_is_left_open_make_up_the_surface() -> None:
