@@ -67,6 +67,7 @@ def format_analysis(analysis: Analysis, units: Units, *, color: bool = False, wi
     outside = f"[yellow]outside the limits[/]: {plain(', '.join(analysis.outside_limits))}"
     tables = [
         _measure_table(analysis.scaled, scale),
+        _value_table(analysis.scaled),
         _measure_table(analysis.raw, "by a m or a rad of each, as they are"),
         _addition_table(analysis),
         _limit_table(robot, analysis, units),
@@ -80,15 +81,25 @@ def _describe(by: str) -> str:
 
 
 def _measure_table(parts: ByPart, title: str) -> Any:
-    heads = ("moves", "what", ">manipulability", ">det(J J^T)", ">condition", ">from singular", "singular values")
-    table = make_table(*heads, title=title)
+    table = make_table("moves", "what", ">manipulability", ">det(J J^T)", ">condition", ">from singular", title=title)
     for part, kinds in parts.items():
         for rows, own in kinds.items():
-            condition = significant(float(own.condition)) if isfinite(own.condition) else "inf"
-            figures = [significant(float(value)) for value in (own.manipulability, own.determinant)]
-            values = " ".join(significant(value) for value in own.singular_values.tolist())
-            table.add_row(part, rows, *figures, condition, significant(float(own.smallest)), values)
+            figures = own.manipulability, own.determinant, own.condition, own.smallest
+            table.add_row(part, rows, *(_figure(float(value)) for value in figures))
     return table
+
+
+def _value_table(parts: ByPart) -> Any:
+    title = "singular values, the semi-axes of the ellipsoid of velocities"
+    table = make_table("moves", "what", *(f">{k}" for k in range(1, 7)), title=title)
+    for part, kinds in parts.items():
+        for rows, own in kinds.items():
+            table.add_row(part, rows, *map(_figure, own.singular_values.tolist()))
+    return table
+
+
+def _figure(value: float) -> str:
+    return significant(value) if isfinite(value) else "inf"
 
 
 def _addition_table(analysis: Analysis) -> Any:

@@ -23,6 +23,7 @@ Part = Literal["whole", "arm", "base"]
 Rows = Literal["pose", "translation", "rotation"]
 Measure = Literal["manipulability", "determinant", "condition", "smallest"]
 LENGTH_M = 1.0
+ROUNDING = 1e-14  # of the largest singular value: what is smaller is none
 ROWS = {"pose": range(6), "translation": range(3), "rotation": range(3, 6)}
 BASE_ROWS = {"pose": (0, 1, 5), "translation": (0, 1), "rotation": (5,)}  # what a base in the plane can move at all
 
@@ -141,11 +142,12 @@ def leave_out(jacobian: Floats) -> Floats:
 
 
 def _find_values(jacobian: Floats) -> Floats:
-    """Singular values [..., rows], 0 for those that a Jacobian with fewer columns has not."""
+    """Singular values [..., rows], 0 for what rounding leaves of one and those that too few columns have not."""
     rows, columns = jacobian.shape[-2:]
     values = np.zeros((*jacobian.shape[:-2], rows))
     if columns:
         values[..., : min(rows, columns)] = np.linalg.svd(jacobian, compute_uv=False)
+    values[values < ROUNDING * values[..., :1]] = 0.0
     return values
 
 

@@ -157,3 +157,10 @@ def test_speeds_are_those_of_the_base_or_what_its_wheels_need(qiao):
     assert limits[:2] == pytest.approx([(v + 0.259 * omega) / 0.1] * 2)
     assert speed_limits(qiao, "joints").shape == (9,)
     assert speeds_by(qiao, qiao.home, "actuators").shape == (9, len(limits))
+
+
+def test_what_rounding_leaves_of_a_singular_value_is_none(qiao):
+    """At home the arm of qiao2021 is folded into a plane: numpy gives 3e-33 and a condition of 1e33."""
+    found = measure(qiao, qiao.home, MeasureChoice())
+    assert (found.singular_values > 1e-3).sum() == 4
+    assert (found.manipulability, found.smallest, found.condition) == (0.0, 0.0, np.inf)
