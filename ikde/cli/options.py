@@ -91,6 +91,8 @@ PairsOption = Annotated[
 SafeDistanceOption = Annotated[float | None, of_collision(help="Clearance at which collision begins, in --unit.")]
 UnitOption = Annotated[LengthUnit, of_output(help="Unit of lengths, in and out.")]
 AnglesOption = Annotated[AngleUnit, of_output(help="Unit of angles, in and out.")]
+PrintedUnitOption = Annotated[LengthUnit, of_output("--unit", help="Unit of lengths that are printed.")]
+PrintedAnglesOption = Annotated[AngleUnit, of_output("--angles", help="Unit of angles that are printed.")]
 ConventionOption = Annotated[
     str | None,
     of_output(

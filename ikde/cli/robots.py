@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.options import (
-    AnglesOption,
     AngleUnit,
     Command,
     DetectorOption,
     Group,
     JsonOption,
     LengthUnit,
+    PrintedAnglesOption,
+    PrintedUnitOption,
     RobotArgument,
-    UnitOption,
     check_environment,
 )
 from ikde.cli.output import layout, print_json, print_line, print_note, print_result, print_written
@@ -63,8 +63,8 @@ def show(
     pairs: Annotated[bool, typer.Option("--pairs", help="Print the pairs that are compared and left out.")] = False,
     kind: Annotated[str, typer.Option(help="Of which targets: position, axis or pose.")] = "pose",
     detector: DetectorOption = None,
-    unit: UnitOption = LengthUnit.mm,
-    angles: AnglesOption = AngleUnit.deg,
+    unit: PrintedUnitOption = LengthUnit.mm,
+    angles: PrintedAnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
 ) -> None:
     """Show a robot: joints, frames, detectors, and where its numbers come from; or its pairs; or its kernels.
@@ -113,7 +113,7 @@ def _format_kernels(collision: "CollisionModel", kind: str) -> str:
 def validate(
     file: Annotated[Path, typer.Argument(help="A robot file.")],
     detector: DetectorOption = None,
-    unit: UnitOption = LengthUnit.mm,
+    unit: PrintedUnitOption = LengthUnit.mm,
     as_json: JsonOption = False,
 ) -> None:
     """Check a robot file, and list every pair that its detector compares and leaves out.

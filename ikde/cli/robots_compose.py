@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
+from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, PrintedAnglesOption, PrintedUnitOption
 from ikde.cli.output import page_width, print_json, print_result, say_written, use_color
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ def compose_robot(
         Path | None, typer.Option(metavar="FILE", help="A robot file of the tool; its joints are frozen at home.")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="The robot file to write.")] = None,
-    unit: UnitOption = LengthUnit.mm,
-    angles: AnglesOption = AngleUnit.deg,
+    unit: PrintedUnitOption = LengthUnit.mm,
+    angles: PrintedAnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
 ) -> None:
     """Put an arm on a platform, and a tool at its end: all spheres, all joints, one robot file.

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ikde.cli.options import AnglesOption, AngleUnit, JsonOption, LengthUnit, UnitOption
+from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, PrintedAnglesOption, PrintedUnitOption
 from ikde.cli.output import page_width, print_json, print_result, say_written, use_color
 
 
@@ -67,8 +67,8 @@ def import_robot(
         float, typer.Option(metavar="MM", help="How far spheres may stand out of shapes, in mm.")
     ] = 20.0,
     mesh_scale: Annotated[float, typer.Option(metavar="X", help="What meshes are scaled by: 0.001 if in mm.")] = 1.0,
-    unit: UnitOption = LengthUnit.mm,
-    angles: AnglesOption = AngleUnit.deg,
+    unit: PrintedUnitOption = LengthUnit.mm,
+    angles: PrintedAnglesOption = AngleUnit.deg,
     as_json: JsonOption = False,
 ) -> None:
     """Read a URDF: the joints that move the tool, spheres on all links, pairs to compare. All decisions are listed.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ikde.cli.options import JsonOption, LengthUnit, RobotArgument, UnitOption
+from ikde.cli.options import JsonOption, LengthUnit, PrintedUnitOption, RobotArgument
 from ikde.cli.output import page_width, print_json, print_note, print_result, print_written, use_color
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def exchange_robot_spheres(
         Path | None, typer.Option(metavar="FILE.html", help="A page with every link's shapes and spheres.")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="The robot file to write.")] = None,
-    unit: UnitOption = LengthUnit.mm,
+    unit: PrintedUnitOption = LengthUnit.mm,
     as_json: JsonOption = False,
 ) -> None:
     """Cover links of a robot anew, or take their spheres from a file; show all of them on a page.

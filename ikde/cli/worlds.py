@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ikde.cli.candidates import offer_robots
-from ikde.cli.options import Command, DetectorOption, Group, JsonOption, LengthUnit, UnitOption, check_drawable
+from ikde.cli.options import Command, DetectorOption, Group, JsonOption, LengthUnit, PrintedUnitOption, check_drawable
 from ikde.cli.output import layout, print_json, print_line, print_note, print_result, print_written
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class WorldFormat(StrEnum):
 @worlds.command("show", cls=Command)
 def show(
     file: FileArgument,
-    unit: UnitOption = LengthUnit.mm,
+    unit: PrintedUnitOption = LengthUnit.mm,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it to a file, such as world.png.")] = None,
     as_json: JsonOption = False,
 ) -> None:
