@@ -77,6 +77,8 @@ def describe_arm(arm: Arm) -> dict[str, Any]:
     if model.is_in_world:
         kept = {"margin_m": model.margin_m, "margins_m": dict(model.margins_m)}
         place["world"] |= {"digest": model.world.digest, **kept}
+        if model.world.attached:
+            place["world"]["attached"] = {thing.name: thing.frame for thing in model.world.attached}
     return as_plain(
         {
             "method": arm.method,

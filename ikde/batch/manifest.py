@@ -78,6 +78,8 @@ class Manifest:
     """UTC, ISO 8601."""
     versions: Mapping[str, str]
     machine: Mapping[str, Any]
+    attach: str | None = None
+    """What was picked up beside what the file says, as it was typed."""
 
     @property
     def has_worlds(self) -> bool:
@@ -114,6 +116,7 @@ def make_manifest(batch: Batch) -> Manifest:
         started=datetime.now(UTC).isoformat(timespec="seconds"),
         versions=describe_versions(),
         machine=describe_machine(),
+        attach=batch.attach,
     )
 
 

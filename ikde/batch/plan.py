@@ -20,7 +20,7 @@ class Arm:
     world: str | None = None
     """The name of the world that it solves in, if the run has any."""
     world_file: str | None = None
-    """Where that was read, for the record only; None also of a world whose obstacles were moved."""
+    """Where that was read, for the record only; None also of one of which obstacles were moved or picked up."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,6 +48,8 @@ class Batch:
     """Plain JSON data: all that the answers depend on."""
     file: str | None
     """The file it was read from, for the record only."""
+    attach: str | None = None
+    """What the robot picks up beside what the file says, as it was typed, for the record only."""
 
     def __repr__(self) -> str:
         arms = ", ".join(arm.name for arm in self.arms[:3]) + (", ..." if len(self.arms) > 3 else "")

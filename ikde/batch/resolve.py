@@ -1,7 +1,10 @@
 """From a run file to a batch: every name resolved, every number in m and rad, everything wrong found before it runs."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ikde.batch.arms import describe_arm, make_arm, make_arms
 from ikde.batch.columns import place_grader
@@ -11,10 +14,11 @@ from ikde.batch.recipe import as_plain, ikde_version, robot_digest
 from ikde.batch.sources import FreedomSource, GoalSource
 from ikde.batch.spec import COLUMN_GROUPS, BatchSpec
 from ikde.batch.targets import make_source
-from ikde.batch.worlds import Read, make_worlds
+from ikde.batch.worlds import Read, RunWorld, make_worlds, pick_up_all
 from ikde.errors import InputError
+from ikde.formats.attached import list_held, read_attached
 from ikde.formats.error_path import prefix_errors
-from ikde.formats.robot_entries import read_collision
+from ikde.formats.robot_entries import read_collision, to_si
 from ikde.model.generate.module import describe_kernels
 from ikde.model.robot import Detector, Robot
 
@@ -24,17 +28,24 @@ MIN_GOALS, MAX_GOALS = 20, 1000  # of goals with freedom, each of which takes mi
 
 
 def make_batch(
-    spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None = None, read_world: Read | None = None
+    spec: BatchSpec,
+    robot: Robot,
+    *,
+    folder: Path,
+    file: str | None = None,
+    read_world: Read | None = None,
+    attach: str | None = None,
 ) -> Batch:
     """Resolve a run file whose paths start at `folder`; its own name is for the record.
 
-    `read_world` reads the world files that it names.
+    `read_world` reads the world files that it names; `attach` is typed, for what is picked up beside its `attached`.
 
     Raises:
         InputError: with the path of the key inside the run file.
         FileError: for what is wrong inside a table, or a world file.
     """
     worlds = () if read_world is None else make_worlds(spec, read_world)
+    worlds = _pick_up(spec, robot, worlds, attach)
     arms, graders = make_arms(spec, robot, worlds), _make_graders(spec, robot)
     for arm in arms:
         _check_graders(arm, graders)
@@ -66,8 +77,30 @@ def make_batch(
     }
     name = spec.name or (Path(file).stem if file else "batch")
     return Batch(
-        name=name, robot=robot, arms=arms, source=source, graders=graders, recipe=as_plain(recipe), file=file, **asked
+        name=name,
+        robot=robot,
+        arms=arms,
+        source=source,
+        graders=graders,
+        recipe=as_plain(recipe),
+        file=file,
+        attach=attach,
+        **asked,
     )
+
+
+def _pick_up(spec: BatchSpec, robot: Robot, worlds: Sequence[RunWorld], attach: str | None) -> tuple[RunWorld, ...]:
+    """The worlds in which the robot holds what it is to hold, picked up at `near` of `solve`, else at home."""
+    typed = [] if attach is None else read_attached(attach)
+    if not (spec.attached or typed):
+        return tuple(worlds)
+    with prefix_errors("solve"):
+        near = to_si(robot, "near", spec.solve.near or {}, spec.units)
+        with prefix_errors("detector"):
+            model = read_collision(robot, spec.solve.detector, spec.units)
+    q = np.array([near.get(joint.name, joint.home) for joint in robot.joints])
+    worlds = pick_up_all(worlds, list_held(spec.attached), model, q, "attached")
+    return pick_up_all(worlds, typed, model, q, "attach")
 
 
 def choose_chunk(solves: int, *, has_freedom: bool = False) -> int:

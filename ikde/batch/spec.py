@@ -5,6 +5,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import BeforeValidator, ConfigDict, Field
 
 from ikde.formats.entries import (
+    MAX_ATTACHED,
     AnyTarget,
     AsEntry,
     AsText,
@@ -12,6 +13,7 @@ from ikde.formats.entries import (
     DetectorChoice,
     Entry,
     FileEntry,
+    HeldChoice,
     Interval,
     MarginChoice,
     Number,
@@ -218,6 +220,8 @@ class BatchSpec(Entry):
     """What stands around the robot: a file, or one with obstacles moved."""
     worlds: Annotated[list[WorldChoice], Field(min_length=1, max_length=MAX_ARMS)] | None = None
     """Several worlds, in each of which every arm solves every target."""
+    attached: Annotated[dict[Name, HeldChoice], Field(max_length=MAX_ATTACHED)] = {}
+    """Obstacles of each world that the robot picks up at `near` of `solve`, else at home: object: frame."""
     arms: Annotated[dict[Name, SolveEntry], Field(max_length=MAX_ARMS)] = {}
     """Several ways to solve, compared over the same targets and random streams; each is laid over `solve`."""
     grade: Annotated[list[DetectorChoice], Field(max_length=MAX_GRADERS)] = []

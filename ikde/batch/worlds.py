@@ -1,8 +1,8 @@
 """The worlds of a run: read by a floor above, named, and some of them with obstacles moved at random."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -12,8 +12,11 @@ from ikde.batch.parts import PLAIN_NAME
 from ikde.batch.recipe import digest
 from ikde.batch.spec import MAX_ARMS, BatchSpec, WorldEntry
 from ikde.errors import InputError
+from ikde.formats.attached import Held, pick_up
 from ikde.formats.entries import UnitsEntry
 from ikde.formats.error_path import prefix_errors
+from ikde.kernels.arrays import Floats
+from ikde.model.collision_model import CollisionModel
 from ikde.model.rotation import rotation_about
 from ikde.model.world import NOTHING, Obstacle, World
 
@@ -32,7 +35,7 @@ class RunWorld:
     name: str
     world: World
     file: str | None
-    """As the run file writes it; None for no world, and for one whose obstacles were moved."""
+    """As the run file writes it; None for no world, and for one of which obstacles were moved or picked up."""
     errors: Errors
 
 
@@ -57,6 +60,27 @@ def make_worlds(spec: BatchSpec, read: Read) -> tuple[RunWorld, ...]:
     if len(found) > MAX_ARMS:
         raise InputError(f"expected at most {MAX_ARMS:,} worlds, got {len(found):,}", ("worlds",))
     return tuple(found)
+
+
+def pick_up_all(
+    worlds: Sequence[RunWorld], held: Sequence[Held], model: CollisionModel, q: Floats | None, key: str
+) -> tuple[RunWorld, ...]:
+    """The worlds after the robot has picked up some obstacles of each, at `q` [N], m and rad, or at home.
+
+    Raises:
+        InputError: at `key`; or at its place in a world's file.
+    """
+    if held and not worlds:
+        raise InputError("what is picked up is an obstacle of a `world`: name one", (key,))
+    found = []
+    for one in worlds if held else ():
+        with one.errors():
+            try:
+                found.append(replace(one, world=pick_up(one.world, held, model, q, key), file=None))
+            except InputError as error:
+                place = f" (in {one.name})" if len(worlds) > 1 else ""
+                raise InputError(f"{error.message}{place}", error.where) from None
+    return tuple(found) if held else tuple(worlds)
 
 
 def _check_names(found: list[RunWorld]) -> None:

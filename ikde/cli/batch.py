@@ -37,6 +37,14 @@ def batch(
             metavar="ARM/TARGET/REPEAT", help="Solve this one row again, print it, and compare it with the run's."
         ),
     ] = None,
+    attach: Annotated[
+        str | None,
+        typer.Option(
+            metavar="OBJECT=FRAME,..",
+            help="Obstacles of each world that the robot holds beside the file's `attached`, picked up at its `near`, "
+            "else home. mug=tool:table+finger: what it may touch.",
+        ),
+    ] = None,
     dask: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS|local", help="Let a Dask cluster do the work.", rich_help_panel=CLUSTER),
@@ -58,7 +66,7 @@ def batch(
     gc.enable()
     if out is None and not dry_run and row is None:
         raise typer.BadParameter("a run needs a folder; only --dry-run and --row need none", param_hint="--out")
-    plan, solving = load_batch(spec), {"threads": threads, "dask": dask, "workers": workers}
+    plan, solving = load_batch(spec, attach), {"threads": threads, "dask": dask, "workers": workers}
     if not all(arm.problem.collision.pairs for arm in plan.arms):
         note_unchecked(plan.robot)
     if row is not None:

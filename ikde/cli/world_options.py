@@ -90,18 +90,9 @@ def place_in_world(
 
 def _pick_up(collision: "CollisionModel", world: "World", pick: Pick) -> "World":
     """The world after all that is typed has been picked up."""
-    from ikde.errors import InputError
-    from ikde.formats.attached import read_attached
+    from ikde.formats.attached import pick_up, read_attached
 
-    for held in [] if pick.text is None else read_attached(pick.text):
-        known = {"q": collision.robot.home if pick.q is None else pick.q, "may_touch": held.may_touch}
-        try:
-            world = world.attach(held.name, held.frame, robot=collision.own, **known)
-        except InputError as error:
-            if error.where[:1] in (("attach",), ("obstacles",)):  # as typed, or a line of the world's file
-                raise
-            raise InputError(error.message, ("attach", held.name)) from None
-    return world
+    return world if pick.text is None else pick_up(world, read_attached(pick.text), collision, pick.q)
 
 
 def _note_held(model: "CollisionModel", pick: Pick) -> None:

@@ -125,6 +125,22 @@ class FileEntry(Entry):
     """Units of the table (default: those of the run file)."""
 
 
+MAX_ATTACHED = 100  # objects that a robot holds
+
+
+class HeldEntry(Entry):
+    """An obstacle that the robot picks up where it stands."""
+
+    frame: Name
+    """The frame of the robot that holds it, such as its tool."""
+    may_touch: list[Name] = []
+    """Components of the robot, obstacles and other attached objects that it may touch."""
+
+
+HeldChoice = Annotated[Annotated[Name, AsText] | Annotated[HeldEntry, AsEntry], TextOrEntry]
+"""A frame, or that and what may be touched."""
+
+
 class DetectorPartsEntry(Entry):
     """What a detector compares, and how near is a collision."""
 

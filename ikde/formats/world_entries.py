@@ -4,13 +4,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ikde.formats.entries import Entry, Number, Quaternion, UnitsEntry, Vector
+from ikde.formats.entries import MAX_ATTACHED, Entry, Number, Quaternion, UnitsEntry, Vector
 from ikde.formats.names import Name, Text
 from ikde.model.robot import WORLD
 from ikde.model.world import MAX_OBSTACLES
 from ikde.spheres.primitives import MAX_SPHERES
 
-MAX_PARTS, MAX_FRAMES, MAX_ATTACHED = 10_000, 10_000, 100
+MAX_PARTS, MAX_FRAMES = 10_000, 10_000
 MAX_LISTED = 20_000  # points that stand in a file itself
 
 

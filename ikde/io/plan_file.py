@@ -30,12 +30,14 @@ Spec = TypeVar("Spec", BatchSpec, TrackSpec)
 Plan = TypeVar("Plan")
 
 
-def load_batch(source: str | Path | Mapping[str, Any]) -> "Batch":
+def load_batch(source: str | Path | Mapping[str, Any], attach: str | None = None) -> "Batch":
     """Load a run and check all of it, before anything runs.
 
     Args:
         source: the path of a YAML file, or the same keys as a mapping; paths inside start at the file's folder, or
             at the current one.
+        attach: what the robot picks up in each world beside what the file says under `attached`, as `ikde batch
+            --attach` takes it: `mug=tool:table`.
 
     Raises:
         FileError: for a file that cannot be read or is wrong, with its line and key.
@@ -44,7 +46,8 @@ def load_batch(source: str | Path | Mapping[str, Any]) -> "Batch":
     from ikde.batch.resolve import make_batch  # here: what the other kind of file needs takes 0.06 s to import
 
     def make(spec: BatchSpec, robot: Robot, *, folder: Path, file: str | None) -> "Batch":
-        return make_batch(spec, robot, folder=folder, file=file, read_world=partial(_read_world, folder))
+        read = partial(_read_world, folder)
+        return make_batch(spec, robot, folder=folder, file=file, read_world=read, attach=attach)
 
     return _load_plan(source, "run", BatchSpec, make)
 
@@ -114,6 +117,8 @@ def _resolve(
     except FileError:
         raise
     except InputError as error:
+        if error.where[:1] == ("attach",):  # typed, and no key of the file
+            raise
         raise source.error(error.message, error.where) from None
 
 

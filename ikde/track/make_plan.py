@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ikde.errors import InputError, nearest
+from ikde.formats.attached import list_held, pick_up
 from ikde.formats.entries import UnitsEntry
 from ikde.formats.error_path import prefix_errors
 from ikde.formats.margins import read_margins
@@ -77,6 +78,8 @@ def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld 
     if spec.world is None:
         if spec.margin is not None:
             raise InputError("a margin needs a `world` to be kept from", ("margin",))
+        if spec.attached:
+            raise InputError("what is picked up is an obstacle of a `world`: name one", ("attached",))
         return collision
     if not collision.pairs:
         message = "a world needs a detector: without spheres nothing can be compared with it"
@@ -84,7 +87,9 @@ def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld 
     assert read is not None, "`read_world` reads what `world` names"
     world, errors = read(spec.world)
     margin = None if spec.margin is None else str(spec.margin)
+    start, held = _read_start(spec, collision.robot), list_held(spec.attached)
     with errors():
+        world = pick_up(world, held, collision, start, "attached")
         model = collision.in_world(world, *read_margins(margin, spec.units.length_m))
         refuse_touching(model)
     return model

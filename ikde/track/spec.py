@@ -5,10 +5,12 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from ikde.formats.entries import (
+    MAX_ATTACHED,
     AnyTarget,
     DetectorChoice,
     Entry,
     FileEntry,
+    HeldChoice,
     Interval,
     MarginChoice,
     Number,
@@ -215,6 +217,8 @@ class TrackSpec(Entry):
     """What is in the way: a world file, a cuRobo scene or a MoveIt planning scene, relative to the track file."""
     margin: MarginChoice | None = None
     """Distance to keep from the world; `10,gripper=0`: that of a component in its place."""
+    attached: Annotated[dict[Name, HeldChoice], Field(max_length=MAX_ATTACHED)] = {}
+    """Obstacles of the world that the robot picks up at `start`, else at home: object: frame."""
     moving: dict[Name, MotionEntry] = {}
     """Obstacles of the world that move meanwhile."""
     ranges: dict[Name, Interval] = {}

@@ -86,6 +86,45 @@ def test_what_is_wrong_is_named(load, keys, message):
         load(**keys)
 
 
+def test_a_run_picks_up_what_stands_in_each_of_its_worlds(load):
+    attached = {"can": {"frame": "tool", "may_touch": ["wall"]}}
+    batch = load(worlds=PAIR, attached=attached, solve={**KEYS["solve"], "near": {"q1": 30}})
+    near = KEYS["robot"], dict(zip(batch.robot.joint_names, batch.arms[0].problem.near, strict=True))
+    for arm in batch.arms:
+        (thing,) = arm.problem.collision.world.attached
+        assert (thing.name, thing.frame, thing.may_touch) == ("can", "tool", ("wall",))
+        stood = ikde.forward(*near)["tool"] @ np.vstack([thing.T_frame_object, [0, 0, 0, 1]])
+        assert np.allclose(stood[:3], thing.obstacle.T_world_obstacle, atol=1e-12)
+        assert arm.world_file is None
+        known = batch.recipe["arms"][arm.name]["world"]
+        assert (known["digest"], known["attached"]) == (arm.problem.collision.world.digest, {"can": "tool"})
+    typed = ikde.load_batch({**KEYS, "world": "kitchen.yaml"}, attach="can=tool:wall")
+    assert typed.attach == "can=tool:wall"
+    assert typed.hash == load(world="kitchen.yaml", attached=attached).hash
+    assert pickle.loads(pickle.dumps(batch.arms[0].problem)).collision.world == batch.arms[0].problem.collision.world
+
+
+@pytest.mark.parametrize(
+    ("keys", "attach", "message"),
+    [
+        (
+            {"world": "kitchen.yaml", "attached": {"cam": "tool"}},
+            None,
+            "^attached.cam: no obstacle is called",
+        ),
+        ({"worlds": ["none", "kitchen.yaml"], "attached": {"can": "tool"}}, None, r"^attached.can: no .* \(in none\)$"),
+        ({"attached": {"can": "tool"}}, None, r"^attached: what is picked up is an obstacle of a `world`: name one$"),
+        ({}, "can=tool", r"^attach: what is picked up is an obstacle of a `world`"),
+        ({"world": "kitchen.yaml"}, "can", r"^attach: expected OBJECT=FRAME"),
+        ({"world": "kitchen.yaml", "attached": {"can": "tool"}}, "can=tool", r"^attach.can: 'can' is attached to tool"),
+        ({"world": "kitchen.yaml", "attached": {"can": {}}}, None, r"^attached.can.frame: this key is missing$"),
+    ],
+)
+def test_what_cannot_be_picked_up_is_named(load, tmp_path, keys, attach, message):
+    with pytest.raises(InputError, match=message):
+        ikde.load_batch({**KEYS, **keys}, attach)
+
+
 def test_what_does_not_fit_the_robot_is_named_in_the_worlds_file(load, tmp_path):
     with pytest.raises(FileError, match=r"^nowhere.yaml: "):
         load(world="nowhere.yaml")

@@ -9,6 +9,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import ikde
 from ikde.errors import FileError, InputError
 from ikde.io.plan_file import load_track
 
@@ -96,6 +97,17 @@ def test_a_world_stands_beside_its_track_file(tmp_path):
 WALL = "obstacles: {wall: {box: [1, 1, 1], position: [9, 0, 0]}}"
 
 
+def test_a_track_picks_up_what_it_carries_at_its_start(tmp_path):
+    (tmp_path / "world.yaml").write_text(WALL)
+    (tmp_path / "track.yaml").write_text(f"{GOOD}world: world.yaml\nattached: {{wall: tool}}\n")
+    plan = load_track(tmp_path / "track.yaml")
+    (thing,) = plan.collision.world.attached
+    q = plan.robot.home if plan.start is None else plan.start
+    stood = ikde.forward(plan.robot, q)["tool"] @ np.vstack([thing.T_frame_object, [0, 0, 0, 1]])
+    assert (thing.name, thing.frame) == ("wall", "tool")
+    assert np.allclose(stood[:3], thing.obstacle.T_world_obstacle, atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("keys", "world", "message"),
     [
@@ -104,6 +116,8 @@ WALL = "obstacles: {wall: {box: [1, 1, 1], position: [9, 0, 0]}}"
         ("world: world.yaml\nmargin: -1", WALL, "track.yaml:15 → margin: expected at least 0, got -1"),
         ("world: world.yaml\nmargin: {}", WALL, "track.yaml:15 → margin: expected a number, got {}"),
         ("world: world.yaml\nmargin: {a: 1}", WALL, "track.yaml:15 → margin: expected a number, got {'a': 1}"),
+        ("attached: {wall: LT}", WALL, "track.yaml:14 → attached: what is picked up is an obstacle of a `world`"),
+        ("world: world.yaml\nattached: {wal: tool}", WALL, "track.yaml:15 → attached.wal: no obstacle is called 'wal'"),
         ("world: world.yaml\nmargin: ten", WALL, "track.yaml:15 → margin: expected a distance or component=distance"),
         ("world: world.yaml\nmargin: 1,hnad=2", WALL, "track.yaml:15 → margin.hnad: no component is called 'hnad'"),
         ("margin: 1", WALL, "track.yaml:14 → margin: a margin needs a `world` to be kept from"),
@@ -201,7 +215,7 @@ def test_a_mapping_is_the_same_track(tmp_path):
         ("{axis: [0, 0, 1]}", "{axs: [0, 0, 1]}", ":10 → orientation.axs:", "unknown key (did you mean 'axis'?)"),
         ("{axis: [0, 0, 1]}", "{axis: [0, 1]}", ":10 → orientation.axis:", "expected 3 values, got 2"),
         ("{axis: [0, 0, 1]}", "fre", ":10 → orientation:", "expected 'free', got 'fre'"),
-        ("drive: diff", "drive: d", ":11 → drive:", "expected 'differential' or 'omnidirectional'"),
+        ("drive: diff", "drive: d", ":11 → drive:", "expected 'differential', 'omnidirectional' or 'mecanum'"),
         ("robot: qiao", r'name: "a\e[2J"' + "\nrobot: qiao", ":1 → name:", "expected a name of printable characters"),
         ("robot: qiao", f"detector: {'x' * 101}\nrobot: qiao", ":1 → detector:", "1 to 100 characters, got 101"),
         ("prismatic: 500", "prismatic: -5", ":13 → limits.speed.prismatic:", "expected at least 0, got -5"),

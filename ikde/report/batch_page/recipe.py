@@ -121,7 +121,8 @@ def make_again(run: RunAnswers) -> Section:
 def run_command(run: RunAnswers) -> str:
     """What makes the answers again; the name of a file is no option, whatever it begins with."""
     file = run.manifest.file or ""
-    return shlex.join(["ikde", "batch", f"./{file}" if file.startswith("-") else file, "--out", str(run.folder)])
+    held = [] if run.manifest.attach is None else [f"--attach={run.manifest.attach}"]
+    return shlex.join(["ikde", "batch", f"./{file}" if file.startswith("-") else file, *held, "--out", str(run.folder)])
 
 
 def _read(folder: str) -> str:

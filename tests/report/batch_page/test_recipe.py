@@ -98,3 +98,8 @@ def test_reading_on_is_python_whatever_the_folder_is_called(answers):
         for library in ("pandas", "polars", "duckdb"):  # which need not be there
             assert library not in first
             assert library in others
+
+
+def test_commands_repeat_what_was_picked_up(answers):
+    held = with_manifest(answers, file="a.yaml", attach="mug=tool:left finger")
+    assert codes(held)[0].startswith("ikde batch a.yaml '--attach=mug=tool:left finger' --out ")
