@@ -1,0 +1,248 @@
+"""Speeds for several tasks on one robot, in order of priority: each as far as those before it leave room.
+
+A task is a matrix A and what A x should be. The first is met by least squares; each further one among the motions that
+change nothing of those before it, so the answer is lexicographic. Without bounds it is the recursion
+
+    x_k = x_(k-1) + (A_k N_(k-1))^# (b_k - A_k x_(k-1)),
+
+where N is the projector onto the null space of all tasks before [Siciliano1991, Baerlocher1998]. It is kept as an
+orthonormal basis and never damped, so a later task cannot leak into an earlier one. What is damped is the inverse,
+where a singular value falls below `softest`: 1 / s becomes s / softest^2, so no task asks for more than
+|b| / softest of speed. Bounds hold for all tasks: each level's optimum inside them is found by a dual active set
+(`kernels/dual_active_set.py`), in a metric in which the level's own directions count and the others hardly do, and from
+there exactly, by taking up and dropping bounds until no multiplier has the wrong sign [Nocedal2006, 16.5].
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikde.kernels.arrays import Floats
+from ikde.kernels.dual_active_set import HalfSpaces, find_nearest_point
+
+SOFTEST = 0.05
+"""Singular value below which an inverse is damped: m/s (or the unit of a row) for a unit of speed."""
+RANK = 1e-9  # singular values below are none: no speed serves the task there
+IDLE = 0.1  # weight of directions that a level does not need, as a share of the softest of those that it does
+ROUNDS = 100
+SETTLED = 1e-11  # of a multiplier, or of how fast a step nears a bound
+STEEP = 1e-9  # slope below which a level cannot change a bound
+INSIDE = 1e-8  # by which a bound may be missed; who needs it exactly cuts that off
+
+
+class Level(NamedTuple):
+    """What is asked with one priority."""
+
+    matrix: Floats
+    """A [m, n]"""
+    wanted: Floats
+    """What A x should be [m]."""
+
+
+class Bounds(NamedTuple):
+    """lower <= rows x <= upper."""
+
+    rows: Floats
+    """[C, n]"""
+    lower: Floats
+    """[C]"""
+    upper: Floats
+    """[C]"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Speeds:
+    """The answer: speeds, and of each level what limits it."""
+
+    x: Floats
+    """[n]"""
+    ranks: tuple[int, ...]
+    """Of what the levels before leave of each level's matrix."""
+    smallest: tuple[float, ...]
+    """Its smallest singular value, of as many as there are rows, or motions left: 0 where rows cannot be served."""
+    holding: tuple[tuple[int, ...], ...]
+    """Bounds that keep each level from doing better: rows of `Bounds`."""
+    within: bool
+    """Whether the bounds are kept; False if no speeds keep them all: then none is kept."""
+
+
+def damped_inverse(matrix: Floats, softest: float = SOFTEST) -> Floats:
+    """The pseudo-inverse [n, m] of a matrix [m, n], with 1 / s as s / softest^2 where a singular value is below."""
+    U, s, Vt = np.linalg.svd(matrix, full_matrices=False)
+    return (Vt.T * _invert(s, softest)) @ U.T
+
+
+def null_projector(matrix: Floats) -> Floats:
+    """The projector [n, n] onto the null space of a matrix [m, n]: what it does to x, the matrix does not see."""
+    _, s, Vt = np.linalg.svd(matrix, full_matrices=True)
+    free = Vt[int((s > RANK).sum()) :]
+    return free.T @ free
+
+
+def recurse(levels: Sequence[Level], softest: float = SOFTEST) -> Floats:
+    """Speeds [n] by the recursion as it is written in textbooks, with projectors; `solve_levels` gives the same."""
+    x = np.zeros(levels[0].matrix.shape[1])
+    above = np.empty((0, len(x)))
+    for matrix, wanted in levels:
+        N = null_projector(above) if len(above) else np.eye(len(x))
+        x = x + N @ damped_inverse(matrix @ N, softest) @ (wanted - matrix @ x)
+        above = np.vstack([above, matrix])
+    return x
+
+
+def solve_levels(levels: Sequence[Level], bounds: Bounds | None = None, softest: float = SOFTEST) -> Speeds:
+    """The least speeds x [n] that serve the levels in their order, inside the bounds.
+
+    Args:
+        levels: the first has priority over all others; rows of one level are weighed against each other as they are.
+        bounds: hold for every level, before the first.
+        softest: where singular values are damped; 0 damps nothing.
+    """
+    size = levels[0].matrix.shape[1]
+    x, free = np.zeros(size), np.eye(size)
+    within = bounds is None or bool((bounds.lower <= bounds.upper).all())
+    bounds = bounds if within else None
+    ranks, smallest, holding, is_bound = [], [], [], False
+    for matrix, wanted in levels:
+        U, s, Vt = np.linalg.svd(matrix @ free, full_matrices=True)
+        rank = int((s > RANK).sum())
+        along = _invert(s[:rank], softest) * (U[:, :rank].T @ (wanted - matrix @ x))
+        turned = free @ Vt.T
+        step, holds = turned[:, :rank] @ along, ()
+        if bounds is not None and not _is_inside(bounds, x + step):
+            weights = np.maximum(s[:rank], softest)
+            idle = IDLE * weights[-1] if rank else 1.0
+            found = _stay_inside(bounds, x, turned, np.r_[weights, np.full(turned.shape[1] - rank, idle)], along)
+            if found is not None:
+                (step, holds), is_bound = found, True
+            elif _is_inside(bounds, x):
+                step = np.zeros(size)  # so little room is left that rounding takes it
+            else:
+                bounds, within = None, False
+        x, free = x + step, turned[:, rank:]
+        ranks.append(rank)
+        smallest.append(float(s[-1]) if len(s) and len(s) == len(matrix) else 0.0)
+        holding.append(holds)
+    if bounds is not None and is_bound and free.shape[1]:
+        x = _rest(bounds, x, free)
+    return Speeds(x=x, ranks=tuple(ranks), smallest=tuple(smallest), holding=tuple(holding), within=within)
+
+
+def _invert(s: Floats, softest: float) -> Floats:
+    """1 / s, below `softest` s / softest^2; 0 for what is none."""
+    safe = np.where(s > RANK, np.maximum(s, softest), 1.0)
+    return np.where(s > RANK, np.minimum(s / safe, 1.0) / safe, 0.0)
+
+
+def _is_inside(bounds: Bounds, x: Floats) -> bool:
+    values = bounds.rows @ x
+    return bool((values >= bounds.lower - INSIDE).all() and (values <= bounds.upper + INSIDE).all())
+
+
+def _rest(bounds: Bounds, x: Floats, free: Floats) -> Floats:
+    """The least of what all levels leave open."""
+    along = -(free.T @ x)
+    if _is_inside(bounds, x + free @ along):
+        return x + free @ along
+    found = _stay_inside(bounds, x, free, np.ones(free.shape[1]), along)
+    return x if found is None else x + found[0]
+
+
+def _stay_inside(
+    bounds: Bounds, x: Floats, turned: Floats, weights: Floats, along: Floats
+) -> tuple[Floats, tuple[int, ...]] | None:
+    """A step of one level inside the bounds, and the bounds that hold it; None if there is none.
+
+    Args:
+        bounds: of all speeds.
+        x: what the levels before gave [n].
+        turned: directions [n, k] that are open, those that the level needs first.
+        weights: how much a unit of each counts [k].
+        along: what the level would have of its own directions [r].
+    """
+    slopes, values = bounds.rows @ turned, bounds.rows @ x
+    steep = np.flatnonzero(np.linalg.norm(slopes, axis=1) > STEEP)
+    box = Bounds(slopes[steep], (bounds.lower - values)[steep], (bounds.upper - values)[steep])
+    start = _find_start(box, weights, along)
+    if start is None:
+        return None
+    point, active = _improve(box, weights[: len(along)], along, *start)
+    return turned @ point, tuple(sorted(int(steep[k]) for k in active))
+
+
+def _find_start(box: Bounds, weights: Floats, along: Floats) -> tuple[Floats, list[int]] | None:
+    """The point inside the bounds that is nearest to what the level would have, and the bounds that hold it."""
+    count, y = len(box.rows), np.zeros(len(weights))
+    normals = box.rows / weights
+    sizes = np.linalg.norm(normals, axis=1)
+    normals /= sizes[:, None]
+    spaces = _make_room(2 * count, len(weights))
+    spaces.normals[:count], spaces.normals[count:] = normals, -normals
+    spaces.offsets[:count], spaces.offsets[count:] = box.lower / sizes, -box.upper / sizes
+    y[: len(along)] = weights[: len(along)] * along
+    if not find_nearest_point(spaces, 2 * count, y):
+        return None
+    used = spaces.active[: int(np.argmax(spaces.active < 0))]
+    return y / weights, [int(k) % count for k in used]
+
+
+def _improve(box: Bounds, weights: Floats, along: Floats, point: Floats, active: list[int]) -> tuple[Floats, list[int]]:
+    """The point [k] that serves the level best, from one inside the bounds: exactly, by bounds taken up and dropped.
+
+    Only the first r directions count, with `weights` [r]; the others are free to make room for them.
+    """
+    needed = len(along)
+    for _ in range(ROUNDS):
+        _, s, Vt = np.linalg.svd(box.rows[active], full_matrices=True)
+        open_ = Vt[int((s > STEEP).sum()) :].T
+        pull = weights * (along - point[:needed])
+        step = open_ @ np.linalg.lstsq(weights[:, None] * open_[:needed], pull, rcond=1e-10)[0]
+        share, blocking = _find_blocking(box, point, step, active)
+        point = point + share * step
+        if blocking >= 0:
+            active = [*active, blocking]
+            continue
+        slope = np.zeros(len(point))
+        slope[:needed] = -weights * weights * (along - point[:needed])
+        multipliers = np.linalg.lstsq(box.rows[active].T, slope, rcond=1e-10)[0]
+        is_low = _is_low(box, point, active)
+        wrong = np.where(is_low, -multipliers, multipliers)
+        wrong[box.upper[active] - box.lower[active] < SETTLED] = 0.0  # one value: it may hold either way
+        if not active or wrong.max() <= SETTLED:
+            return point, [k for k, m in zip(active, multipliers, strict=True) if abs(m) > SETTLED]
+        active = [k for place, k in enumerate(active) if place != int(np.argmax(wrong))]
+    return point, active
+
+
+def _is_low(box: Bounds, point: Floats, active: list[int]) -> NDArray[np.bool_]:
+    """Which of the active bounds are lower ones."""
+    values = box.rows[active] @ point
+    return np.abs(values - box.lower[active]) <= np.abs(values - box.upper[active])
+
+
+def _find_blocking(box: Bounds, point: Floats, step: Floats, active: list[int]) -> tuple[float, int]:
+    """The share of a step that stays inside the bounds, and the bound that ends it; 1 and -1 if none does."""
+    values, rates = box.rows @ point, box.rows @ step
+    room = np.where(rates > 0.0, box.upper - values, box.lower - values)
+    shares = np.full(len(values), np.inf)
+    np.divide(room, rates, out=shares, where=np.abs(rates) > SETTLED)
+    shares[active] = np.inf
+    first = int(np.argmin(shares))
+    return (max(float(shares[first]), 0.0), first) if shares[first] < 1.0 else (1.0, -1)
+
+
+def _make_room(count: int, size: int) -> HalfSpaces:
+    more, active = np.empty(size + 1), np.full(size + 1, -1)
+    return HalfSpaces(
+        np.empty((count, size)),
+        np.empty(count),
+        active,
+        more,
+        np.empty((size + 1, size + 1)),
+        more.copy(),
+        more.copy(),
+        np.empty(size),
+    )
