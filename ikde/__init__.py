@@ -74,6 +74,9 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.track.trajectory import TrackStop as TrackStop
     from ikde.track.trajectory import TrackStopReason as TrackStopReason
     from ikde.track.trajectory import Trajectory as Trajectory
+    from ikde.track.velocity import VelocityResult as VelocityResult
+    from ikde.track.velocity import velocity as velocity
+    from ikde.track.velocity_task import VelocityTask as VelocityTask
 
 __version__ = "0.1.0"
 
@@ -93,6 +96,9 @@ _HOME = {
     "TrackStop": "ikde.track.trajectory",
     "TrackStopReason": "ikde.track.trajectory",
     "write_trajectory": "ikde.io.trajectory_files",
+    "velocity": "ikde.track.velocity",
+    "VelocityResult": "ikde.track.velocity",
+    "VelocityTask": "ikde.track.velocity_task",
     "load_robot": "ikde.io.robots",
     "robot_names": "ikde.io.robots",
     "load_goal": "ikde.io.goal_file",

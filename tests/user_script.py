@@ -92,6 +92,20 @@ ikde.run_batch(batch, "run")
 table = ikde.read_batch("run")
 track = ikde.load_track("track.yaml")
 motion: ikde.Trajectory = ikde.run_track(track)
+tasks = [
+    ikde.VelocityTask.tool((0.4, 0.2, 0.3), gain=2.0, max_speed=0.2),
+    ikde.VelocityTask.tool(twist=[0, 0, 0.1], frame="forearm", share=0.5),
+    ikde.VelocityTask.base((1.0, 0.0, 0.3), velocity=(0.1, 0.0, 0.0)),
+    ikde.VelocityTask.joints({"elbow_joint": 1.0}, rates={"wrist_3_joint": 0.1}),
+]
+limits = ikde.MotionLimits.of(ikde.load_robot("ur5e_mecanum"), wheel_speed_rad_s=10.0)
+speeds: ikde.VelocityResult = ikde.velocity("ur5e_mecanum", np.zeros(9), tasks, dt_s=0.02, limits=limits)
+speeds = ikde.velocity("ur5e_mecanum", np.zeros(9), tasks[0], before=speeds.q_dot, weights={"x": 2.0}, softest=0.1)
+wheels: np.ndarray | None = speeds.wheels
+print(
+    speeds.q_dot, speeds.twist, speeds.at_limit, speeds.broken, [task.held_by for task in speeds.tasks if not task.met]
+)
+ikde.VelocityTask.tool((0.4, 0.2, 0.3), gian=2.0)  # type: ignore[call-arg]
 ikde.write_trajectory("motion", motion)
 path = ikde.ToolPath(p_world_tool=np.zeros((5, 3)), dt_s=0.1)
 ikde.follow_path(robot, path, limits=ikde.MotionLimits.of(robot), settings=ikde.ContinuationSettings())

@@ -14,7 +14,6 @@ there exactly, by taking up and dropping bounds until no multiplier has the wron
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +29,7 @@ IDLE = 0.1  # weight of directions that a level does not need, as a share of the
 ROUNDS = 100
 SETTLED = 1e-11  # of a multiplier, or of how fast a step nears a bound
 STEEP = 1e-9  # slope below which a level cannot change a bound
-INSIDE = 1e-8  # by which a bound may be missed; who needs it exactly cuts that off
+INSIDE = 1e-8  # by which a bound may be missed; whatever needs it exactly cuts that off
 
 
 class Level(NamedTuple):
@@ -53,8 +52,7 @@ class Bounds(NamedTuple):
     """[C]"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Speeds:
+class Speeds(NamedTuple):
     """The answer: speeds, and of each level what limits it."""
 
     x: Floats
@@ -63,6 +61,8 @@ class Speeds:
     """Of what the levels before leave of each level's matrix."""
     smallest: tuple[float, ...]
     """Its smallest singular value, of as many as there are rows, or motions left: 0 where rows cannot be served."""
+    damped: tuple[bool, ...]
+    """Whether one of its singular values is so small that its inverse is damped."""
     holding: tuple[tuple[int, ...], ...]
     """Bounds that keep each level from doing better: rows of `Bounds`."""
     within: bool
@@ -70,26 +70,28 @@ class Speeds:
 
 
 def damped_inverse(matrix: Floats, softest: float = SOFTEST) -> Floats:
-    """The pseudo-inverse [n, m] of a matrix [m, n], with 1 / s as s / softest^2 where a singular value is below."""
+    """The pseudo-inverse [..., n, m] of matrices [..., m, n], with s / softest^2 for 1 / s where s is below."""
     U, s, Vt = np.linalg.svd(matrix, full_matrices=False)
-    return (Vt.T * _invert(s, softest)) @ U.T
+    return (Vt.mT * _invert(s, softest)[..., None, :]) @ U.mT
 
 
 def null_projector(matrix: Floats) -> Floats:
-    """The projector [n, n] onto the null space of a matrix [m, n]: what it does to x, the matrix does not see."""
-    _, s, Vt = np.linalg.svd(matrix, full_matrices=True)
-    free = Vt[int((s > RANK).sum()) :]
-    return free.T @ free
+    """Projectors [..., n, n] onto the null spaces of matrices [..., m, n]: what a matrix does not see of x."""
+    _, s, Vt = np.linalg.svd(matrix, full_matrices=False)
+    return np.eye(matrix.shape[-1]) - (Vt.mT * (s > RANK)[..., None, :]) @ Vt
 
 
 def recurse(levels: Sequence[Level], softest: float = SOFTEST) -> Floats:
-    """Speeds [n] by the recursion as it is written in textbooks, with projectors; `solve_levels` gives the same."""
-    x = np.zeros(levels[0].matrix.shape[1])
-    above = np.empty((0, len(x)))
+    """Speeds [..., n] by the recursion as it is written in textbooks; one problem or many side by side.
+
+    `solve_levels` gives the same, and more: bounds, and what limits each level.
+    """
+    x, above = np.zeros((*levels[0].matrix.shape[:-2], levels[0].matrix.shape[-1])), None
     for matrix, wanted in levels:
-        N = null_projector(above) if len(above) else np.eye(len(x))
-        x = x + N @ damped_inverse(matrix @ N, softest) @ (wanted - matrix @ x)
-        above = np.vstack([above, matrix])
+        left = wanted - (matrix @ x[..., None])[..., 0]
+        open_ = matrix if above is None else matrix @ null_projector(above)
+        x = x + (damped_inverse(open_, softest) @ left[..., None])[..., 0]
+        above = matrix if above is None else np.concatenate([above, matrix], axis=-2)
     return x
 
 
@@ -97,7 +99,7 @@ def solve_levels(levels: Sequence[Level], bounds: Bounds | None = None, softest:
     """The least speeds x [n] that serve the levels in their order, inside the bounds.
 
     Args:
-        levels: the first has priority over all others; rows of one level are weighed against each other as they are.
+        levels: at least one, the first before all others; rows of one are weighed against each other as they are.
         bounds: hold for every level, before the first.
         softest: where singular values are damped; 0 damps nothing.
     """
@@ -105,30 +107,31 @@ def solve_levels(levels: Sequence[Level], bounds: Bounds | None = None, softest:
     x, free = np.zeros(size), np.eye(size)
     within = bounds is None or bool((bounds.lower <= bounds.upper).all())
     bounds = bounds if within else None
-    ranks, smallest, holding, is_bound = [], [], [], False
+    ranks, smallest, damped, holding, is_bound = [], [], [], [], False
     for matrix, wanted in levels:
         U, s, Vt = np.linalg.svd(matrix @ free, full_matrices=True)
         rank = int((s > RANK).sum())
         along = _invert(s[:rank], softest) * (U[:, :rank].T @ (wanted - matrix @ x))
-        turned = free @ Vt.T
-        step, holds = turned[:, :rank] @ along, ()
+        open_ = free @ Vt.T
+        step, holds = open_[:, :rank] @ along, ()
         if bounds is not None and not _is_inside(bounds, x + step):
             weights = np.maximum(s[:rank], softest)
             idle = IDLE * weights[-1] if rank else 1.0
-            found = _stay_inside(bounds, x, turned, np.r_[weights, np.full(turned.shape[1] - rank, idle)], along)
+            found = _stay_inside(bounds, x, open_, np.r_[weights, np.full(open_.shape[1] - rank, idle)], along)
             if found is not None:
                 (step, holds), is_bound = found, True
             elif _is_inside(bounds, x):
                 step = np.zeros(size)  # so little room is left that rounding takes it
             else:
                 bounds, within = None, False
-        x, free = x + step, turned[:, rank:]
+        x, free = x + step, open_[:, rank:]
         ranks.append(rank)
         smallest.append(float(s[-1]) if len(s) and len(s) == len(matrix) else 0.0)
+        damped.append(bool((s[:rank] < softest).any()))
         holding.append(holds)
     if bounds is not None and is_bound and free.shape[1]:
         x = _rest(bounds, x, free)
-    return Speeds(x=x, ranks=tuple(ranks), smallest=tuple(smallest), holding=tuple(holding), within=within)
+    return Speeds(x, tuple(ranks), tuple(smallest), tuple(damped), tuple(holding), within)
 
 
 def _invert(s: Floats, softest: float) -> Floats:
@@ -152,25 +155,25 @@ def _rest(bounds: Bounds, x: Floats, free: Floats) -> Floats:
 
 
 def _stay_inside(
-    bounds: Bounds, x: Floats, turned: Floats, weights: Floats, along: Floats
+    bounds: Bounds, x: Floats, open_: Floats, weights: Floats, along: Floats
 ) -> tuple[Floats, tuple[int, ...]] | None:
     """A step of one level inside the bounds, and the bounds that hold it; None if there is none.
 
     Args:
         bounds: of all speeds.
         x: what the levels before gave [n].
-        turned: directions [n, k] that are open, those that the level needs first.
+        open_: directions [n, k] that are open, those that the level needs first.
         weights: how much a unit of each counts [k].
         along: what the level would have of its own directions [r].
     """
-    slopes, values = bounds.rows @ turned, bounds.rows @ x
+    slopes, values = bounds.rows @ open_, bounds.rows @ x
     steep = np.flatnonzero(np.linalg.norm(slopes, axis=1) > STEEP)
     box = Bounds(slopes[steep], (bounds.lower - values)[steep], (bounds.upper - values)[steep])
     start = _find_start(box, weights, along)
     if start is None:
         return None
     point, active = _improve(box, weights[: len(along)], along, *start)
-    return turned @ point, tuple(sorted(int(steep[k]) for k in active))
+    return open_ @ point, tuple(sorted(int(steep[k]) for k in active))
 
 
 def _find_start(box: Bounds, weights: Floats, along: Floats) -> tuple[Floats, list[int]] | None:
@@ -199,7 +202,8 @@ def _improve(box: Bounds, weights: Floats, along: Floats, point: Floats, active:
         _, s, Vt = np.linalg.svd(box.rows[active], full_matrices=True)
         open_ = Vt[int((s > STEEP).sum()) :].T
         pull = weights * (along - point[:needed])
-        step = open_ @ np.linalg.lstsq(weights[:, None] * open_[:needed], pull, rcond=1e-10)[0]
+        least = np.linalg.lstsq(weights[:, None] * open_[:needed], pull, rcond=1e-10)[0]
+        step = open_ @ np.asarray(least, dtype=float)
         share, blocking = _find_blocking(box, point, step, active)
         point = point + share * step
         if blocking >= 0:

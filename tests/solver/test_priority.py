@@ -71,6 +71,13 @@ def test_without_bounds_it_is_the_recursion_of_the_textbooks(seed):
     np.testing.assert_array_equal(solve_levels(levels, wide).x, solve_levels(levels).x)
 
 
+def test_many_problems_side_by_side():
+    rng = np.random.default_rng(9)
+    several = [draw_levels(rng, 7, (2, 3)) for _ in range(4)]
+    stacked = [Level(*map(np.array, zip(*own, strict=True))) for own in zip(*several, strict=True)]
+    np.testing.assert_allclose(recurse(stacked), [recurse(levels) for levels in several], atol=1e-13)
+
+
 def test_a_lower_task_disturbs_no_higher_one():
     rng = np.random.default_rng(0)
     for _ in range(200):
