@@ -22,8 +22,8 @@ from tests.substitutes import substituted
 
 ROBOTS = ("panda", "qiao2021", "qiao2021_dh", "ur5")
 """Robots whose files were written by hand; what is imported and ships is tried by tests/test_shipped_imports.py."""
-BY_HAND = (*ROBOTS, "ur5e_mecanum")
-"""All of them: one more is tried where that costs little, since every robot has kernels of its own."""
+BY_HAND = (*ROBOTS, "leobot", "ur5e_mecanum")
+"""All of them: two more are tried where that costs little, since every robot has kernels of its own."""
 TESTS = Path(__file__).parent
 WORKERS = 2
 LATE = {

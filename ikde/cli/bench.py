@@ -1,4 +1,4 @@
-"""`ikde bench`; and `ikde bench paper`: the paper's tables and figures, published beside ours, as one page."""
+"""`ikde bench`; and `ikde bench paper`: the papers' tables and figures, published beside ours, as one page."""
 
 import gc
 from dataclasses import replace
@@ -40,7 +40,7 @@ def paper(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Compute the tables and figures of Qiao et al. 2021 and show them beside the print.
+    """Compute the tables and figures of Qiao et al. 2021, and of Dong and Zhao, and show them beside the print.
 
     Exits with 1 if --check finds a difference.
 

@@ -29,6 +29,12 @@ def load_published() -> dict[str, Any]:
 
 
 @cache
+def load_dong_zhao() -> dict[str, Any]:
+    """Printed numbers of [DongZhao] and lengths that were searched for them (`dong_zhao.yaml`)."""
+    return dict(read_yaml(FOLDER / "dong_zhao.yaml").data or {})
+
+
+@cache
 def load_misprints() -> list[dict[str, str]]:
     """Misprints and puzzles: paper, kind, place, printed, meant, evidence; the entries of docs/misprints.md."""
     papers = read_yaml(FOLDER / "misprints.yaml").data
@@ -90,7 +96,9 @@ class Inputs:
 
     robot: Robot  # qiao2021, the key-point model
     classical: Robot  # qiao2021_dh, the Denavit-Hartenberg model of the same arm
-    published: Mapping[str, Any]
+    tracked: Robot  # leobot, the tracked manipulator of [DongZhao]
+    published: Mapping[str, Any]  # [Qiao2021]
+    dong_zhao: Mapping[str, Any]
     misprints: Sequence[Mapping[str, str]]
     budget: Budget
     progress: Progress = SILENCE
@@ -106,7 +114,9 @@ def load_inputs(budget: Budget) -> Inputs:
     return Inputs(
         robot=load_robot("qiao2021"),
         classical=load_robot("qiao2021_dh"),
+        tracked=load_robot("leobot"),
         published=load_published(),
+        dong_zhao=load_dong_zhao(),
         misprints=load_misprints(),
         budget=budget,
     )

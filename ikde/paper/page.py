@@ -13,20 +13,27 @@ from ikde.paper.solutions import Solutions
 from ikde.report.numbers import fixed, length
 from ikde.report.page import Code, Facts, Number, Numbers, Page, Section, Text
 
+SUBJECTS = {
+    "Qiao et al. 2021": "Kinematics and self-collision detection of a mobile manipulator",
+    "Dong and Zhao": "Manipulability of a tracked manipulator",
+}
+
 
 def make_paper_page(results: Results, inputs: Inputs) -> Page:
     """The report's page; `inputs` are those that `results` were computed from: the robots are drawn."""
     computed = results.sections
     shown = [_with_command(name, TOPICS[name].show(section, inputs)) for name, section in computed.items()]
     headline = (_introduce(**computed), _headline(**computed)) if computed.keys() == TOPICS.keys() else ()
+    papers = [paper for paper in dict.fromkeys(TOPICS[name].paper for name in computed) if paper]
     return Page(
-        title="Qiao et al. 2021, recomputed",
-        subtitle="Kinematics and self-collision detection of a mobile manipulator: what the paper prints beside what "
-        "ikde computes.",
+        title=f"{' and '.join(papers)}, recomputed" if papers else "Papers, recomputed",
+        subtitle=f"{'; '.join(SUBJECTS[paper] for paper in papers)}{': what' if papers else 'What'} is printed beside "
+        "what ikde computes.",
         lead=(*headline, _explain_marks(results)),
         sections=(*shown, _make_recipe(results)),
         footer="[Qiao2021] Qiao, L.; Luo, X.; Luo, Q.; Li, M.; Jiang, J. Applied Sciences 2021, 11, 10591. [Qiao2022] "
-        "Qiao, L.; Luo, X.; Luo, Q. Machines 2022, 10, 1232. Every number on this page is in `results.json`.",
+        "Qiao, L.; Luo, X.; Luo, Q. Machines 2022, 10, 1232. [DongZhao] Dong, P.; Zhao, X. The Manipulability and "
+        "Optimized Configuration of Tracked Mobile Manipulator. Every number on this page is in `results.json`.",
     )
 
 
@@ -44,8 +51,8 @@ def _introduce(
     agree += [detection.agrees for detection in situations.detections]
     most = "all" if all(agree) else f"{sum(agree)}"
     return Text(
-        "The paper covers a mobile manipulator of nine joints with spheres, in the usual and in an improved way, and "
-        "searches configurations free of self-collision by differential evolution. **Verdict**: with "
+        "Qiao et al. cover a mobile manipulator of nine joints with spheres, in the usual and in an improved way, and "
+        "search configurations free of self-collision by differential evolution. **Verdict**: with "
         f"{len(misprints.misprints)} [misprints](#misprints) put right, {most} of {len(agree)} printed volumes, errors "
         "and detection angles come out as printed; ≠ marks what does not."
     )

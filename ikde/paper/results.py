@@ -19,6 +19,8 @@ from ikde.paper.detection import compute_detection
 from ikde.paper.detection_page import show_detection
 from ikde.paper.inputs import APPROXIMATIONS, FULL, Budget, Inputs
 from ikde.paper.kinematics import compute_kinematics, show_kinematics
+from ikde.paper.manipulability import compute_manipulability
+from ikde.paper.manipulability_page import show_manipulability
 from ikde.paper.misprints import compute_misprints, show_misprints
 from ikde.paper.rejection import READINGS, compute_rejection
 from ikde.paper.rejection_page import show_rejection
@@ -38,6 +40,7 @@ class Topic(NamedTuple):
 
     compute: Callable[[Inputs], Computed]
     show: Callable[[Any, Inputs], Section]
+    paper: str = "Qiao et al. 2021"
 
 
 TOPICS = {
@@ -50,7 +53,8 @@ TOPICS = {
     "detection": Topic(compute_detection, show_detection),
     "solutions": Topic(compute_solutions, show_solutions),
     "situations": Topic(compute_situations, show_situations),
-    "misprints": Topic(compute_misprints, show_misprints),
+    "manipulability": Topic(compute_manipulability, show_manipulability, "Dong and Zhao"),
+    "misprints": Topic(compute_misprints, show_misprints, ""),
 }
 
 

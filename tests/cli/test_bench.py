@@ -8,14 +8,16 @@ from matplotlib.figure import Figure
 
 from ikde.paper import inputs
 from ikde.plot.pose import plot_pose
+from ikde.plot.surfaces import plot_surface
 from tests.tiny_paper import TINY
 
 
 @pytest.fixture
 def report(cli, tmp_path, monkeypatch, substitute):
-    """A tiny report in a folder of its own, its pictures of the robot blank: each takes half a second."""
+    """A tiny report in a folder of its own, its pictures blank: each takes half a second."""
     monkeypatch.setattr(inputs, "QUICK", TINY)
-    substitute(plot_pose, lambda *_, **__: Figure(figsize=(1, 1)))
+    for plot in (plot_pose, plot_surface):
+        substitute(plot, lambda *_, **__: Figure(figsize=(1, 1)))
     outcome = cli("bench", "paper", "--out", tmp_path / "report", "--quick")
     assert outcome.code == 0, outcome
     return tmp_path / "report", outcome

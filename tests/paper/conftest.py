@@ -1,10 +1,13 @@
 """One tiny report for all sections, and what it is computed from."""
 
+from contextlib import ExitStack
+
 import pytest
 from matplotlib.figure import Figure
 
 from ikde.paper.inputs import load_inputs, load_published
 from ikde.plot.pose import plot_pose
+from ikde.plot.surfaces import plot_surface
 from tests.substitutes import substituted
 from tests.tiny_paper import TINY, compute_tiny
 
@@ -29,8 +32,10 @@ def results():
 
 @pytest.fixture(autouse=True, scope="package")
 def _blank_pictures():
-    """Drawing a robot takes half a second; test_section.py does it."""
-    with substituted(plot_pose, lambda *_, **__: Figure(figsize=(1, 1))):
+    """Drawing a robot takes half a second; test_section.py does it. A surface takes as long: tests/plot."""
+    with ExitStack() as stack:
+        for plot in (plot_pose, plot_surface):
+            stack.enter_context(substituted(plot, lambda *_, **__: Figure(figsize=(1, 1))))
         yield
 
 
