@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from ikde.paper.columns import Shown as ShownColumn
 from ikde.paper.columns import label, make_table, mark_off, ours, published
 from ikde.paper.inputs import Inputs
 from ikde.paper.manipulability import (
@@ -12,8 +13,10 @@ from ikde.paper.manipulability import (
     Manipulability,
     PairOptimum,
     PrintedAngle,
+    SpaceOptimum,
+    UnitOptimum,
 )
-from ikde.paper.manipulability_claims import Claim, Shown
+from ikde.paper.manipulability_claims import Claim, Shown, Singular
 from ikde.paper.manipulability_figures import THETA, draw_manipulability, name_angles
 from ikde.paper.optima import SPACE_STEP_DEG
 from ikde.report.numbers import fixed, significant
@@ -102,13 +105,17 @@ def _make_singular(data: Manipulability) -> Table:
     return make_table(
         data.singular,
         label("listed", lambda row: "yes" if row.listed else "no"),
-        *(ours(f"θ{k + 1}", "deg", lambda row, k=k: f"{row.theta_deg[k]:.4g}") for k in range(4)),
+        *map(_show_theta, range(4)),
         ours("w1 with l_m = 0", "", lambda row: _number(row.w1_without_offset)),
         ours(f"w1 with l_m = {data.lengths[3].value_m:g} m", "", lambda row: _number(row.w1_with_offset)),
         caption="Singular configurations of the base: those that the paper lists, and two that it does not",
         note="Where the paper leaves an angle open, any value will do; these are ours. For θ1, θ3 and θ4 as in the "
         "last rows, θ2 was solved from l_m = R cos θ1: wherever the arm is long enough there is such an angle.",
     )
+
+
+def _show_theta(k: int) -> ShownColumn[Singular]:
+    return ours(f"θ{k + 1}", "deg", lambda row: f"{row.theta_deg[k]:.4g}")
 
 
 def _make_rigidity(data: Manipulability) -> Table:
@@ -213,13 +220,14 @@ def _make_peaks(data: Manipulability) -> Table:
         third.values(),
         label("angle", lambda row: THETA[row.third]),
         ours("peak by the text, 3.14 undone", "deg", lambda row: f"{row.third_deg:.4g}"),
-        *(
-            ours(space.chain, "deg", lambda row, space=space: _angles(space.largest_at_deg[row.third], 1))
-            for space in data.space
-        ),
+        *map(_show_peaks, data.space),
         caption="Where the largest w2 over the two other angles peaks",
         note=f"On a grid of {SPACE_STEP_DEG:g} deg, θ1 = 0; two angles where both are as large.",
     )
+
+
+def _show_peaks(space: SpaceOptimum) -> ShownColumn[PairOptimum]:
+    return ours(space.chain, "deg", lambda row: _angles(space.largest_at_deg[row.third], 1))
 
 
 def _make_units(data: Manipulability) -> Table:
@@ -228,14 +236,15 @@ def _make_units(data: Manipulability) -> Table:
     return make_table(
         by_chain.items(),
         label("chain", lambda row: row[0]),
-        *(
-            ours(f"lengths in {unit}", "deg", lambda row, k=k: _angles(row[1][k].grid_deg, 1))
-            for k, unit in enumerate(units)
-        ),
+        *(_show_unit(k, unit) for k, unit in enumerate(units)),
         caption="The same arm, its lengths counted in another unit: the optimum (θ2, θ3) of Figure 3 moves",
         note="w2 adds 1/2, from speeds of the tracks, to squares of lengths, from speeds of joints in rad/s. w1 has "
         "lengths over b alone and keeps its optimum. Columns scaled by speed limits would end that.",
     )
+
+
+def _show_unit(k: int, unit: str) -> ShownColumn[tuple[str, list[UnitOptimum]]]:
+    return ours(f"lengths in {unit}", "deg", lambda row: _angles(row[1][k].grid_deg, 1))
 
 
 def _explain_found(data: Manipulability) -> Text:
@@ -266,10 +275,7 @@ def _make_found(data: Manipulability) -> Table:
         label("range", lambda row: row.range),
         label("sought", _name_sought),
         ours(", ".join(LENGTHS), "m", lambda row: ", ".join(f"{x:.4g}" for x in row.lengths_m)),
-        *(
-            ours(f"Figure {figure.figure}", "%", lambda row, k=k: _say_below(row.figures[k]), "value below its largest")
-            for k, figure in enumerate(data.found[0].figures)
-        ),
+        *(_show_below(k, figure.figure) for k, figure in enumerate(data.found[0].figures)),
         caption="Lengths that were found, and how far each printed optimum is below the largest of its figure",
         note="Wide: 2 cm to 50 m. Believable: links of 5 to 60 cm, l_m up to 30 cm, b of 20 to 60 cm. ≠: sought, and "
         "not the largest on the grid. `python -m benchmarks.dong_zhao_lengths` searches again, also for the other "
@@ -280,6 +286,10 @@ def _make_found(data: Manipulability) -> Table:
 def _name_sought(row: FoundLengths) -> str:
     sought = [figure.figure for figure in row.figures if figure.is_sought]
     return f"Figure {sought[0]}" if len(sought) == 1 else "all"
+
+
+def _show_below(k: int, figure: int) -> ShownColumn[FoundLengths]:
+    return ours(f"Figure {figure}", "%", lambda row: _say_below(row.figures[k]), "value below its largest")
 
 
 def _say_below(figure: FoundFigure) -> str | Cell:

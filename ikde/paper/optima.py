@@ -121,7 +121,7 @@ def wrap_deg(theta: Floats) -> list[float]:
     return [round(value % TURN_DEG, 6) % TURN_DEG for value in np.degrees(theta).tolist()]
 
 
-def mirror_deg(theta_deg: Sequence[float]) -> list[float]:
+def mirror_deg(theta_deg: Sequence[float] | Floats) -> list[float]:
     """The other half of a pair of equal values at theta1 = 0: theta2 .. theta4 turned the other way."""
     return [theta_deg[0], *((TURN_DEG - angle) % TURN_DEG for angle in theta_deg[1:])]
 

@@ -9,6 +9,7 @@ brackets are the paper's equations. A `Chain` says how links point: `PRINTED` as
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ikde.kernels.arrays import Floats
 
@@ -54,7 +55,7 @@ class Reach:
     d_upward: tuple[Floats, Floats, Floats]  # k2, k3, k4: (9)'s B12, B13, B14
 
 
-def compute_reach(arm: TrackedArm, theta: Floats) -> Reach:
+def compute_reach(arm: TrackedArm, theta: ArrayLike) -> Reach:
     """E in the plane of the arm; `theta` may be complex."""
     second = np.asarray(theta)[..., 1]
     third = second + np.asarray(theta)[..., 2]
@@ -74,7 +75,7 @@ def _sum_from_each(first: Floats, second: Floats, third: Floats) -> tuple[Floats
     return first + second + third, second + third, third
 
 
-def compute_end(arm: TrackedArm, base: Floats, theta: Floats) -> Floats:
+def compute_end(arm: TrackedArm, base: Floats, theta: ArrayLike) -> Floats:
     """E [..., 3] in the world (1, 7) for P and the heading, `base` [..., 3]."""
     x, y, heading = np.moveaxis(np.asarray(base), -1, 0)
     reach, yaw = compute_reach(arm, theta), np.asarray(theta)[..., 0] + heading
@@ -88,7 +89,7 @@ def compute_end(arm: TrackedArm, base: Floats, theta: Floats) -> Floats:
     )
 
 
-def compute_arm_jacobian(arm: TrackedArm, theta: Floats) -> Floats:
+def compute_arm_jacobian(arm: TrackedArm, theta: ArrayLike) -> Floats:
     """Q [..., 2, 4] below (10): velocity of E over M by theta1' + heading', theta2' .. theta4', in the base's frame."""
     reach, first = compute_reach(arm, theta), np.asarray(theta)[..., 0]
     c, s = np.cos(first), np.sin(first)
@@ -99,7 +100,7 @@ def compute_arm_jacobian(arm: TrackedArm, theta: Floats) -> Floats:
     return Q
 
 
-def compute_base_jacobian(arm: TrackedArm, theta: Floats, heading: Floats | float = 0.0) -> Floats:
+def compute_base_jacobian(arm: TrackedArm, theta: ArrayLike, heading: Floats | float = 0.0) -> Floats:
     """J1 [..., 2, 2] of (12): velocity of E in the plane by the speeds of the right and the left wheel."""
     Q, b = compute_arm_jacobian(arm, theta), arm.track_m
     along, across = Q[..., 0, 0] / b, (arm.arm_offset_m - Q[..., 1, 0]) / b
@@ -107,7 +108,7 @@ def compute_base_jacobian(arm: TrackedArm, theta: Floats, heading: Floats | floa
     return _turn(heading) @ J
 
 
-def compute_jacobian(arm: TrackedArm, theta: Floats, heading: Floats | float = 0.0) -> Floats:
+def compute_jacobian(arm: TrackedArm, theta: ArrayLike, heading: Floats | float = 0.0) -> Floats:
     """J2 [..., 3, 6] of (11): velocity of E by v_r, v_l, theta1', theta2', theta3', theta4'."""
     Q = compute_arm_jacobian(arm, theta)
     J = np.zeros((*Q.shape[:-2], 3, 6), dtype=Q.dtype)
@@ -122,13 +123,13 @@ def _turn(heading: Floats | float) -> Floats:
     return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
 
 
-def compute_w1(arm: TrackedArm, theta: Floats) -> Floats:
+def compute_w1(arm: TrackedArm, theta: ArrayLike) -> Floats:
     """det(J1 J1^T) [...] of (13), with its square: the distance of E from the wheels' axle, over the track, squared."""
     across = arm.arm_offset_m - compute_reach(arm, theta).outward * np.cos(np.asarray(theta)[..., 0])
     return (across / arm.track_m) ** 2
 
 
-def compute_w2(arm: TrackedArm, theta: Floats) -> Floats:
+def compute_w2(arm: TrackedArm, theta: ArrayLike) -> Floats:
     """det(J2 J2^T) [...] of (15), written out in the plane of the arm; `theta` may be complex."""
     reach, first = compute_reach(arm, theta), np.asarray(theta)[..., 0]
     c, s, R = np.cos(first), np.sin(first), reach.outward
@@ -142,14 +143,14 @@ def compute_w2(arm: TrackedArm, theta: Floats) -> Floats:
     return upward * (outward * sideward - outward_sideward**2) - outward_upward**2 * sideward
 
 
-def compute_slope(arm: TrackedArm, theta: Floats) -> Floats:
+def compute_slope(arm: TrackedArm, theta: ArrayLike) -> Floats:
     """The gradient [..., 4] of log w2 by theta, a radian, exact to rounding (complex steps)."""
     steps = np.asarray(theta)[..., None, :] + 1e-30j * np.eye(4)
     w = compute_w2(arm, steps)
     return w.imag / w.real / 1e-30
 
 
-def compute_curvature(arm: TrackedArm, theta: Floats) -> Floats:
+def compute_curvature(arm: TrackedArm, theta: ArrayLike) -> Floats:
     """The second derivatives [..., 4, 4] of log w2, from central differences of its slope."""
     step, at = 1e-5, np.asarray(theta)[..., None, :]
     up, down = (compute_slope(arm, at + side * np.eye(4)) for side in (step, -step))
