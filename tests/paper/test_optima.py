@@ -18,6 +18,7 @@ from ikde.paper.optima import (
     find_peak_by_grid,
     mirror_deg,
     newton_step_deg,
+    spread_pair,
     wrap_deg,
 )
 from ikde.paper.tracked_arm import PRINTED, RIGID, TrackedArm, compute_slope, compute_w1, compute_w2
@@ -46,6 +47,15 @@ def test_the_best_of_a_figures_grid(figure, chain, at_deg, w2):
     assert peak.w2 == pytest.approx(w2, abs=5e-5)
     assert peak.theta_deg[0] == 0.0
     assert peak.theta_deg[surface.third] == pytest.approx(surface.at_deg[surface.third], abs=1e-6)
+
+
+def test_the_first_angle_of_a_figure_grows_down_the_rows():
+    plane = np.degrees(spread_pair(SURFACES[4], 90.0))
+    assert plane.shape == (4, 4, 4)
+    assert plane[:, 0, 1].tolist() == pytest.approx([0, 90, 180, 270])
+    assert plane[0, :, 3].tolist() == pytest.approx([0, 90, 180, 270])
+    assert plane[..., 2] == pytest.approx(198.0, abs=1e-5)
+    assert not plane[..., 0].any()
 
 
 @pytest.mark.parametrize(
