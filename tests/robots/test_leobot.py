@@ -11,7 +11,6 @@ from ikde.io.yaml_file import read_yaml
 from ikde.model.base_motion import find_base_frame, find_planar_base, usual_drive
 from ikde.paper.manipulability import read_arm
 from ikde.paper.tracked_arm import compute_end, compute_jacobian
-from ikde.solver.jacobian import arm_jacobian
 from tests.conftest import random_q
 
 
@@ -29,15 +28,13 @@ def test_e_is_where_the_rigid_chain_puts_it(leobot, rng):
         np.testing.assert_allclose(frames["M"][:3, 3], compute_end(still, q[:3], q[3:]), rtol=0, atol=1e-12)
 
 
-def test_the_papers_jacobian_is_the_robots_with_the_base_driven_by_its_tracks(leobot, rng):
-    """J2's columns: x, y and heading of P by (2) and (3), then the joints."""
+def test_the_papers_jacobian_is_the_robots_by_its_tracks_and_joints(leobot, rng):
+    """J2 has the right track first, and speeds in m/s where ikde has those of wheels in rad/s."""
     arm = read_arm(leobot)
     for q in random_q(leobot, rng, 20):
-        R, (c, s) = ikde.forward(leobot, q)["E"][:3, :3], (np.cos(q[2]), np.sin(q[2]))
-        J = R @ arm_jacobian(leobot, q)[:3]
-        tracks = np.array([[c / 2, c / 2], [s / 2, s / 2], [1 / 0.4, -1 / 0.4]])
-        driven = np.hstack([J[:, :3] @ tracks, J[:, 3:]])
-        np.testing.assert_allclose(driven, compute_jacobian(arm, q[3:], q[2]), rtol=0, atol=1e-12)
+        left, right, *joints = ikde.jacobian(leobot, q, by="actuators")[:3].T
+        J2 = np.column_stack([right / leobot.wheels.radius_m, left / leobot.wheels.radius_m, *joints])
+        np.testing.assert_allclose(J2, compute_jacobian(arm, q[3:], q[2]), rtol=0, atol=1e-12)
 
 
 def test_its_base_is_one_that_drives(leobot):
