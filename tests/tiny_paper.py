@@ -16,6 +16,7 @@ TINY = replace(
     surface_verdicts=5,
     timed_verdicts=3,
     curve_points=11,
+    run_steps_per_s=5,
 )
 
 

@@ -64,6 +64,7 @@ class Budget:
     plain_verdicts: int  # judged the paper's way, every surface point against every other; 0.4 s each
     timed_verdicts: int  # timed one by one
     curve_points: int  # moments of a situation's curve
+    run_steps_per_s: int = 50  # of simulated runs
 
 
 FULL = Budget(
@@ -87,6 +88,7 @@ QUICK = Budget(
     plain_verdicts=1,
     timed_verdicts=50,
     curve_points=101,
+    run_steps_per_s=25,
 )
 
 

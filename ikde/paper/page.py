@@ -16,6 +16,7 @@ from ikde.report.page import Code, Facts, Number, Numbers, Page, Section, Text
 SUBJECTS = {
     "Qiao et al. 2021": "Kinematics and self-collision detection of a mobile manipulator",
     "Dong and Zhao": "Manipulability of a tracked manipulator",
+    "Zhang et al. 2022": "Two tasks on a mecanum platform",
 }
 
 
@@ -33,7 +34,8 @@ def make_paper_page(results: Results, inputs: Inputs) -> Page:
         sections=(*shown, _make_recipe(results)),
         footer="[Qiao2021] Qiao, L.; Luo, X.; Luo, Q.; Li, M.; Jiang, J. Applied Sciences 2021, 11, 10591. [Qiao2022] "
         "Qiao, L.; Luo, X.; Luo, Q. Machines 2022, 10, 1232. [DongZhao] Dong, P.; Zhao, X. The Manipulability and "
-        "Optimized Configuration of Tracked Mobile Manipulator. Every number on this page is in `results.json`.",
+        "Optimized Configuration of Tracked Mobile Manipulator. [Zhang2022] Zhang, S.; Cheng, S.; Jin, Z. Machines "
+        "2022, 10, 1222. Every number on this page is in `results.json`.",
     )
 
 

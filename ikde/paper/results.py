@@ -22,6 +22,8 @@ from ikde.paper.kinematics import compute_kinematics, show_kinematics
 from ikde.paper.manipulability import compute_manipulability
 from ikde.paper.manipulability_page import show_manipulability
 from ikde.paper.misprints import compute_misprints, show_misprints
+from ikde.paper.null_space import compute_null_space
+from ikde.paper.null_space_page import show_null_space
 from ikde.paper.rejection import READINGS, compute_rejection
 from ikde.paper.rejection_page import show_rejection
 from ikde.paper.section import Computed
@@ -54,6 +56,7 @@ TOPICS = {
     "solutions": Topic(compute_solutions, show_solutions),
     "situations": Topic(compute_situations, show_situations),
     "manipulability": Topic(compute_manipulability, show_manipulability, "Dong and Zhao"),
+    "null_space": Topic(compute_null_space, show_null_space, "Zhang et al. 2022"),
     "misprints": Topic(compute_misprints, show_misprints, ""),
 }
 
