@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.collision_model import CollisionModel
-from ikde.model.robot import WORLD, FreeSpheres, Pairs, Robot, SphereRow
+from ikde.model.robot import WORLD, Frame, FreeSpheres, Pairs, Robot, SphereRow
 from ikde.solver.plain_cloud import find_cloud_gaps
 from ikde.solver.plain_world import Alike, list_alike
 
@@ -44,11 +44,11 @@ class Placing(NamedTuple):
     """By kind of joint: places in q [M], and axes [M, 3]."""
 
 
-@lru_cache(maxsize=64)
-def _list_frames(robot: Robot) -> Placing:
+@lru_cache(maxsize=128)
+def _list_frames(robot: Robot, ends: tuple[str, ...] | None) -> Placing:
     places = {name: place for place, name in enumerate(robot.joint_names)}
     frames, moved = [], {}
-    for frame in robot.frames:
+    for frame in _list_ancestors(robot, ends):
         T, motion = np.eye(4), None
         T[:3, :3], T[:3, 3] = frame.R_parent_frame, frame.p_parent_frame
         if frame.joint is not None and frame.axis is not None:
@@ -61,9 +61,24 @@ def _list_frames(robot: Robot) -> Placing:
     return Placing(tuple(frames), {kind: (places, np.array(axes)) for kind, (places, axes) in moved.items()})
 
 
-def compute_frames(robot: Robot, q: Floats) -> dict[str, Floats]:
-    """T_world_frame [..., 4, 4] of every frame, for `q` [..., N] in the robot's own convention."""
-    frames, moved = _list_frames(robot)
+def _list_ancestors(robot: Robot, ends: tuple[str, ...] | None) -> list[Frame]:
+    """The frames from the world to these, parents first; None: all frames."""
+    if ends is None:
+        return list(robot.frames)
+    found, wanted = [], set(ends)
+    for frame in reversed(robot.frames):
+        if frame.name in wanted:
+            found.append(frame)
+            wanted.add(frame.parent)
+    return found[::-1]
+
+
+def compute_frames(robot: Robot, q: Floats, ends: tuple[str, ...] | None = None) -> dict[str, Floats]:
+    """T_world_frame [..., 4, 4] of every frame, for `q` [..., N] in the robot's own convention.
+
+    `ends`: of these frames alone, and of those between the world and them.
+    """
+    frames, moved = _list_frames(robot, ends)
     Ts_world: dict[str, Floats] = {WORLD: np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))}
     motions = {kind: joint_motion(kind, axes, q[..., places]) for kind, (places, axes) in moved.items()}
     for name, parent, T, motion in frames:

@@ -1,8 +1,9 @@
 """Speeds of base and arm for tasks in order of priority, inside the limits of every joint."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import lru_cache
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ikde.model.numbers import is_number
 from ikde.model.robot import Robot
 from ikde.model.value import MadeAnew
 from ikde.model.wheels import wheels_by_twist
+from ikde.solver.jacobian import find_frame
 from ikde.solver.joints import JointValues, read_configuration, read_joints
 from ikde.solver.motion import MAX_WEIGHT, MIN_WEIGHT
 from ikde.solver.plain import compute_frames
@@ -27,6 +29,7 @@ from ikde.track.velocity_task import VelocityTask
 MIN_DT_S, MAX_DT_S = 1e-6, 10.0
 MAX_TASKS, MAX_SHARED = 20, 4
 MET = 1e-6  # m/s or rad/s
+Made = TypeVar("Made")
 CLOSE = 1e-7  # m/s, rad/s: what counts as at a limit
 
 
@@ -130,11 +133,14 @@ def velocity(
         raise InputError(f"expected a time from {MIN_DT_S:g} to {MAX_DT_S:g} s, got {quoted(dt_s)}", ("dt_s",))
     if not (is_number(softest) and 0.0 <= softest <= MAX_WEIGHT):
         raise InputError(f"expected a number from 0 to {MAX_WEIGHT:g}, got {quoted(softest)}", ("softest",))
-    limits = (MotionLimits.of(robot) if limits is None else limits).check(robot)
+    limits = _own_limits(robot) if limits is None else limits.check(robot)
     given = _Given(robot, q, limits, float(dt_s), last)
     way = find_way(robot, q, limits, _read_weights(robot, weights))
     problem = Problem(_make_all_rows(robot, q, read), _list_levels(read), way, None, float(softest))
     return _answer(given, problem, [float(task.share) for task in read])
+
+
+_own_limits = lru_cache(maxsize=64)(MotionLimits.of)
 
 
 class _Given(NamedTuple):
@@ -161,7 +167,7 @@ def _answer(given: _Given, problem: Problem, shares: list[float]) -> VelocityRes
         twist=twist,
         wheels=_find_wheel_speeds(given.robot, twist),
         tasks=_describe_tasks(problem, speeds, q_dot, named),
-        at_limit=tuple(_name_limit(named, k, q_dot) for k in range(len(named.names)) if _is_at_limit(named, k, q_dot)),
+        at_limit=_list_limits(named, named.rows_by_joint @ q_dot),
         broken=_list_broken(given, q_dot),
     )
 
@@ -194,13 +200,20 @@ def _list_levels(tasks: list[VelocityTask]) -> list[list[int]]:
 
 
 def _make_all_rows(robot: Robot, q: Floats, tasks: list[VelocityTask]) -> list[TaskRows]:
-    Ts_world, rows = compute_frames(robot, q), []
+    frames = _for_each(tasks, lambda task: find_frame(robot, task.frame) if task.kind == "tool" else None)
+    Ts_world = compute_frames(robot, q, tuple(frame for frame in frames if frame is not None))
+    return _for_each(tasks, lambda task: make_rows(robot, q, task, Ts_world))
+
+
+def _for_each(tasks: list[VelocityTask], make: Callable[[VelocityTask], Made]) -> list[Made]:
+    """What is made of each task; an `InputError` says which it was."""
+    made = []
     for place, task in enumerate(tasks):
         try:
-            rows.append(make_rows(robot, q, task, Ts_world))
+            made.append(make(task))
         except InputError as error:
             raise InputError(error.message, ("tasks", place, *error.where)) from None
-    return rows
+    return made
 
 
 def _read_weights(robot: Robot, weights: Mapping[str, float] | None) -> Floats:
@@ -220,11 +233,11 @@ def _read_weights(robot: Robot, weights: Mapping[str, float] | None) -> Floats:
 
 def _clip(robot: Robot, q_dot: Floats, named: NamedBounds) -> Floats:
     """Joints exactly inside: what the solver's tolerance may leave is cut off, of all but a base."""
-    q_dot, base = q_dot.copy(), find_planar_base(robot)
-    for k, name in enumerate(robot.joint_names):
-        if k not in base and name in named.names:
-            row = named.names.index(name)
-            q_dot[k] = min(max(q_dot[k], named.bounds.lower[row]), named.bounds.upper[row])
+    q_dot, held = q_dot.copy(), named.joints >= 0
+    if (base := find_planar_base(robot))[0] >= 0:
+        held &= ~np.isin(named.joints, base)
+    places = named.joints[held]
+    q_dot[places] = np.clip(q_dot[places], named.bounds.lower[held], named.bounds.upper[held])
     return q_dot
 
 
@@ -244,9 +257,9 @@ def _find_wheel_speeds(robot: Robot, twist: Floats | None) -> Floats | None:
 
 
 def _describe_tasks(problem: Problem, speeds: Speeds, q_dot: Floats, named: NamedBounds) -> tuple[TaskSpeeds, ...]:
-    found = {}
+    found, values = {}, named.rows_by_joint @ q_dot
     for level, places in enumerate(problem.levels):
-        held_by = tuple(_name_limit(named, k, q_dot) for k in speeds.holding[level])
+        held_by = tuple(_name_limit(named, k, values) for k in speeds.holding[level])
         for place in places:
             rows = problem.rows[place]
             found[place] = TaskSpeeds(
@@ -260,16 +273,16 @@ def _describe_tasks(problem: Problem, speeds: Speeds, q_dot: Floats, named: Name
     return tuple(found[place] for place in range(len(found)))
 
 
-def _name_limit(named: NamedBounds, k: int, q_dot: Floats) -> str:
+def _name_limit(named: NamedBounds, k: int, values: Floats) -> str:
     """The limit at the nearer end of one bound."""
-    value = named.rows_by_joint[k] @ q_dot
-    is_low = abs(value - named.bounds.lower[k]) <= abs(value - named.bounds.upper[k])
+    is_low = abs(values[k] - named.bounds.lower[k]) <= abs(values[k] - named.bounds.upper[k])
     return f"{named.names[k]}: {named.low[k] if is_low else named.high[k]}"
 
 
-def _is_at_limit(named: NamedBounds, k: int, q_dot: Floats) -> bool:
-    value = named.rows_by_joint[k] @ q_dot
-    return bool(min(value - named.bounds.lower[k], named.bounds.upper[k] - value) <= CLOSE)
+def _list_limits(named: NamedBounds, values: Floats) -> tuple[str, ...]:
+    """All limits that speeds are at."""
+    room = np.minimum(values - named.bounds.lower, named.bounds.upper - values)
+    return tuple(_name_limit(named, int(k), values) for k in np.flatnonzero(room <= CLOSE))
 
 
 def _list_broken(given: _Given, q_dot: Floats) -> tuple[str, ...]:

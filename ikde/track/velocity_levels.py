@@ -1,10 +1,12 @@
 """Tasks of `ikde.velocity` as levels of least squares over the speeds that are sought."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.actuators import speeds_by
 from ikde.model.base_motion import find_planar_base
 from ikde.model.robot import Robot
@@ -36,15 +38,41 @@ class Problem(NamedTuple):
 
 def find_way(robot: Robot, q: Floats, limits: MotionLimits, weights: Floats) -> Way:
     """What may move at `q` [N], with weights [N] by joint: those of x and y count for forward and left."""
-    mapping, base = speeds_by(robot, q, "twist"), find_planar_base(robot)
-    others = [place for place in range(len(q)) if base[0] < 0 or place not in base]
+    known = _list_columns(robot)
+    mapping = known.mapping
+    if known.base[0] >= 0:
+        mapping, (x, y, heading) = mapping.copy(), known.base
+        cos, sin = np.cos(q[heading]), np.sin(q[heading])
+        mapping[x] = cos * known.mapping[x] - sin * known.mapping[y]
+        mapping[y] = sin * known.mapping[x] + cos * known.mapping[y]
+    free = known.is_free
+    if limits.speed is not None and not limits.speed.all():
+        free = free & ((limits.speed != 0.0)[known.joints] | known.is_twist)
+    if free.all():
+        return Way(mapping, weights[known.joints])
+    return Way(mapping[:, free], weights[known.joints][free])
+
+
+class _Columns(NamedTuple):
+    """What stays of a robot's speeds, at heading 0."""
+
+    base: Ints
+    mapping: Floats
+    joints: Ints
+    """The joint that each column is of, or counts like."""
+    is_twist: NDArray[np.bool_]
+    is_free: NDArray[np.bool_]
+
+
+@lru_cache(maxsize=64)
+def _list_columns(robot: Robot) -> _Columns:
+    base, still = find_planar_base(robot), np.zeros(len(robot.joints))
+    mapping = speeds_by(robot, still, "twist")
+    others = [place for place in range(len(still)) if base[0] < 0 or place not in base]
     count = mapping.shape[1] - len(others)
     of_twist = {0: base[:0], 2: base[[0, 2]], 3: base}[count]
-    is_held = robot.lower >= robot.upper
-    if limits.speed is not None:
-        is_held |= limits.speed == 0.0
-    free = [*range(count), *(count + k for k, place in enumerate(others) if not is_held[place])]
-    return Way(mapping[:, free], weights[[*of_twist, *others]][free])
+    joints, is_twist = np.array([*of_twist, *others], dtype=np.int64), np.arange(mapping.shape[1]) < count
+    return _Columns(base, mapping, joints, is_twist, is_twist | (robot.lower < robot.upper)[joints])
 
 
 def solve_tasks(problem: Problem, shares: list[float]) -> Speeds:
@@ -68,9 +96,11 @@ def _solve_whole(problem: Problem, shares: list[float]) -> Speeds:
     levels = []
     for level in problem.levels:
         there = [problem.rows[k] for k in level if shares[k] > 0.0]
-        matrix = [row.weights[:, None] * (row.matrix @ mapping) for row in there]
-        wanted = [row.weights * row.wanted for row in there]
-        levels.append(Level(np.vstack([np.empty((0, len(weights))), *matrix]), np.concatenate([np.empty(0), *wanted])))
+        made = [Level(row.weights[:, None] * (row.matrix @ mapping), row.weights * row.wanted) for row in there]
+        if len(made) != 1:
+            empty = Level(np.empty((0, len(weights))), np.empty(0))
+            made = [Level(*(np.concatenate(parts) for parts in zip(empty, *made, strict=True)))]
+        levels += made
     bounds = problem.bounds and problem.bounds._replace(rows=problem.bounds.rows / weights)
     speeds = solve_levels(levels, bounds, problem.softest)
     return speeds._replace(x=mapping @ speeds.x)
