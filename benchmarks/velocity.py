@@ -2,10 +2,10 @@
 
     python benchmarks/velocity.py             # those that are installed; --calls 200
 
-Of a UR5e on mecanum wheels: the tool's pose; and the base's place; and a value of the elbow. mink and Pink weigh their tasks
-against each other in one quadratic program (100, 10 and 1, solver daqp); ikde serves them in order of priority. Ranges and
-speeds are limited in all three. `far`: the target is out of reach, so speeds are at their limits. Each call is at another
-configuration; the figure is the least of the rounds' medians, of the processor's time.
+Of a UR5e on mecanum wheels: the tool's pose; and the base's place; and a value of the elbow. mink and Pink weigh their
+tasks against each other in one quadratic program (100, 10 and 1, solver daqp); ikde serves them in order of priority.
+Ranges and speeds are limited in all three. `far`: the target is out of reach, so speeds are at their limits. Each call
+is at another configuration; the figure is the least of the rounds' medians, of the processor's time.
 """
 
 import argparse
@@ -41,8 +41,8 @@ def make_ikde(robot: ikde.Robot, pose: np.ndarray, count: int) -> Call:
 
 def make_mink(robot: ikde.Robot, pose: np.ndarray, count: int) -> Call:
     """By weights, on MuJoCo."""
-    import mink  # noqa: PLC0415
-    import mujoco  # noqa: PLC0415
+    import mink
+    import mujoco
 
     model = mujoco.MjModel.from_xml_string(ikde.format_mjcf(robot, collision="none"))
     configuration = mink.Configuration(model)
@@ -68,10 +68,10 @@ def make_mink(robot: ikde.Robot, pose: np.ndarray, count: int) -> Call:
 
 def make_pink(robot: ikde.Robot, pose: np.ndarray, count: int) -> Call:
     """By weights, on Pinocchio."""
-    import pink  # noqa: PLC0415
-    import pinocchio  # noqa: PLC0415
-    from pink.limits import ConfigurationLimit, VelocityLimit  # noqa: PLC0415
-    from pink.tasks import FrameTask, PostureTask  # noqa: PLC0415
+    import pink
+    import pinocchio
+    from pink.limits import ConfigurationLimit, VelocityLimit
+    from pink.tasks import FrameTask, PostureTask
 
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "robot.urdf"

@@ -199,19 +199,18 @@ def _improve(box: Bounds, weights: Floats, along: Floats, point: Floats, active:
     """
     needed = len(along)
     for _ in range(ROUNDS):
-        _, s, Vt = np.linalg.svd(box.rows[active], full_matrices=True)
-        open_ = Vt[int((s > STEEP).sum()) :].T
+        U, s, Vt = np.linalg.svd(box.rows[active], full_matrices=True)
+        rank = int((s > STEEP).sum())
+        open_ = Vt[rank:].T
         pull = weights * (along - point[:needed])
-        least = np.linalg.lstsq(weights[:, None] * open_[:needed], pull, rcond=1e-10)[0]
-        step = open_ @ np.asarray(least, dtype=float)
+        step = open_ @ (damped_inverse(weights[:, None] * open_[:needed], 0.0) @ pull)
         share, blocking = _find_blocking(box, point, step, active)
         point = point + share * step
         if blocking >= 0:
             active = [*active, blocking]
             continue
-        slope = np.zeros(len(point))
-        slope[:needed] = -weights * weights * (along - point[:needed])
-        multipliers = np.linalg.lstsq(box.rows[active].T, slope, rcond=1e-10)[0]
+        slope = -weights * weights * (along - point[:needed])
+        multipliers = U[:, :rank] @ ((Vt[:rank, :needed] @ slope) / s[:rank])
         is_low = _is_low(box, point, active)
         wrong = np.where(is_low, -multipliers, multipliers)
         wrong[box.upper[active] - box.lower[active] < SETTLED] = 0.0  # one value: it may hold either way

@@ -153,6 +153,16 @@ def test_what_is_left_open_is_as_small_as_can_be():
     np.testing.assert_allclose(solve_levels([level], box).x, [0.8, 0.2, 0.0, 0.2], atol=1e-9)
 
 
+@pytest.mark.parametrize("seed", [32, 33, 91, 100, 102])
+def test_it_is_what_a_last_level_that_asks_for_rest_would_give(seed):
+    """Draws in which the first level's detour round a bound is in vain once the second has its say."""
+    (first, second, _), bounds = draw_case(seed)
+    size = bounds.rows.shape[1]
+    rest = Level(np.eye(size), np.zeros(size))
+    found = solve_levels([first, second], bounds, NO_DAMPING).x
+    np.testing.assert_allclose(found, solve_levels([first, second, rest], bounds, NO_DAMPING).x, atol=1e-10)
+
+
 def test_a_bound_of_one_value_is_kept():
     box = Bounds(np.eye(2), np.array([0.3, -1.0]), np.array([0.3, 1.0]))
     speeds = solve_levels([Level(np.array([[1.0, 1.0]]), np.array([1.0]))], box)

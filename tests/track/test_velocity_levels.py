@@ -1,8 +1,10 @@
 """What is sought, and tasks that are there in part."""
 
 import numpy as np
+import pytest
 
 from ikde.io.robots import load_robot
+from ikde.model.actuators import speeds_by
 from ikde.solver.plain import compute_frames
 from ikde.track.limits import MotionLimits
 from ikde.track.task_rows import make_rows
@@ -22,6 +24,17 @@ def test_a_base_is_sought_by_its_twist():
         assert (
             find_way(robot, robot.home, MotionLimits.of(robot), np.ones(len(robot.joints))).mapping.shape[1] == columns
         )
+
+
+@pytest.mark.parametrize("name", ["ur5", "qiao2021", "ur5e_mecanum"])
+def test_at_any_heading_they_make_the_speeds_of_the_joints(name):
+    robot = load_robot(name)
+    for heading in (0.0, 0.7, -2.5):
+        q = robot.home.copy()
+        if name != "ur5":
+            q[2] = heading
+        way = find_way(robot, q, MotionLimits.of(robot), np.ones(len(q)))
+        np.testing.assert_allclose(way.mapping, speeds_by(robot, q, "twist"), atol=1e-15)
 
 
 def test_what_is_held_is_not_sought():
