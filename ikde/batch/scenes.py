@@ -2,15 +2,17 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ikde.batch.arm_summary import name_blocker
-from ikde.errors import InputError
+from ikde.errors import InputError, nearest
+from ikde.kernels.arrays import Floats
 from ikde.model.collision_model import CollisionModel
+from ikde.model.pack_world import find_fixed_frames
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.model.tools import list_chain
@@ -30,6 +32,7 @@ KINDS = {"reached": bool, "stop_reason": str, "proved": bool, "blockers": dict, 
     "again_s": float,
     "new_s": float,
     "held": dict,
+    "tool": str,
 }
 
 
@@ -43,6 +46,19 @@ class Margins:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinkPose:
+    """Where a link should be."""
+
+    link: str
+    frame: str
+    """That its pose is in: `world`, which is the robot's root, or a frame that no joint moves."""
+    p_frame_link: Floats
+    """[3] m."""
+    R_frame_link: Floats | None
+    """[3, 3]; None: any orientation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Question:
     """A problem as it is asked: of a robot whose joints may all move but for those that are held."""
 
@@ -51,25 +67,73 @@ class Question:
     held: Mapping[str, float]
 
 
-def make_question(robot: Robot, start: Mapping[str, float], goal: Mapping[str, float]) -> Question:
+def make_question(
+    robot: Robot, start: Mapping[str, float], goal: Mapping[str, float], *, has_tool: bool = True
+) -> Question:
     """What a request asks of the tool; joints are by name, m and rad.
 
     Joints that do not move the tool, or that the goal does not name, are held at the request's values. Joints that the
-    robot does not have are left out: they stand where its file has them.
+    robot does not have are left out: they stand where its file has them. Unless `has_tool`, it is that of the robot's
+    tools of which the goal names most joints; the one that the robot has, of equals.
 
     Raises:
-        InputError: for a joint of the robot that the request says nothing of.
+        InputError: for a joint of the robot that the request says nothing of, a goal that names no joint of the tool,
+            and for a value outside the limits of a joint that is held.
     """
-    whole = robot.whole
+    whole = (robot if has_tool else choose_tool(robot, goal)).whole
     values = {**start, **goal}
-    missing = [name for name in whole.joint_names if name not in values]
-    if missing:
-        raise InputError(f"the request has no value of joint {', '.join(missing)}", ("goal_constraints",))
-    q = np.array([values[name] for name in whole.joint_names])
-    T = forward(whole, q)[whole.tool]
     moving = list_chain(whole, whole.tool)
+    if not any(name in goal for name in moving):
+        raise InputError(f"names no joint that moves {whole.tool}", ("goal_constraints",))
+    _refuse_missing(whole, values)
+    T = forward(whole, np.array([values[name] for name in whole.joint_names]))[whole.tool]
     held = {name: values[name] for name in whole.joint_names if name not in moving or name not in goal}
-    return Question(robot=whole, target=Target(T[:3, 3], R_world_tool=T[:3, :3]), held=held)
+    return _ask_of(whole, Target(T[:3, 3], R_world_tool=T[:3, :3]), held)
+
+
+def make_pose_question(robot: Robot, start: Mapping[str, float], pose: LinkPose) -> Question:
+    """What a request asks of a link, whose frame is the tool; joints that do not move it are held at their values.
+
+    Raises:
+        InputError: for a link or a frame that the robot does not have, and as `make_question`.
+    """
+    frames = find_fixed_frames(robot)
+    if pose.frame not in frames:
+        known = nearest(pose.frame, frames)
+        raise InputError(f"no frame that stays in its place is called {pose.frame!r}{known}", ("goal_constraints",))
+    whole = robot.with_tool(pose.link).whole
+    moving, T = list_chain(whole, whole.tool), frames[pose.frame]
+    _refuse_missing(whole, {**dict.fromkeys(moving, 0.0), **start})
+    R = None if pose.R_frame_link is None else T[:3, :3] @ pose.R_frame_link
+    held = {name: start[name] for name in whole.joint_names if name not in moving}
+    return _ask_of(whole, Target(T[:3, :3] @ pose.p_frame_link + T[:3, 3], R_world_tool=R), held)
+
+
+def _refuse_missing(robot: Robot, values: Mapping[str, float]) -> None:
+    missing = [name for name in robot.joint_names if name not in values]
+    if missing:
+        raise InputError(f"the request has no value of joint {', '.join(missing)}", ("start_state",))
+
+
+def _ask_of(robot: Robot, target: Target, held: Mapping[str, float]) -> Question:
+    for joint in robot.joints:
+        if joint.name in held and not joint.lower <= held[joint.name] <= joint.upper:
+            limits = f"outside its limits, {joint.lower:g} to {joint.upper:g}"
+            raise InputError(f"{joint.name} is held at {held[joint.name]:g}, {limits}", ("start_state",))
+    return Question(robot=robot, target=target, held=held)
+
+
+def choose_tool(robot: Robot, named: Container[str]) -> Robot:
+    """The robot with the tool of which most joints are named; the one that it has, of equals."""
+    frames = dict.fromkeys((robot.tool, *robot.tools.values()))
+    counts = {frame: sum(name in named for name in list_chain(robot.whole, frame)) for frame in frames}
+    return robot.with_tool(max(counts, key=lambda frame: counts[frame]))
+
+
+def use_tool(own: CollisionModel, tool: str) -> CollisionModel:
+    """The robot of a model with another tool, and the same detector."""
+    robot = own.robot
+    return own if robot.tool == tool else CollisionModel.of(robot.with_tool(tool).whole, own.name)
 
 
 def ask(question: Question, own: CollisionModel, world: World, margins: Margins) -> dict[str, Any]:
@@ -79,6 +143,7 @@ def ask(question: Question, own: CollisionModel, world: World, margins: Margins)
     of further calls, which give the same bits.
     """
     robot, held = question.robot, question.held or None
+    own = use_tool(own, robot.tool)
     started = time.perf_counter()
     model = own.in_world(world, margins.all_m, margins.of_m)
     result = solve(robot, question.target, collision=model, freeze=held)
@@ -91,6 +156,7 @@ def ask(question: Question, own: CollisionModel, world: World, margins: Margins)
     result = confirm(robot, result)
     return {
         **_describe(result, robot.name),
+        "tool": robot.tool,
         "held": dict(question.held),
         "new_s": new_s,
         "again_s": float(np.median(again_s)),

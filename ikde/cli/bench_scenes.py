@@ -3,6 +3,7 @@
 import gc
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -41,6 +42,8 @@ def bench_scenes(
 ) -> None:
     """Ask for the tool's pose at the goal of each planning problem, in its scene, with default settings.
 
+    Of a robot with several tools for that which the goal moves, unless --tool says.
+
     Stop it, and the same command goes on. Exits with 1 if some problem was not solved.
 
     Example: ikde bench scenes problems/ --robot ur5.yaml --margin 0.002 --out report/scenes
@@ -63,7 +66,8 @@ def bench_scenes(
     given |= {} if margin is None else {"unit": str(unit)}
     command = options.repeat_command(["bench", "scenes", str(folder)], given)
     scenes = {name: (pair.family, pair.scene) for name, pair in pairs.items()}
-    run = ScenesRun(folder=folder, own=own, robot=robot, margins=margins, scenes=scenes, command=command)
+    known = {"own": own, "has_tool": tool is not None, "margins": margins}
+    run = ScenesRun(folder=folder, robot=robot, scenes=scenes, command=command, **known)
     prepare_folder(out)
     rows = _answer(run, pairs, out)
     files = _write(run, rows, out)
@@ -130,17 +134,25 @@ def _ask_next(run: "ScenesRun", pairs: "Mapping[str, ScenePair]", bar: Any, begu
 
 def _ask(run: "ScenesRun", pair: "ScenePair") -> "Row":
     """One problem; a row that says so where it cannot be asked."""
-    from ikde.batch.scenes import ask, make_question, refuse
+    from ikde.batch.scenes import ask, make_pose_question, make_question, refuse
     from ikde.errors import InputError
-    from ikde.io.scene_pairs import read_request
+    from ikde.io.scene_pairs import read_request, read_scene_state
     from ikde.io.world_file import read_world
 
+    robot = run.own.robot
     try:
         request = read_request(pair.request)
-        question = make_question(run.own.robot, request.start, request.goal)
+        start = dict(request.start)
+        if not start.keys() | request.goal.keys() >= set(robot.joint_names):  # of others the scene may tell
+            start = {**read_scene_state(pair.scene), **start}
+        if request.pose is not None:
+            question = make_pose_question(robot, start, request.pose)
+        else:
+            question = make_question(robot, start, request.goal, has_tool=run.has_tool)
         found = read_world(pair.scene)
         with found.errors():
-            return ask(question, run.own, found.world, run.margins)
+            world = replace(found.world, attached=(*found.world.attached, *request.attached))
+            return ask(question, run.own, world, run.margins)
     except InputError as error:
         return refuse(error)
 

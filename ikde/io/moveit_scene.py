@@ -82,13 +82,17 @@ def read_moveit_scene(data: Mapping[str, Any], reading: Reading) -> World:
     for place, (name, entry) in enumerate(entries.items()):
         with prefix_errors(*where, "collision_objects", place):
             obstacles.append(_read_object(name, entry, frames, allowed.get(name, ()), reading))
-    attached = []
     with prefix_errors("robot_state"):
-        listed = as_list(as_mapping(scene.get("robot_state")).get("attached_collision_objects"))
-    for place, value in enumerate(listed):
-        with prefix_errors("robot_state", "attached_collision_objects", place):
-            attached.append(_read_attached(as_mapping(value), reading))
-    return make_world(obstacles, (), attached)
+        return make_world(obstacles, (), read_attached(as_mapping(scene.get("robot_state")), reading))
+
+
+def read_attached(state: Mapping[str, Any], reading: Reading) -> tuple[Attached, ...]:
+    """What a robot holds in a state."""
+    found = []
+    for place, value in enumerate(as_list(state.get("attached_collision_objects"))):
+        with prefix_errors("attached_collision_objects", place):
+            found.append(_read_attached(as_mapping(value), reading))
+    return tuple(found)
 
 
 def _read_attached(entry: Mapping[str, Any], reading: Reading) -> Attached:
@@ -98,7 +102,7 @@ def _read_attached(entry: Mapping[str, Any], reading: Reading) -> Attached:
     touch = tuple(as_name(name) for name in as_list(entry.get("touch_links")))
     with prefix_errors("object"):
         check_keys(held, OBJECT)
-        frame = _read_frame(held)
+        frame = read_frame(held)
         if frame != link:
             message = f"expected poses in {quoted(link)}, which holds it, got them in {quoted(frame)}"
             raise InputError(message, ("header", "frame_id"))
@@ -141,22 +145,22 @@ def _place_fixed_frames(frames: Frames, scene: Mapping[str, Any]) -> None:
             entry = as_mapping(value)
             child, transform = as_name(get(entry, "child_frame_id")), as_mapping(get(entry, "transform"))
             with prefix_errors("transform"):
-                T = _read_pose(transform, ("translation", "rotation"))
-            parent = _read_frame(entry)
+                T = read_pose(transform, ("translation", "rotation"))
+            parent = read_frame(entry)
             if child != parent or not np.array_equal(T, IDENTITY):  # some say of a frame that it is where it is
                 frames.add(child, parent, T)
 
 
 def _place_objects(frames: Frames, entries: Mapping[str, Mapping[str, Any]]) -> None:
     """Objects are frames, too, if others are placed in them."""
-    used = {_read_frame(entry) for entry in entries.values()}
+    used = {read_frame(entry) for entry in entries.values()}
     for place, (name, entry) in enumerate(entries.items()):
         if name in used:
             with prefix_errors(place):
-                frames.add(name, _read_frame(entry), _read_own_pose(entry))
+                frames.add(name, read_frame(entry), _read_own_pose(entry))
 
 
-def _read_frame(entry: Mapping[str, Any]) -> str:
+def read_frame(entry: Mapping[str, Any]) -> str:
     """Of a header; where there is none, the root of the robot."""
     with prefix_errors("header"):
         header = as_mapping(entry.get("header"))
@@ -166,7 +170,7 @@ def _read_frame(entry: Mapping[str, Any]) -> str:
 
 def _read_own_pose(entry: Mapping[str, Any]) -> Floats:
     with prefix_errors("pose"):
-        return _read_pose(as_mapping(entry.get("pose")))
+        return read_pose(as_mapping(entry.get("pose")))
 
 
 def _read_object(
@@ -184,11 +188,11 @@ def _read_object(
             raise InputError(f"expected {len(shapes)} poses, one a shape, got {len(poses)}", (poses_key,))
         for place, (shape, pose) in enumerate(zip(shapes, poses, strict=True)):
             with prefix_errors(poses_key, place):
-                T = _read_pose(pose)
+                T = read_pose(pose)
             with prefix_errors(key, place):
                 solids.append(_read_shape(key, as_mapping(shape), T, reading))
     with prefix_errors("header", "frame_id"):
-        frame, T_frame_header = frames.resolve(_read_frame(entry))
+        frame, T_frame_header = frames.resolve(read_frame(entry))
     if not solids:
         raise InputError("this object has no shape", ("primitives",))
     return make_obstacle(name, solids, compose(T_frame_header, _read_own_pose(entry)), frame=frame, ignore=ignore)
@@ -235,7 +239,7 @@ def _read_mesh(shape: Mapping[str, Any], T: Floats, reading: Reading) -> Solid:
     return make_solid("hull", (), T, solid.points)
 
 
-def _read_pose(entry: Any, keys: tuple[str, str] = ("position", "orientation")) -> Floats:
+def read_pose(entry: Any, keys: tuple[str, str] = ("position", "orientation")) -> Floats:
     """A pose as [x, y, z] and [qx, qy, qz, qw], or with their names; what is not given is the identity."""
     parts = as_mapping(entry)
     check_keys(parts, keys)

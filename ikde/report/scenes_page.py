@@ -11,7 +11,7 @@ import numpy as np
 
 from ikde.batch.machine import describe_machine, describe_versions
 from ikde.batch.recipe import ikde_version, robot_digest
-from ikde.batch.scenes import REFUSED, FamilySummary, Margins, Row, summarise_rows
+from ikde.batch.scenes import REFUSED, FamilySummary, Margins, Row, summarise_rows, use_tool
 from ikde.errors import InputError
 from ikde.io.world_file import load_world
 from ikde.model.collision_model import CollisionModel
@@ -41,6 +41,8 @@ class ScenesRun:
     """The robot, in no world."""
     robot: str
     """As it was named."""
+    has_tool: bool
+    """Whether its tool was chosen, and not one of several by each goal."""
     margins: Margins
     scenes: Mapping[str, tuple[str, Path]]
     """Family and scene file by the problem's name."""
@@ -54,6 +56,7 @@ class ScenesRun:
         return {
             "ikde": ikde_version(),
             "robot": {"name": robot.name, "tool": robot.tool, "digest": robot_digest(robot)},
+            "has_tool": self.has_tool,
             "detector": self.own.name,
             **margins,
         }
@@ -89,16 +92,21 @@ def make_scenes_page(run: ScenesRun, rows: Mapping[str, Row]) -> Page:
         _make_blockers(rows, everything),
         _make_hardest(run, rows),
         _make_missed(rows),
-        _make_record(run),
+        _make_record(run, rows),
     ]
     return Page(
         title=f"Scenes of {run.folder.resolve().name}",
         subtitle=f"{count_of(len(rows), 'planning problem')} asked as inverse kinematics: robot {run.own.robot.name}, "
-        f"the pose of {run.own.robot.tool} at each goal, {_tell_margins(run.margins)}, default settings.",
+        f"the pose of {_list_tools(run, rows)} at each goal, {_tell_margins(run.margins)}, default settings.",
         lead=(Numbers(tuple(_list_numbers(everything))),),
         sections=tuple(section for section in sections if section),
         footer=f"Made by ikde {verbatim(ikde_version())} from the problems in {code(str(run.folder))}.",
     )
+
+
+def _list_tools(run: ScenesRun, rows: Mapping[str, Row]) -> str:
+    """The tools that were asked for."""
+    return " or ".join(sorted({row["tool"] for row in rows.values() if "tool" in row})) or run.own.robot.tool
 
 
 def _tell_margins(margins: Margins) -> str:
@@ -227,7 +235,8 @@ def _make_details(run: ScenesRun, name: str, row: Row) -> Block:
 def _draw(run: ScenesRun, name: str, row: Row) -> Figure | None:
     """The answer, or the best there is, in its scene; nothing if that cannot be read any more."""
     try:
-        model = run.own.in_world(load_world(run.scenes[name][1]), run.margins.all_m, run.margins.of_m)
+        own = use_tool(run.own, row["tool"])
+        model = own.in_world(load_world(run.scenes[name][1]), run.margins.all_m, run.margins.of_m)
     except InputError:
         return None
     T = np.array(row["T_world_tool"])
@@ -246,7 +255,7 @@ def _solve_command(run: ScenesRun, name: str, row: Row) -> str:
     margins = [*([repr(run.margins.all_m)] if run.margins.all_m else [])]
     margins += [f"{component}={margin_m!r}" for component, margin_m in run.margins.of_m.items()]
     words += ["--margin", ",".join(margins)] if margins else []
-    words += ["--tool", robot.tool] if robot.tools else []
+    words += ["--tool", row["tool"]] if robot.tools or row["tool"] != robot.tool else []
     words += ["--position", *map(repr, T[:, 3].tolist())]
     words += ["--quat-wxyz", *map(repr, quat_wxyz_from_rotation(T[:, :3]).tolist())]
     held = ",".join(f"{joint}={value!r}" for joint, value in row["held"].items())
@@ -266,10 +275,10 @@ def _make_missed(rows: Mapping[str, Row]) -> Section | None:
     return Section("Not solved", (table,), anchor="not-solved")
 
 
-def _make_record(run: ScenesRun) -> Section:
+def _make_record(run: ScenesRun, rows: Mapping[str, Row]) -> Section:
     machine, asked = describe_machine(), run.asked
     facts = (
-        ("robot", f"{run.own.robot.name}, tool {run.own.robot.tool}, detector {run.own.name}"),
+        ("robot", f"{run.own.robot.name}, tool {_list_tools(run, rows)}, detector {run.own.name}"),
         ("robot's digest", asked["robot"]["digest"]),
         ("margins", _tell_margins(run.margins)),
         ("machine", f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; one thread"),

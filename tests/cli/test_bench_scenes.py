@@ -4,9 +4,13 @@ import json
 
 import pytest
 
+import ikde
 from ikde.cli import bench_scenes as module
+from ikde.io.robot_writer import write_robot
+from tests.dual_arm import DUAL, TOOLS
 from tests.scene_set import write_set
 from tests.three_joints import FILE
+from tests.urdf_texts import write
 
 
 @pytest.fixture
@@ -77,3 +81,26 @@ def test_a_problem_that_cannot_be_asked_is_a_row(cli, problems, tmp_path):
 def test_what_is_wrong_is_found_before_anything_runs(refuse, problems):
     assert "expected a folder of scenes" in refuse("bench", "scenes", problems / "chair", "--robot", FILE)
     assert "no component is called 'hnad'" in refuse("bench", "scenes", problems, "--robot", FILE, "--margin", "hnad=1")
+
+
+DUAL_REQUEST = """
+group_name: right_arm
+start_state: {is_diff: true, joint_state: {name: [right_elbow, lid, left_elbow], position: [0.2, 1, 7]}}
+goal_constraints:
+  - joint_constraints: [{joint_name: right_elbow, position: 1}, {joint_name: right_shoulder, position: -0.9}]
+"""
+STATE = "robot_state: {joint_state: {name: [waist, left_shoulder, right_shoulder], position: [0.1, 0.3, 0]}}"
+
+
+def test_of_two_arms_the_one_that_the_goal_moves_is_asked_where_the_scene_has_the_other(cli, tmp_path):
+    (tmp_path / "scene.yaml").write_text(f"world: {{collision_objects: []}}\n{STATE}\n", encoding="utf-8")
+    (tmp_path / "request.yaml").write_text(DUAL_REQUEST, encoding="utf-8")
+    dual = tmp_path / "dual.yaml"
+    write_robot(ikde.import_urdf(write(tmp_path, DUAL), tool=TOOLS), dual)
+    outcome = cli("bench", "scenes", tmp_path, "--robot", dual, "--out", tmp_path / "page", "--json")
+    (row,) = outcome.data["problems"].values()
+    assert (outcome.code, row["tool"]) == (0, "right_hand")
+    assert row["held"] == {"waist": 0.1, "left_shoulder": 0.3, "left_elbow": 7.0}
+    left = cli("bench", "scenes", tmp_path, "--robot", dual, "--tool", "left", "--out", tmp_path / "page", "--json")
+    (row,) = left.data["problems"].values()
+    assert (left.code, row["reason"]) == (1, "goal_constraints: names no joint that moves left_hand")

@@ -1,9 +1,10 @@
 """Sets of scenes and requests: which belong together, what is asked, and what is wrong with one."""
 
+import numpy as np
 import pytest
 
 from ikde.errors import FileError
-from ikde.io.scene_pairs import find_pairs, read_request
+from ikde.io.scene_pairs import find_pairs, read_request, read_scene_state
 from tests.scene_set import REQUEST, write_set
 
 
@@ -57,7 +58,18 @@ def test_a_request_is_read_by_name(tmp_path):
         ),
         ("joint_name: turn", "joint_name: reach", r":6 → .*\[1\].joint_name: 'reach' is asked twice"),
         ("[0.1, 0, 0, 0.4]", "[0.1, 0, 0]", r":2 → start_state.joint_state: 4 names, but 3 positions"),
-        ("  - joint_constraints:", "  - position_constraints:", r":4 → .*joint_constraints: expected the goal's joint"),
+        ("[reach, turn,", "[reach, reach,", r":2 → start_state.joint_state.name\[1\]: 'reach' is there twice"),
+        ("  - joint_constraints:", "  - path_constraints:", r":4 → .*joint_constraints: expected the goal's joint"),
+        (
+            "  - joint_constraints:",
+            "  - position_constraints: [{}]\n    joint_constraints:",
+            r":4 → .*position_constraints: joint values and a pose at once are not read",
+        ),
+        (
+            "start_state: {",
+            "start_state: {multi_dof_joint_state: {transforms: [{translation: {x: 1, y: 0, z: 0}}]}, ",
+            r":2 → .*transforms\[0\]: a robot that stands elsewhere is not read",
+        ),
     ],
 )
 def test_what_is_wrong_has_its_line(tmp_path, old, new, message):
@@ -65,3 +77,64 @@ def test_what_is_wrong_has_its_line(tmp_path, old, new, message):
     path.write_text(REQUEST.replace(old, new), encoding="utf-8")
     with pytest.raises(FileError, match=message):
         read_request(path)
+
+
+POSE = """
+start_state:
+  is_diff: true
+  attached_collision_objects:
+    - {link_name: hand, touch_links: [hand], object: {id: cup, header: {frame_id: hand}, primitives: [
+        {type: cylinder, dimensions: [0.1, 0.03]}]}}
+goal_constraints:
+  - position_constraints:
+      - header: {frame_id: base}
+        link_name: hand
+        constraint_region:
+          primitives: [{type: sphere, dimensions: [0.001]}]
+          primitive_poses: [{position: {x: 0.1, y: 0.2, z: 0.3}, orientation: {x: 0, y: 0, z: 0, w: 1}}]
+    orientation_constraints:
+      - {header: {frame_id: base}, link_name: hand, orientation: {x: 1, y: 0, z: 0, w: 0}}
+"""
+
+
+def test_a_goal_may_be_the_pose_of_a_link_and_the_start_may_hold_something(tmp_path):
+    path = tmp_path / "request.yaml"
+    path.write_text(POSE, encoding="utf-8")
+    request = read_request(path)
+    assert (request.start, request.goal, request.attached[0].name) == ({}, {}, "cup")
+    assert (request.pose.link, request.pose.frame, request.pose.p_frame_link.tolist()) == (
+        "hand",
+        "base",
+        [0.1, 0.2, 0.3],
+    )
+    np.testing.assert_allclose(request.pose.R_frame_link, np.diag([1.0, -1.0, -1.0]), atol=1e-12)
+    path.write_text(POSE.split("    orientation_constraints", maxsplit=1)[0], encoding="utf-8")
+    assert read_request(path).pose.R_frame_link is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("link_name: hand, orientation", "link_name: arm, orientation", r"expected the link and the frame of the"),
+        ("x: 1, y: 0, z: 0, w: 0", "x: 1, y: 1, z: 0, w: 0", r"orientation: expected a quaternion of length 1"),
+        (
+            "        link_name: hand\n",
+            "        link_name: hand\n        target_point_offset: [0, 0, 1]\n",
+            r"another point",
+        ),
+        ("primitive_poses: [", "primitive_poses: [{}, ", r"primitive_poses: expected one, got 2"),
+    ],
+)
+def test_what_is_wrong_with_a_pose_is_named(tmp_path, old, new, message):
+    path = tmp_path / "request.yaml"
+    path.write_text(POSE.replace(old, new), encoding="utf-8")
+    with pytest.raises(FileError, match=message):
+        read_request(path)
+
+
+def test_a_scene_may_tell_where_joints_are(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text("robot_state: {joint_state: {name: [a, b], position: [1, 2.5]}}", encoding="utf-8")
+    assert read_scene_state(path) == {"a": 1.0, "b": 2.5}
+    path.write_text("world: {}", encoding="utf-8")
+    assert read_scene_state(path) == {}

@@ -32,9 +32,8 @@ def made(tmp_path_factory):
         scenes[name] = (name[0], path)
         rows[name] = ask(question, own, load_world(path), Margins())
     rows["b/gone"] = refuse(InputError("no such frame"))
-    return ScenesRun(
-        folder=Path("set"), own=own, robot="three.yaml", margins=Margins(), scenes=scenes, command="again"
-    ), rows
+    known = {"own": own, "robot": "three.yaml", "has_tool": False, "margins": Margins()}
+    return ScenesRun(folder=Path("set"), scenes=scenes, command="again", **known), rows
 
 
 def test_families_blockers_and_the_hardest_are_there(made):
