@@ -71,33 +71,31 @@ def flatten_models(robot: RobotArrays, collision: CollisionArrays) -> tuple[Floa
 def flatten_grader(robot: RobotArrays, collision: CollisionArrays, terms: Terms) -> tuple[Floats, Ints]:
     """What `unpack_grader` takes."""
     joints = np.array([terms.limits.shape[1]])
-    return _flatten(*_list_models(robot, collision), *terms, joints)
+    return _flatten(*terms, *_list_models(robot, collision), joints)
 
 
 def flatten_answer(
     search: Sequence[Any], grader: tuple[Floats, Ints], kind: int, turns: Turns, *, is_graded: bool = True
 ) -> tuple[Floats, Ints]:
-    """What `unpack_answer` takes: the block of a search, which stands first, that of the grader, and of `unwind`.
+    """What `unpack_answer` takes: the block of a search, which stands first, what `unwind` takes, and the grader's.
 
-    `is_graded`: by the search; not so what is moved further and graded then.
+    `is_graded`: by the search; not so what is moved further and graded then. The world, which may be large, stands
+    last, once for both.
 
     Of an array that is read-only numba takes twice as long to see the type.
     """
     *bounds, is_revolute, centre = (np.asarray(part) for part in turns)
-    where = [int(is_graded), kind, len(search[0]), len(search[1])]
-    numbers = np.concatenate([search[0], grader[0], *bounds, centre])
+    own = search[0][: len(search[0]) - int(search[1][search[1][3] + 6])]
+    where = [int(is_graded), kind, len(own) + 3 * len(centre), len(search[1])]
+    numbers = np.concatenate([own, *bounds, centre, grader[0]])
     return numbers, np.concatenate([search[1], grader[1], is_revolute.astype(np.int64), where])
 
 
 def exchange_world(numbers: Floats, whole: Ints, world: Floats) -> tuple[Floats, Ints]:
-    """The block of `flatten_answer` in another world: it stands last in both models, the search's and the grader's."""
-    joints, size = int(whole[0]), int(whole[whole[3] + 6])
-    first, second = int(whole[-2]), len(numbers) - 5 * joints - 2  # behind each: tolerances, limits and turns are last
-    parts = numbers[: first - size], world, numbers[first : second - size], world, numbers[second:]
+    """The block of `flatten_answer` in another world: it stands last, and its size in both models."""
     other = whole.copy()
     other[whole[3] + 6] = other[whole[-1] + 6] = len(world)
-    other[-2] += len(world) - size
-    return np.concatenate(parts), other
+    return np.concatenate([numbers[: len(numbers) - int(whole[whole[3] + 6])], world]), other
 
 
 def _append_models(numbers: Floats, whole: Ints, robot: RobotArrays, collision: CollisionArrays) -> tuple[Floats, Ints]:
@@ -125,7 +123,7 @@ def _flatten(*values: Value) -> tuple[Floats, Ints]:
 
 @inline_view_kernel
 def unpack_models(numbers, whole):
-    """`RobotArrays` and `CollisionArrays` as views.
+    """`RobotArrays` and `CollisionArrays` as views; the world is what `numbers` ends with.
 
     Views that are handed on are counted: numba would free what an `inline_kernel` never took.
     """
@@ -154,7 +152,7 @@ def unpack_models(numbers, whole):
         u[first_pair:first_row].reshape((pairs, 2)),
         u[first_row:end].reshape((rows, 4)),
         numbers[offset : offset + spheres],
-        numbers[offset + spheres : offset + spheres + world],
+        numbers[numbers.size - world :],
     )
     return robot, collision
 
@@ -193,17 +191,16 @@ def unpack_closed_form(numbers, whole):
 @kernel
 def unpack_grader(numbers, whole):
     """`RobotArrays`, `CollisionArrays` and `Terms`, as views."""
-    robot, collision = unpack_models(numbers, whole)
-    joints, end = whole[whole.size - 1], numbers.size - 2
-    limits = numbers[end - 2 * joints : end].reshape((2, joints))
-    return robot, collision, Terms(limits, numbers[end], numbers[end + 1])
+    end = 2 * whole[whole.size - 1]
+    robot, collision = unpack_models(numbers[end + 2 :], whole)
+    return robot, collision, Terms(numbers[:end].reshape((2, end // 2)), numbers[end], numbers[end + 1])
 
 
 @inline_view_kernel
 def unpack_answer(numbers, whole):
     """The grader's numbers and whole numbers, the kind of target [1], and what `unwind` takes beside q, as views."""
     joints, end = whole[0], whole.size - 3
-    grader, bounds = numbers[whole[end + 1] : numbers.size - 3 * joints], numbers[numbers.size - 3 * joints :]
+    grader, bounds = numbers[whole[end + 1] :], numbers[whole[end + 1] - 3 * joints : whole[end + 1]]
     is_revolute = whole[end - 1 - joints : end - 1]
     turns = bounds[:joints], bounds[joints : 2 * joints], is_revolute, bounds[2 * joints :]
     return grader, whole[whole[end + 2] : end - 1 - joints], whole[end : end + 1], turns

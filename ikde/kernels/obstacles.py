@@ -129,12 +129,29 @@ def cloud_bound(numbers, far, x, y, z):
     return max(outside, far[(i * int(ny) + j) * int(nz) + k] - outside) - ROUNDING
 
 
+@inline_kernel
+def face_gap(numbers, k, layer, x):
+    """How far, at least, the number x is from one of a grid's layers along axis k."""
+    low = numbers[CELL_ORIGIN + k] + layer * numbers[CELL_PITCH]
+    return max(max(low - x, x - low - numbers[CELL_PITCH]) - ROUNDING, 0.0)
+
+
+@inline_kernel
+def count_within(points, x, y, z, square):
+    """How many points [3, n] are within a squared distance: vectorised, since none waits for the one before it."""
+    px, py, pz, count = points[0], points[1], points[2], 0
+    for p in range(px.size):
+        dx, dy, dz = px[p] - x, py[p] - y, pz[p] - z
+        count += dx * dx + dy * dy + dz * dz <= square
+    return count
+
+
 @kernel
 def cloud_gap(numbers, starts, points, far, x, y, z, reach, enough):
     """From the nearest point of a cloud [3, K], sorted by cell, if it is within `reach`; else inf.
 
-    `far`: by cell how far, at least, an occupied one is, box to box, m. Cells under the ball of `reach` are searched,
-    until a point is within `enough`.
+    `far`: by cell how far, at least, an occupied one is, box to box, m. Cells under the ball of `reach`, which shrinks
+    to what is found, are searched from the middle outwards, until a point is within `enough`.
     """
     if cloud_bound(numbers, far, x, y, z) > reach:
         return math.inf
@@ -143,16 +160,28 @@ def cloud_gap(numbers, starts, points, far, x, y, z, reach, enough):
     stop = enough * enough if enough > 0.0 else -1.0
     i0, i1 = find_cell(numbers, 0, x - reach), find_cell(numbers, 0, x + reach)
     j0, j1 = find_cell(numbers, 1, y - reach), find_cell(numbers, 1, y + reach)
-    k0, k1 = find_cell(numbers, 2, z - reach), find_cell(numbers, 2, z + reach)
-    for a in range(i0, i1 + 1):
-        for b in range(j0, j1 + 1):
-            row = (a * ny + b) * nz
-            for p in range(int(starts[row + k0]), int(starts[row + k1 + 1])):
-                dx, dy, dz = points[0, p] - x, points[1, p] - y, points[2, p] - z
-                distance = dx * dx + dy * dy + dz * dz
-                if distance <= best:
-                    best, found = distance, True
-            if found and best <= stop:
+    i, j = find_cell(numbers, 0, x), find_cell(numbers, 1, y)
+    for m in range(2 * max(i - i0, i1 - i) + 1):
+        a = i + (m + 1) // 2 if m % 2 else i - m // 2
+        across = face_gap(numbers, 0, a, x)
+        if a < i0 or a > i1 or across * across > best:
+            continue
+        for n in range(2 * max(j - j0, j1 - j) + 1):
+            b = j + (n + 1) // 2 if n % 2 else j - n // 2
+            beside = face_gap(numbers, 1, b, y)
+            left = best - across * across - beside * beside
+            if b < j0 or b > j1 or left < 0.0:
+                continue
+            half, row = math.sqrt(left) + ROUNDING, (a * ny + b) * nz
+            first, last = find_cell(numbers, 2, z - half), find_cell(numbers, 2, z + half) + 1
+            own = points[:, int(starts[row + first]) : int(starts[row + last])]
+            if count_within(own, x, y, z, best) == 0:
+                continue
+            found = True
+            for p in range(own.shape[1]):
+                dx, dy, dz = own[0, p] - x, own[1, p] - y, own[2, p] - z
+                best = min(best, dx * dx + dy * dy + dz * dz)
+            if best <= stop:
                 return math.sqrt(best)
     return math.sqrt(best) if found else math.inf
 

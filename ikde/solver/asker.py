@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ikde.kernels.arrays import Floats
+from ikde.kernels.arrays import Floats, Ints
 from ikde.model.collision_model import CollisionModel
 from ikde.solver.ask import CLOSED, LM, Ask, Plan, Ways, make_plan
 from ikde.solver.choice import find_free
@@ -52,16 +52,16 @@ class Asker:
         near = problem.near
         is_near = near is not None
         if engine == CLOSED:
-            numbers, *others = self._keep((CLOSED, is_near), problem.weights, analytic.pack_answer, problem)
+            numbers, whole, *others = self._keep((CLOSED, is_near), problem.weights, analytic.pack_answer, problem)
         else:
             seeds = make_seeds(problem, self._kind)
-            numbers, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
+            numbers, whole, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
         if near is None:
             ranges = analytic.make_still_ranges(problem) if engine == CLOSED else make_ranges(problem)
-            return set_ranges(numbers, ranges.ravel(), problem.centre), *others
+            return *set_ranges((numbers, whole), ranges.ravel(), problem.centre), *others
         walk = self._keep("walk", problem.weights, make_walk, problem, self._kind)
         ranges = np.concatenate((problem.lower, problem.upper, near))  # where both engines begin
-        return walk, set_ranges(numbers, ranges, near), *others
+        return walk, *set_ranges((numbers, whole), ranges, near), *others
 
     def _keep(self, name: Hashable, source: Any, make: Callable[..., Any], *arguments: Any) -> Any:
         """What was made of the same source by the call before, else made now."""
@@ -71,12 +71,13 @@ class Asker:
         return kept[1]
 
 
-def set_ranges(block: Floats, ranges: Floats, centre: Floats) -> Floats:
-    """A copy of the numbers of `flatten_answer` with other ranges [3 N], and turns between them to `centre` [N]."""
-    numbers = block.copy()
-    numbers[1 : 1 + len(ranges)] = numbers[-len(ranges) :] = ranges
-    numbers[-len(centre) :] = centre
-    return numbers
+def set_ranges(block: tuple[Floats, Ints], ranges: Floats, centre: Floats) -> tuple[Floats, Ints]:
+    """The block of `flatten_answer` with other ranges [3 N], and turns between them to `centre` [N]; numbers copied."""
+    numbers, whole = block[0].copy(), block[1]
+    grader = whole[-2]  # where its numbers begin: those of turns are before them
+    numbers[1 : 1 + len(ranges)] = numbers[grader - len(ranges) : grader] = ranges
+    numbers[grader - len(centre) : grader] = centre
+    return numbers, whole
 
 
 @lru_cache(maxsize=64)

@@ -122,7 +122,8 @@ def test_near_of_a_result_cannot_be_changed(qiao, rng):
 
 def test_ranges_of_the_search_those_of_turns_and_their_centre_are_written_in_their_places():
     ranges, centre = np.arange(6.0), np.array([8.0, 9.0])
-    block = -np.ones(20)
-    written = set_ranges(block, ranges, centre)
-    assert written.tolist() == [-1.0, *ranges, *[-1.0] * 7, *ranges[:4], *centre]
+    block, whole = -np.ones(20), np.array([0, 16, 0])  # the grader's begin at 16
+    written, same = set_ranges((block, whole), ranges, centre)
+    assert written.tolist() == [-1.0, *ranges, *[-1.0] * 3, *ranges[:4], *centre, *[-1.0] * 4]
     assert (block == -1.0).all()
+    assert same is whole
