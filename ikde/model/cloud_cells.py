@@ -87,7 +87,7 @@ def find_sorted(points: Floats) -> SortedCloud:
     return _SORTED.find(points)
 
 
-def _find_order(cells: Ints, occupied: NDArray[np.bool_]) -> Ints:
+def _find_order(cells: NDArray[np.int32], occupied: NDArray[np.bool_]) -> Ints:
     """The order that sorts cells, equals as they come: numpy counts what has 16 bits, of more it compares."""
     if np.count_nonzero(occupied) <= COUNTED:
         ranks = np.cumsum(occupied, dtype=np.uint32) - np.uint32(1)

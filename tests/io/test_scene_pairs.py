@@ -109,7 +109,9 @@ def test_a_goal_may_be_the_pose_of_a_link_and_the_start_may_hold_something(tmp_p
     )
     np.testing.assert_allclose(request.pose.R_frame_link, np.diag([1.0, -1.0, -1.0]), atol=1e-12)
     path.write_text(POSE.split("    orientation_constraints", maxsplit=1)[0], encoding="utf-8")
-    assert read_request(path).pose.R_frame_link is None
+    pose = read_request(path).pose
+    assert pose is not None
+    assert pose.R_frame_link is None
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,7 @@ def test_cells_are_as_far_from_occupied_ones_as_their_boxes_are(rng):
     points = rng.uniform(-1.0, 1.0, (40, 3)) * [1.0, 0.6, 1.5]
     cells, _ = sort_cloud(points, 0.1)
     dims = cells.numbers[4:].astype(int)
-    layers = np.indices(dims).reshape(3, -1).T
+    layers = np.indices(tuple(dims.tolist())).reshape(3, -1).T
     occupied = layers[np.diff(cells.starts) > 0]
     between = np.maximum(abs(layers[:, None] - occupied) - 1, 0)
     nearest = np.sqrt((between**2).sum(axis=-1)).min(axis=1)
