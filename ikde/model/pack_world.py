@@ -12,6 +12,7 @@ from ikde.kernels.arrays import Floats
 from ikde.kernels.flat_arguments import ATTACHED_PAIRS, GRID_COLUMNS, HEADER, SOLID_COLUMNS, unpack_world
 from ikde.model.cloud_cells import SortedCloud, find_sorted
 from ikde.model.hull import measure_normals
+from ikde.model.large_worlds import KEPT
 from ikde.model.per_obstacle import PerObstacle, find_changed
 from ikde.model.robot import WORLD, Robot
 from ikde.model.solids import IDENTITY, KINDS, Solid
@@ -58,6 +59,7 @@ class WorldPacker:
         if whole is None:
             whole = _join_obstacles(packed, _list_asked(world, self._components, kept_m), self._reach_m)
             whole[ATTACHED_PAIRS] = self._attached_pairs
+            KEPT.note(int(whole[4]))
         whole.setflags(write=False)
         self._last = Packed(world.active, key, whole)
         return whole

@@ -1,8 +1,10 @@
 """Questions with `near`, frozen joints or weights, which may be others at every call.
 
-What stays is laid out once; ranges and `near` are written into a copy of it, in 2 us.
+What stays is laid out once; ranges and `near` are written into a copy of it, in 2 us. A copy with a large cloud would
+take milliseconds: it is taken again for the next call.
 """
 
+import weakref
 from collections.abc import Callable, Hashable, Sequence
 from functools import cached_property, lru_cache, partial
 from typing import Any, TypeVar
@@ -11,6 +13,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints
 from ikde.model.collision_model import CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.solver.ask import CLOSED, LM, Ask, Plan, Ways, make_plan
 from ikde.solver.choice import find_free
 from ikde.solver.engines import analytic, lm
@@ -20,6 +23,7 @@ from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
 
 Asked = TypeVar("Asked", bound=Ask)
+LARGE = 100_000  # numbers
 
 
 class Asker:
@@ -29,6 +33,7 @@ class Asker:
         self._collision, self._settings, self._kind = collision, settings, kind
         self._plans = lru_cache(maxsize=64)(self._make_plan)
         self._kept: dict[Hashable, tuple[Any, Any]] = {}
+        self._copies = Copies()
 
     def make(self, problem: Problem, way: type[Asked]) -> Asked | None:
         """The question of a problem, or None if it has no plan, or on tables, where engine and grader share code."""
@@ -56,12 +61,15 @@ class Asker:
         else:
             seeds = make_seeds(problem, self._kind)
             numbers, whole, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
+        own = self._copies.take((engine, is_near), numbers)
         if near is None:
             ranges = analytic.make_still_ranges(problem) if engine == CLOSED else make_ranges(problem)
-            return *set_ranges((numbers, whole), ranges.ravel(), problem.centre), *others
+            set_ranges(own, whole, ranges.ravel(), problem.centre)
+            return own, whole, *others
         walk = self._keep("walk", problem.weights, make_walk, problem, self._kind)
         ranges = np.concatenate((problem.lower, problem.upper, near))  # where both engines begin
-        return walk, *set_ranges((numbers, whole), ranges, near), *others
+        set_ranges(own, whole, ranges, near)
+        return walk, own, whole, *others
 
     def _keep(self, name: Hashable, source: Any, make: Callable[..., Any], *arguments: Any) -> Any:
         """What was made of the same source by the call before, else made now."""
@@ -71,15 +79,36 @@ class Asker:
         return kept[1]
 
 
-def set_ranges(block: tuple[Floats, Ints], ranges: Floats, centre: Floats) -> tuple[Floats, Ints]:
-    """The block of `flatten_answer` with other ranges [3 N], and turns between them to `centre` [N]; numbers copied."""
-    numbers, whole = block[0].copy(), block[1]
+class Copies:
+    """Copies of arrays that may be written to; of a large one such as nothing holds any more are taken again."""
+
+    def __init__(self) -> None:
+        self._free: dict[Hashable, tuple[Floats, list[Floats]]] = {}
+
+    def take(self, name: Hashable, array: Floats) -> Floats:
+        """A copy of an array, or one of that same array that was taken before, as it was left; by its name."""
+        if len(array) < LARGE:
+            return array.copy()
+        kept = self._free.get(name)
+        if kept is None or kept[0] is not array:
+            kept = self._free[name] = array, []
+        try:
+            whole = kept[1].pop()
+        except IndexError:
+            whole = array.copy()
+        taken = whole[:]
+        weakref.finalize(taken, kept[1].append, whole).atexit = False
+        return taken
+
+
+def set_ranges(numbers: Floats, whole: Ints, ranges: Floats, centre: Floats) -> None:
+    """Write other ranges [3 N], and turns between them to `centre` [N], into the block of `flatten_answer`."""
     grader = whole[-2]  # where its numbers begin: those of turns are before them
     numbers[1 : 1 + len(ranges)] = numbers[grader - len(ranges) : grader] = ranges
     numbers[grader - len(centre) : grader] = centre
-    return numbers, whole
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def find_asker(collision: CollisionModel, settings: SolveSettings, kind: str) -> Asker:
     """What asks questions whose ranges change."""

@@ -15,6 +15,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.branches import find_branches
 from ikde.model.closed_form import find_still_arm, find_ur_arm
 from ikde.model.collision_model import CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.model.target import KINDS, Target, Targets
 from ikde.solver.arm_motions import find_motions
 from ikde.solver.plain import compute_frames, compute_gaps
@@ -135,6 +136,7 @@ def _measure_excess(problem: Problem, q: Floats) -> Floats:
     return np.maximum(np.maximum(problem.lower - q, q - problem.upper), 0.0)
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def _place_carrier(problem: Problem) -> Floats:
     """T_carrier_world [4, 4]."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats
 from ikde.model.closed_form import find_still_arm, find_ur_arm
+from ikde.model.large_worlds import KEPT
 from ikde.model.robot import Robot
 from ikde.solver.engine_table import AUTO, ENGINES
 from ikde.solver.problem import Problem
@@ -38,6 +39,7 @@ def find_free(lower: Floats, upper: Floats) -> set[int]:
     return set(np.flatnonzero(upper > lower).tolist())
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def choose_budgets(problem: Problem, kinds: tuple[str, ...], attempts: int | None) -> Budgets:
     """Engines, each with its attempts; an arm on a base that cannot move has shown all its branches after one."""

@@ -11,9 +11,10 @@ from functools import lru_cache
 import numpy as np
 
 from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, PAIR, SCORE, size_of
+from ikde.model.large_worlds import KEPT
 from ikde.model.target import KINDS, Targets
 from ikde.solver.ask import Ask
-from ikde.solver.asker import find_asker
+from ikde.solver.asker import LARGE, find_asker
 from ikde.solver.background import MANY, Question, answers_plainly
 from ikde.solver.choice import find_free, is_inside
 from ikde.solver.engine_table import NAMES
@@ -41,6 +42,7 @@ def answer_few(problem: Problem, targets: Targets, *, seed: int, streams: Sequen
     return _Rows(problem, targets, asked).answer(as_word(seed), streams)
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def _is_usual(problem: Problem) -> bool:
     """Whether its ranges are inside the robot's limits, and only what is frozen cannot move: not so of some probes."""
@@ -52,15 +54,18 @@ def _is_usual(problem: Problem) -> bool:
 
 def _find_asked(problem: Problem, kinds: set[int]) -> dict[int, Ask]:
     """How each kind of target is asked; none for kinds that lanes answer by another engine where they are mixed."""
-    asked = {}
+    asked, find = {}, find_ask
+    if len(problem.collision.arrays.world) >= LARGE:  # what is laid out with a large cloud is not kept
+        find = find_ask.__wrapped__
     for kind in kinds:
-        ask = find_ask(problem, KINDS[kind])
+        ask = find(problem, KINDS[kind])
         if ask is None or (ask.plan.is_closed and len(kinds) > 1):
             return {}
         asked[kind] = ask
     return asked
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def find_ask(problem: Problem, kind: str) -> Ask | None:
     """How one kind of target is asked, kept for the next call about the same problem."""

@@ -14,6 +14,7 @@ from ikde.kernels import grade_many as kernels
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.kernels.flat_arguments import Terms, flatten_grader
 from ikde.model.collision_model import CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.robot import FreeSpheres, Robot
 from ikde.model.target import Target, Targets
@@ -99,6 +100,7 @@ def make_metrics(count: int) -> Metrics:
     )
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def pack_grader(
     collision: CollisionModel, settings: SolveSettings | None, limits: Limits | None = None

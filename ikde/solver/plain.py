@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ikde.kernels.arrays import Floats, Ints, read_only
 from ikde.model.collision_model import CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.model.robot import WORLD, Frame, FreeSpheres, Pairs, Robot, SphereRow
 from ikde.solver.plain_cloud import find_cloud_gaps
 from ikde.solver.plain_world import Alike, list_alike
@@ -227,6 +228,7 @@ def _measure_cloud(
     return gaps.reshape(configurations, len(firsts))
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def list_world(collision: CollisionModel) -> tuple[tuple[Alike, ...], Floats]:
     """Solids in their groups; and what each component and obstacle [C, O] are asked for beyond the safe distance, m:

@@ -15,6 +15,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.hull import measure_normals
 from ikde.model.solids import Solid, SolidKind
 from ikde.model.world import Obstacle
+from ikde.solver.plain_cloud import find_cloud_gaps
 
 CHUNK = 4096  # points of a cloud, or points times triangles of a hull, at a time
 
@@ -138,12 +139,13 @@ def _hull(solid: Solid, P: Floats) -> Floats:
 
 
 def _cloud(solid: Solid, P: Floats) -> Floats:
+    """By every point of a small one, of a large one by its boxes."""
     assert solid.points is not None
-    nearest = np.full(P.shape[:-1], np.inf)
-    for first in range(0, len(solid.points), CHUNK):
-        some = solid.points[first : first + CHUNK]
-        nearest = np.minimum(nearest, np.linalg.norm(P[..., None, :] - some, axis=-1).min(axis=-1))
-    return nearest - solid.size_m[0]
+    if len(solid.points) <= CHUNK:
+        return np.linalg.norm(P[..., None, :] - solid.points, axis=-1).min(axis=-1) - solid.size_m[0]
+    flat = P.reshape(-1, 3)
+    gaps = find_cloud_gaps(solid.points, flat, np.zeros(len(flat)), np.arange(len(flat)), len(flat))
+    return gaps.reshape(P.shape[:-1]) - solid.size_m[0]
 
 
 _ALIKE: Mapping[SolidKind, Callable[[Floats, Floats], Floats]] = {

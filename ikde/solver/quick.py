@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.ask import Ask, Layouts, Plan, Settled, Ways, lay_out, make_plan
@@ -82,6 +83,7 @@ class Quick(Ask):
         return change_result(result, solve_seconds=result.solve_seconds - waited_s, compile_seconds=compile_s)
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def find_quick(
     robot: Robot, settings: SolveSettings | None, method: str, choice: CollisionChoice, kind: str

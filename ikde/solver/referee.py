@@ -10,6 +10,7 @@ import numpy as np
 
 from ikde.kernels.arrays import ATTEMPTS, REACHED, Floats, Ints
 from ikde.kernels.turns import unwind_rows
+from ikde.model.large_worlds import KEPT
 from ikde.model.target import Targets
 from ikde.solver.engines.search_state import SearchState
 from ikde.solver.engines.stay_near import stay_near
@@ -57,12 +58,14 @@ class Referee:
         self._graded[rows] = found.counts[rows, ATTEMPTS]
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def _turns(problem: Problem) -> tuple[Floats, Floats, Bools, Floats]:
     """What `unwind_rows` takes, made once."""
     return problem.turns
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def _widest(problem: Problem) -> Limits:
     """The limits of the robot, or the ranges of the problem where they are wider: a probe asks what they bring."""

@@ -12,6 +12,7 @@ from ikde.kernels.answer import BLOCKED, METRICS, PAIR, SCORE, pack_row
 from ikde.kernels.arrays import REACHED, Floats
 from ikde.kernels.grade_one import grade_one
 from ikde.model.bounds import find_bounds
+from ikde.model.large_worlds import KEPT
 from ikde.model.pack import pack_targets
 from ikde.model.region import Region, has_freedom
 from ikde.model.target import Target, Targets
@@ -257,6 +258,7 @@ def _grade_best(tried: Tried) -> Tried:
     return tried._replace(row=row)
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def _find_few(problem: Problem) -> Problem:
     """The same question with so little search as one of many poses is worth: without the slower engines of `auto`."""

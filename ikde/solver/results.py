@@ -10,6 +10,7 @@ import numpy as np
 from ikde.errors import InputError
 from ikde.kernels.answer import pack_row
 from ikde.kernels.arrays import ATTEMPTS, COLLIDING, EVALUATIONS, Floats, Ints, read_only
+from ikde.model.large_worlds import KEPT
 from ikde.model.target import KINDS, Target, Targets
 from ikde.model.value import MadeAnew
 from ikde.solver.compile_note import name_work, note_compile
@@ -254,6 +255,7 @@ def read_rows(index: Any, count: int) -> Ints:
     return np.arange(count)[chosen.astype(np.int64) if not chosen.size and chosen.dtype.kind == "f" else chosen]
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def _find_maker(problem: Problem, method: str) -> ResultMaker:
     """What all rows of a problem share is made once."""

@@ -11,6 +11,7 @@ from ikde.errors import InputError
 from ikde.kernels.arrays import read_only
 from ikde.model.arguments import RobotLike, read_robot, read_target
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.model.region import GoalLike, GoalsLike, Region, read_goals
 from ikde.model.robot import Robot
 from ikde.model.target import Target, Targets
@@ -152,6 +153,7 @@ def _make_problem(
     return make_problem(robot, chosen, collision=collision, near=near, freeze=freeze, weights=weights)
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def _find_problem(collision: CollisionModel, settings: SolveSettings) -> Problem:
     """The whole robot's question: what is prepared for it (`search`, `engines.lm`) is prepared once."""

@@ -11,6 +11,7 @@ from ikde.kernels.arrays import Floats
 from ikde.model.arguments import RobotLike
 from ikde.model.cloud_cells import find_sorted
 from ikde.model.collision_model import CollisionChoice, CollisionModel
+from ikde.model.large_worlds import KEPT
 from ikde.model.pack_world import find_fixed_frames
 from ikde.model.per_obstacle import PerObstacle
 from ikde.model.robot import WORLD
@@ -37,6 +38,7 @@ class StandingObstacle:
     """Nearer than is asked for, in every configuration."""
 
 
+@KEPT.add
 @lru_cache(maxsize=64)
 def find_standing_obstacles(collision: CollisionModel) -> tuple[StandingObstacle, ...]:
     """Components and obstacles that are as far from each other in several random configurations.

@@ -7,6 +7,7 @@ import numpy as np
 
 from ikde.kernels.arrays import Floats, Ints, SeedArrays
 from ikde.kernels.flat_arguments import flatten_answer, flatten_search
+from ikde.model.large_worlds import KEPT
 from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges
@@ -29,6 +30,7 @@ class Prepared(NamedTuple):
     """Which have run: those of one by one (True), of many (False)."""
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def prepare(problem: Problem, kind: str) -> Prepared:
     """What a problem needs for one kind of target."""

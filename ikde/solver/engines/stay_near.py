@@ -7,6 +7,7 @@ import numpy as np
 from ikde.kernels.arrays import Floats, Ints
 from ikde.kernels.flat_arguments import flatten_models
 from ikde.kernels.least_motion import reduce_motions
+from ikde.model.large_worlds import KEPT
 from ikde.model.pack import pack_targets
 from ikde.model.target import KINDS, Targets
 from ikde.solver.engines.engine import make_ranges, make_walk
@@ -20,6 +21,7 @@ def stay_near(problem: Problem, targets: Targets, rows: Ints, Q: Floats) -> None
         reduce_motions(*pack_walk(problem, KINDS[kind]), *pack_targets(targets), some, Q)
 
 
+@KEPT.add
 @lru_cache(maxsize=16)
 def pack_walk(problem: Problem, kind: str) -> tuple[Floats, Ints, Floats, Floats]:
     """What stays from target to target, as `reduce_motions` takes it: writable, as it is there for one target."""
