@@ -1,10 +1,8 @@
 """Questions with `near`, frozen joints or weights, which may be others at every call.
 
-What stays is laid out once; ranges and `near` are written into a copy of it, in 2 us. A copy with a large cloud would
-take milliseconds: it is taken again for the next call.
+What stays is laid out once; ranges and `near` are written into a copy of it, in 2 us.
 """
 
-import weakref
 from collections.abc import Callable, Hashable, Sequence
 from functools import cached_property, lru_cache, partial
 from typing import Any, TypeVar
@@ -19,11 +17,11 @@ from ikde.solver.choice import find_free
 from ikde.solver.engines import analytic, lm
 from ikde.solver.engines.engine import make_ranges, make_walk
 from ikde.solver.engines.pool import make_seeds, runs_on_tables
+from ikde.solver.joined import JOINS
 from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
 
 Asked = TypeVar("Asked", bound=Ask)
-LARGE = 100_000  # numbers
 
 
 class Asker:
@@ -33,7 +31,6 @@ class Asker:
         self._collision, self._settings, self._kind = collision, settings, kind
         self._plans = lru_cache(maxsize=64)(self._make_plan)
         self._kept: dict[Hashable, tuple[Any, Any]] = {}
-        self._copies = Copies()
 
     def make(self, problem: Problem, way: type[Asked]) -> Asked | None:
         """The question of a problem, or None if it has no plan, or on tables, where engine and grader share code."""
@@ -61,7 +58,8 @@ class Asker:
         else:
             seeds = make_seeds(problem, self._kind)
             numbers, whole, *others = self._keep((LM, is_near), seeds, lm.pack_answer, problem, self._kind, seeds)
-        own = self._copies.take((engine, is_near), numbers)
+        world = problem.collision.arrays.world
+        own = JOINS.join(numbers[: len(numbers) - len(world)], world)
         if near is None:
             ranges = analytic.make_still_ranges(problem) if engine == CLOSED else make_ranges(problem)
             set_ranges(own, whole, ranges.ravel(), problem.centre)
@@ -77,28 +75,6 @@ class Asker:
         if kept is None or kept[0] is not source:
             kept = self._kept[name] = source, make(*arguments)
         return kept[1]
-
-
-class Copies:
-    """Copies of arrays that may be written to; of a large one such as nothing holds any more are taken again."""
-
-    def __init__(self) -> None:
-        self._free: dict[Hashable, tuple[Floats, list[Floats]]] = {}
-
-    def take(self, name: Hashable, array: Floats) -> Floats:
-        """A copy of an array, or one of that same array that was taken before, as it was left; by its name."""
-        if len(array) < LARGE:
-            return array.copy()
-        kept = self._free.get(name)
-        if kept is None or kept[0] is not array:
-            kept = self._free[name] = array, []
-        try:
-            whole = kept[1].pop()
-        except IndexError:
-            whole = array.copy()
-        taken = whole[:]
-        weakref.finalize(taken, kept[1].append, whole).atexit = False
-        return taken
 
 
 def set_ranges(numbers: Floats, whole: Ints, ranges: Floats, centre: Floats) -> None:

@@ -14,12 +14,13 @@ from ikde.kernels.answer import BLOCKED, FIRST_COUNT, METRICS, PAIR, SCORE, size
 from ikde.model.large_worlds import KEPT
 from ikde.model.target import KINDS, Targets
 from ikde.solver.ask import Ask
-from ikde.solver.asker import LARGE, find_asker
+from ikde.solver.asker import find_asker
 from ikde.solver.background import MANY, Question, answers_plainly
 from ikde.solver.choice import find_free, is_inside
 from ikde.solver.engine_table import NAMES
 from ikde.solver.engines.lm import prepare
 from ikde.solver.engines.search_state import PairCounts, SearchState
+from ikde.solver.joined import is_large
 from ikde.solver.metrics import Metrics
 from ikde.solver.problem import Problem
 from ikde.solver.way import as_word
@@ -55,7 +56,7 @@ def _is_usual(problem: Problem) -> bool:
 def _find_asked(problem: Problem, kinds: set[int]) -> dict[int, Ask]:
     """How each kind of target is asked; none for kinds that lanes answer by another engine where they are mixed."""
     asked, find = {}, find_ask
-    if len(problem.collision.arrays.world) >= LARGE:  # what is laid out with a large cloud is not kept
+    if is_large(problem.collision.arrays):
         find = find_ask.__wrapped__
     for kind in kinds:
         ask = find(problem, KINDS[kind])

@@ -18,6 +18,7 @@ from ikde.model.large_worlds import KEPT
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.robot import FreeSpheres, Robot
 from ikde.model.target import Target, Targets
+from ikde.solver.joined import append_world, without_world
 from ikde.solver.plain import compute_gaps
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Bools, Grades, MaskedBools
@@ -111,7 +112,8 @@ def pack_grader(
         position_tolerance=float(settings.position_tolerance_m) if settings else np.inf,
         orientation_tolerance=float(settings.orientation_tolerance_rad) if settings else np.inf,
     )
-    return flatten_grader(pack_robot(collision.robot), collision.arrays, terms)
+    arrays = collision.arrays
+    return append_world(*flatten_grader(pack_robot(collision.robot), without_world(arrays), terms), 0, arrays.world)
 
 
 def compute_clearances(collision: CollisionModel, Q: Floats) -> Clearances:

@@ -9,8 +9,7 @@ import ikde
 from ikde.errors import InputError
 from ikde.model.collision_model import CollisionModel
 from ikde.model.target import KINDS
-from ikde.solver import asker as module
-from ikde.solver.asker import Asker, Copies, set_ranges
+from ikde.solver.asker import Asker, set_ranges
 from ikde.solver.problem import make_problem
 from ikde.solver.quick import Quick
 from ikde.solver.result import FIELDS
@@ -126,17 +125,3 @@ def test_ranges_of_the_search_those_of_turns_and_their_centre_are_written_in_the
     block = -np.ones(20)
     set_ranges(block, np.array([0, 16, 0]), ranges, centre)  # the grader's begin at 16
     assert block.tolist() == [-1.0, *ranges, *[-1.0] * 3, *ranges[:4], *centre, *[-1.0] * 4]
-
-
-def test_of_a_large_array_a_copy_is_taken_again_once_nothing_holds_it(monkeypatch):
-    monkeypatch.setattr(module, "LARGE", 4)
-    copies, small, large = Copies(), np.zeros(3), np.zeros(4)
-    first, second = copies.take("large", large), copies.take("large", large)
-    assert not np.shares_memory(first, second)
-    first[0], second[0] = 1.0, 2.0
-    del first
-    assert copies.take("large", large)[0] == 1.0
-    assert copies.take("small", small) is not small
-    other = copies.take("large", np.ones(4))
-    assert other.tolist() == [1.0] * 4
-    assert large.tolist() == [0.0] * 4

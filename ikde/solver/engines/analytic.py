@@ -12,6 +12,7 @@ from ikde.model.closed_form import URArm, find_still_arm, find_ur_arm, pack_ur_a
 from ikde.model.robot import Robot
 from ikde.solver.engines.engine import SearchInputs, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
+from ikde.solver.joined import append_world, cut_world, join_answer, without_world
 from ikde.solver.metrics import pack_grader
 from ikde.solver.problem import Problem, pack_searched
 
@@ -25,15 +26,23 @@ def make_still_ranges(problem: Problem) -> Floats:
 
 def pack_still(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
     """All that stays from target to target, as `solve_poses` takes it, of an arm that alone may move."""
-    models, packed = pack_searched(problem.collision), pack_ur_arm(arm, problem.weights)
-    return flatten_closed_form(*models, make_still_ranges(problem), packed, arm.carrier)
+    numbers, whole = _pack_head(problem, arm)
+    return append_world(numbers, whole, int(whole[3]), problem.collision.arrays.world)
+
+
+def _pack_head(problem: Problem, arm: URArm) -> tuple[Floats, Ints]:
+    """The same without the world."""
+    (robot, collision), packed = pack_searched(problem.collision), pack_ur_arm(arm, problem.weights)
+    ranges = make_still_ranges(problem)
+    return flatten_closed_form(robot, without_world(collision), ranges, packed, arm.carrier)
 
 
 def pack_answer(problem: Problem) -> tuple[Floats, Ints]:
     """The same as `answer_pose` takes it."""
-    block = pack_still(problem, check_closed_form(problem.robot))
-    grader = pack_grader(problem.collision, problem.settings)
-    return flatten_answer(block, grader, POSE, problem.turns, is_graded=problem.near is None)
+    search = _pack_head(problem, check_closed_form(problem.robot))
+    grader = cut_world(*pack_grader(problem.collision, problem.settings))
+    block = flatten_answer(search, grader, POSE, problem.turns, is_graded=problem.near is None)
+    return join_answer(*block, problem.collision.arrays.world)
 
 
 class Analytic:

@@ -12,6 +12,7 @@ from ikde.model.target import KINDS
 from ikde.solver.engine_table import ENGINES
 from ikde.solver.engines.engine import SearchInputs, make_descent, make_ranges
 from ikde.solver.engines.pool import load_kernels, make_seeds
+from ikde.solver.joined import append_world, cut_world, is_large, join_answer, without_world
 from ikde.solver.metrics import pack_grader
 from ikde.solver.problem import Problem, pack_searched
 
@@ -37,21 +38,31 @@ def prepare(problem: Problem, kind: str) -> Prepared:
     return Prepared(load_kernels(problem.collision, kind), pack_block(problem, kind), set())
 
 
+def find_prepared(problem: Problem, kind: str) -> Prepared:
+    """The same; what ends with a large cloud is not kept."""
+    return (prepare.__wrapped__ if is_large(problem.collision.arrays) else prepare)(problem, kind)
+
+
 def pack_block(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> Block:
     """All that stays from target to target, as `solve_target` takes it."""
+    numbers, whole, *pool = _pack_head(problem, kind, seeds)
+    numbers, whole = append_world(numbers, whole, int(whole[3]), problem.collision.arrays.world)
+    return numbers, whole, *pool
+
+
+def _pack_head(problem: Problem, kind: str, seeds: SeedArrays | None) -> Block:
+    """The same without the world."""
+    robot, collision = pack_searched(problem.collision)
     settings = make_ranges(problem), make_descent(problem, kind), seeds or make_seeds(problem, kind)
-    return flatten_search(*pack_searched(problem.collision), *settings)
+    return flatten_search(robot, without_world(collision), *settings)
 
 
 def pack_answer(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> tuple[Floats, Ints, Floats, Floats]:
     """All that stays from target to target, as `answer_target` takes it; `seeds` if they are there already."""
-    *search, pool, pool_T = pack_block(problem, kind, seeds)
-    grader = pack_grader(problem.collision, problem.settings)
-    return (
-        *flatten_answer(search, grader, KINDS.index(kind), problem.turns, is_graded=problem.near is None),
-        pool,
-        pool_T,
-    )
+    *search, pool, pool_T = _pack_head(problem, kind, seeds)
+    grader = cut_world(*pack_grader(problem.collision, problem.settings))
+    block = flatten_answer(search, grader, KINDS.index(kind), problem.turns, is_graded=problem.near is None)
+    return *join_answer(*block, problem.collision.arrays.world), pool, pool_T
 
 
 class DampedLeastSquares:
@@ -64,7 +75,7 @@ class DampedLeastSquares:
     def __init__(self, inputs: SearchInputs) -> None:
         self._inputs, problem = inputs, inputs.problem
         counts = np.bincount(inputs.targets.kind).tolist()
-        self._prepared = {kind: prepare(problem, KINDS[kind]) for kind, count in enumerate(counts) if count}
+        self._prepared = {kind: find_prepared(problem, KINDS[kind]) for kind, count in enumerate(counts) if count}
         self._one_by_one = len(inputs.streams) <= ONE_BY_ONE
 
     @property
