@@ -66,6 +66,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.verify import verify as verify
     from ikde.track.follow_path import follow_path as follow_path
     from ikde.track.limits import MotionLimits as MotionLimits
+    from ikde.track.moving import ObjectMotion as ObjectMotion
     from ikde.track.path import ToolPath as ToolPath
     from ikde.track.run import run_track as run_track
     from ikde.track.settings import ContinuationSettings as ContinuationSettings
@@ -87,6 +88,7 @@ _HOME = {
     "load_track": "ikde.io.plan_file",
     "run_track": "ikde.track.run",
     "follow_path": "ikde.track.follow_path",
+    "ObjectMotion": "ikde.track.moving",
     "ToolPath": "ikde.track.path",
     "MotionLimits": "ikde.track.limits",
     "ContinuationSettings": "ikde.track.settings",

@@ -104,6 +104,7 @@ def test_what_calls_give_is_shown_in_a_line(tmp_path):
         ikde.Targets([(1, 2, 3)] * 300),
         ikde.SolveSettings.for_method("de"),
         ikde.ContinuationSettings(),
+        ikde.ObjectMotion([0, 1], [[0, 0, 0], [1, 0, 0]]),
     ]
     assert {repr(each): len(repr(each)) for each in shown if len(repr(each)) > 400} == {}
     assert repr(world["shelf"]) == "<Obstacle shelf: 3 solids (box) at 0.899049, 0.0217889, 0.9 m in world>"

@@ -110,6 +110,8 @@ ikde.write_trajectory("motion", motion)
 path = ikde.ToolPath(p_world_tool=np.zeros((5, 3)), dt_s=0.1)
 ikde.follow_path(robot, path, limits=ikde.MotionLimits.of(robot), settings=ikde.ContinuationSettings())
 among_obstacles = ikde.follow_path("ur5", path, collision=world)
+passing: ikde.ObjectMotion = ikde.ObjectMotion([0.0, 0.4], [np.eye(4), [1.0, 0.0, 0.0]])
+ikde.follow_path("ur5", path, collision=world, moving={"can": passing})
 hint: str | None = among_obstacles.stop.hint if among_obstacles.stop else None
 room_m: float | None = float(among_obstacles.certificate.room_m.min()) if among_obstacles.certificate else None
 ikde.follow_path(robot, path, method="foo")  # type: ignore[arg-type]

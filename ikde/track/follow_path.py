@@ -1,6 +1,7 @@
 """`follow_path`: follow a path of the tool with the whole robot, or say where and why it ends."""
 
 from collections.abc import Callable, Mapping
+from typing import Unpack
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from ikde.track.limits import MotionLimits
 from ikde.track.moving import Around
 from ikde.track.optimized import follow_optimized
 from ikde.track.path import ToolPath
-from ikde.track.plan import TrackPlan
+from ikde.track.plan import Moves, TrackPlan
 from ikde.track.settings import TrackSettings
 from ikde.track.spec import TrackMethod
 from ikde.track.trajectory import Followed, Trajectory
@@ -47,6 +48,7 @@ def follow_path(
     collision: CollisionChoice = None,
     freeze: Freeze | None = None,
     settings: TrackSettings | None = None,
+    **moves: Unpack[Moves],
 ) -> Trajectory:
     """Follow the path inside all limits, free of self-collision and of a world at the samples and between them.
 
@@ -68,6 +70,8 @@ def follow_path(
         freeze: joints that must not move, with their value in m or rad (None: from `start`, else home).
         settings: of that method: `ContinuationSettings`, `OptimizedSettings` or `TypicalSettings`; None for its
             usual ones.
+        moves: `moving`, a mapping of obstacles of the world by name to an `ObjectMotion`, which says where each is at
+            any time of the path.
 
     Returns:
         The motion, as far as it goes; except for `typical` it never jumps. `stop` says where and why it ended
@@ -76,6 +80,8 @@ def follow_path(
     Raises:
         InputError: for what does not fit the robot, and a start that is not at the first pose or collides.
     """
+    if unknown := moves.keys() - Moves.__annotations__:
+        raise TypeError(f"follow_path() got an unexpected keyword argument {min(unknown)!r}")
     for value, kind, name in ((path, ToolPath, "path"), (limits, MotionLimits, "limits")):
         if not isinstance(value, kind) and not (value is None and name == "limits"):
             raise InputError(f"expected a {kind.__name__}, got {type(value).__name__}", (name,))
@@ -90,6 +96,7 @@ def follow_path(
         collision=collision,
         freeze=freeze,
         settings=settings,
+        **moves,
     )
     return follow_plan(plan)
 

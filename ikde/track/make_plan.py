@@ -22,7 +22,7 @@ from ikde.solver.joints import joints_outside
 from ikde.solver.standing import refuse_touching
 from ikde.track.limits import MotionLimits
 from ikde.track.make_path import make_path
-from ikde.track.moving import ObjectMotion
+from ikde.track.moving import POSES, Moving, ObjectMotion, place_at
 from ikde.track.plan import NO_MECANUM_LIMIT, TrackPlan
 from ikde.track.spec import LimitsEntry, TrackSpec
 from ikde.track.starts import settle_start
@@ -54,7 +54,8 @@ def make_plan(
     name = spec.name or (Path(file).stem if file else "track")
     with prefix_errors("detector"):
         collision = read_collision(robot, spec.detector, spec.units)
-    collision = _place_in_world(collision, spec, read_world)
+    moving = _read_moving(spec)
+    collision = _place_in_world(collision, spec, moving, read_world)
     plan = TrackPlan(
         name=name,
         collision=collision,
@@ -66,14 +67,16 @@ def make_plan(
         seed=spec.seed,
         file=file,
         world_file=spec.world,
-        moving=_read_moving(spec),
+        moving=moving,
     )
     if plan.start is not None:
         settle_start(plan, plan.start)
     return plan
 
 
-def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld | None) -> CollisionModel:
+def _place_in_world(
+    collision: CollisionModel, spec: TrackSpec, moving: Moving, read: ReadWorld | None
+) -> CollisionModel:
     """The robot among the obstacles of the world that the file names, if it names one."""
     if spec.world is None:
         if spec.margin is not None:
@@ -91,7 +94,8 @@ def _place_in_world(collision: CollisionModel, spec: TrackSpec, read: ReadWorld 
     with errors():
         world = pick_up(world, held, collision, start, "attached")
         model = collision.in_world(world, *read_margins(margin, spec.units.length_m))
-        refuse_touching(model)
+        known = {name: motion for name, motion in moving.items() if name in model.world}
+        refuse_touching(place_at(model, known, 0.0))
     return model
 
 
@@ -110,7 +114,11 @@ def _read_moving(spec: TrackSpec) -> dict[str, ObjectMotion]:
                     if "axis_world_tool" in given:
                         raise InputError("expected rpy or quat_wxyz: an axis leaves a turn open", ("axis",))
                     poses.append(np.column_stack([given.get("R_world_tool", np.eye(3)), p]))
-            moving[name] = ObjectMotion(times_s=np.array(entry.times_s), T_world_object=np.array(poses))
+            try:
+                moving[name] = ObjectMotion(np.array(entry.times_s), np.array(poses))
+            except InputError as error:
+                where = ("poses", *error.where[1:]) if error.where[:1] == (POSES,) else error.where
+                raise InputError(error.message, where) from None
     return moving
 
 

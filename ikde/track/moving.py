@@ -1,15 +1,17 @@
 """Obstacles that move along a track: where each is at any moment, and how far its points have moved."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from ikde.errors import InputError, nearest
-from ikde.kernels.arrays import CollisionArrays, Floats
+from ikde.errors import InputError, nearest, quoted
+from ikde.kernels.arrays import CollisionArrays, Floats, read_only
 from ikde.kernels.flat_arguments import HEADER, SOLID_COLUMNS
+from ikde.model.arguments import find_matrix
 from ikde.model.collision_model import CollisionModel
+from ikde.model.numbers import read_numbers
 from ikde.model.robot import WORLD
 from ikde.model.solids import Solid, read_pose
 from ikde.model.world import Obstacle
@@ -19,12 +21,20 @@ from ikde.solver.plain_world import measure_solid
 from ikde.track.slerp import slerp
 
 ROUNDING_S = 1e-9
+POSES = "T_world_object"
 POSE = slice(1, 13)  # columns of a packed solid: its axes and its place
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ObjectMotion:
     """Poses of an obstacle at moments; between them it moves straight and turns at constant speed on the shortest way.
+
+    For `follow_path(..., moving={"cart": ObjectMotion(times_s, T_world_object)})`.
+
+    Args:
+        times_s: [K] ascending, s, two at least: from the path's start to its end.
+        T_world_object: poses in the world at these times [K, 4, 4] or [K, 3, 4], those of another library, or places
+            [K, 3] of what keeps the axes of the world; m.
 
     Raises:
         InputError: for times that do not increase, poses that are none, fewer than two, and half a turn between two.
@@ -36,20 +46,27 @@ class ObjectMotion:
     """[K, 3, 4] rotation and m."""
 
     def __post_init__(self) -> None:
-        times = np.array(self.times_s, dtype=float)
-        poses = np.array([read_pose(T, ("poses", k)) for k, T in enumerate(self.T_world_object)])
+        times = read_numbers(self.times_s, ("times_s",))
+        if times.ndim != 1:
+            raise InputError(f"expected times [K] in s, got shape {times.shape}", ("times_s",))
+        poses = _read_poses(self.T_world_object)
         if len(times) != len(poses) or len(times) < 2:
             raise InputError(f"expected a pose a time, two at least, got {len(times)} and {len(poses)}", ("times_s",))
         for (k,) in np.argwhere(~(np.diff(times) > 0.0) | ~np.isfinite(times[1:]))[:1]:
             raise InputError(
                 f"expected a later time than {times[k]:g} s, got {times[k + 1]:g}", ("times_s", int(k) + 1)
             )
-        object.__setattr__(self, "times_s", times)
-        object.__setattr__(self, "T_world_object", poses)
+        object.__setattr__(self, "times_s", read_only(times.copy()))
+        object.__setattr__(self, "T_world_object", read_only(poses))
         try:
             slerp("pose", poses[:, :, :3], np.arange(len(poses), dtype=float))
         except InputError as error:
-            raise InputError(error.message, ("poses", *error.where)) from None
+            raise InputError(error.message, (POSES, *error.where)) from None
+
+    def __repr__(self) -> str:
+        """In a line."""
+        first, last = self.times_s[[0, -1]].tolist()
+        return f"<ObjectMotion: {len(self.times_s)} poses from {first:g} to {last:g} s>"
 
     def place(self, times_s: Floats) -> tuple[Floats, Floats]:
         """Rotations [M, 3, 3] and places [M, 3] in m at `times_s` [M]; before and after its times it rests."""
@@ -69,14 +86,30 @@ class ObjectMotion:
         return np.interp(times_s, self.times_s, np.concatenate([[0.0], np.cumsum(lengths)]))
 
 
+def _read_poses(given: Any) -> Floats:
+    """[K, 3, 4] from a sequence of poses, or of places."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InputError(f"expected poses [K, 4, 4] or places [K, 3] in m, got {quoted(given)}", (POSES,))
+    poses = []
+    for k, value in enumerate(given):
+        found = find_matrix(value, (POSES, k))
+        T = read_numbers(value if found is None else found, (POSES, k))
+        poses.append(read_pose(np.column_stack([np.eye(3), T]) if T.shape == (3,) else T, (POSES, k)))
+    return np.array(poses).reshape(-1, 3, 4)
+
+
 Moving = Mapping[str, ObjectMotion]
 """Obstacles of a world by name, and how they move."""
 
 
 def check_moving(collision: CollisionModel, moving: Moving, duration_s: float) -> None:
     """Raise `InputError` for what is no obstacle that may move, and for a motion that ends before the path does."""
+    if not isinstance(moving, Mapping):
+        raise InputError(f"expected motions of obstacles by name, got {quoted(moving)}", ("moving",))
+    names = [obstacle.name for obstacle in collision.obstacles]
     for name, motion in moving.items():
-        names = [obstacle.name for obstacle in collision.obstacles]
+        if not isinstance(motion, ObjectMotion):
+            raise InputError(f"expected an ObjectMotion, got {quoted(motion)}", ("moving", str(name)))
         if name not in names:
             raise InputError(f"no obstacle that counts is called {name!r}{nearest(name, names)}", ("moving", name))
         obstacle = collision.world[name]

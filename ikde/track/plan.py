@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Self, TypeVar
+from typing import Self, TypedDict, TypeVar, Unpack
 
 from ikde.errors import InputError
 from ikde.kernels.arrays import Floats
@@ -21,6 +21,12 @@ from ikde.track.spec import TrackMethod
 NO_MECANUM_LIMIT = "a track limits the wheel speed of a differential drive alone, not of a mecanum one"
 
 Settings = TypeVar("Settings", bound=TrackSettings)
+
+
+class Moves(TypedDict, total=False):
+    """What moves about a robot."""
+
+    moving: Moving
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -83,9 +89,14 @@ class TrackPlan:
         collision: CollisionChoice = None,
         freeze: Freeze | None = None,
         settings: TrackSettings | None = None,
+        **moves: Unpack[Moves],
     ) -> Self:
         """A path, with what `follow_path` takes; raises `InputError` for what does not fit the robot."""
         q = None if start is None else read_start(robot, start)
+        if moving := moves.get("moving"):
+            collision = CollisionModel.of(robot, collision)
+            check_moving(collision, moving, path.duration_s)
+            collision = place_at(collision, moving, 0.0)  # where the world has it does not matter
         problem = make_problem(robot, SolveSettings(), collision=collision, near=q, freeze=freeze)
         return cls(
             name=path.name,
@@ -98,6 +109,7 @@ class TrackPlan:
             seed=seed,
             frozen={name: float(problem.lower[robot.joint_names.index(name)]) for name in problem.frozen},
             settings=settings,
+            **moves,
         )
 
     def __repr__(self) -> str:

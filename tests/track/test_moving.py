@@ -1,6 +1,8 @@
 """Obstacles that move along a track: where they are, what is certified beside them, and what is refused."""
 
+from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,8 +18,10 @@ from ikde.track.certify import bound_all, certify
 from ikde.track.certify_world import bound_world, compute_room
 from ikde.track.continuation import Continuation
 from ikde.track.follower import make_follower
+from ikde.track.make_plan import make_plan
 from ikde.track.moving import Around, MovingWorld, ObjectMotion, check_moving, place_at
 from ikde.track.plan import TrackPlan
+from ikde.track.spec import TrackSpec
 from tests.track.measured import wave
 from tests.track.shelf import make_path
 
@@ -217,6 +221,51 @@ def test_a_ball_that_comes_is_given_way():
     assert not np.array_equal(motion.q, alone.q)
 
 
+def test_from_python_the_same_motion_is_a_keyword():
+    comes = line([0.9, 0.1, 1.6], [0.9, 0.1, 0.9])
+    plan = plan_with({})
+    asked = {"collision": plan.collision, "moving": {"ball": comes}}
+    motion = ikde.follow_path("qiao2021", make_path(), **asked)
+    assert motion.q.tobytes() == ikde.run_track(plan_with({"ball": comes})).q.tobytes()
+    assert motion.stop.pair[1] == "ball"
+    with pytest.raises(InputError, match=r"^moving.ball: expected an ObjectMotion, got \[\[0, 0, 0\]\]$"):
+        ikde.follow_path("qiao2021", make_path(), collision=plan.collision, moving={"ball": [[0, 0, 0]]})
+    with pytest.raises(InputError, match=r"^moving: expected motions of obstacles by name, got 3$"):
+        ikde.follow_path("qiao2021", make_path(), moving=3)
+    with pytest.raises(TypeError, match=r"^follow_path\(\) got an unexpected keyword argument 'mooving'$"):
+        ikde.follow_path("qiao2021", make_path(), mooving={})
+
+
+def test_where_the_world_has_it_does_not_matter():
+    ball = {"obstacles": {"ball": {"sphere": {"radius": 0.5}, "position": [0, 0, 0]}}}
+    comes = line([9, 0, 0], [9, 1, 0])
+    plan = TrackPlan.of(ikde.load_robot("ur5"), make_path(), collision=ikde.load_world(ball), moving={"ball": comes})
+    assert plan.collision.world["ball"].T_world_obstacle[:, 3].tolist() == [9, 0, 0]
+    keys = {
+        "robot": "ur5",
+        "dt_s": 0.1,
+        "path": {"waypoints": [[0.4, 0.2, 0.4], [0.4, 0.1, 0.4]]},
+        "world": "ball.json",
+    }
+    moving = {"ball": {"times_s": [0, 1], "poses": [[9, 0, 0], [9, 1, 0]]}}
+    read = {"folder": Path(), "read_world": lambda name: (ikde.load_world(ball), nullcontext)}
+    made = make_plan(TrackSpec.model_validate({**keys, "moving": moving}), plan.robot, **read)
+    assert made.collision.world["ball"].T_world_obstacle[:, 3].tolist() == [9, 0, 0]
+    with pytest.raises(InputError, match="in every configuration"):
+        make_plan(TrackSpec.model_validate(keys), plan.robot, **read)
+
+
+def test_poses_are_taken_as_they_come():
+    whole = ObjectMotion([0, 1], [np.vstack([pose([0, 1, 2]), [0, 0, 0, 1]]), [3.0, 4.0, 5.0]])
+    assert whole.T_world_object.tolist() == [pose([0, 1, 2]).tolist(), pose([3, 4, 5]).tolist()]
+    assert ObjectMotion([0, 1], np.array([[0.0, 1, 2], [3, 4, 5]])).T_world_object.shape == (2, 3, 4)
+    other = type("Other", (), {"homogeneous": np.eye(4)})()
+    assert ObjectMotion([0, 1], [other, other]).place(np.array([0.5]))[1].tolist() == [[0, 0, 0]]
+    assert repr(whole) == "<ObjectMotion: 2 poses from 0 to 1 s>"
+    assert not whole.T_world_object.flags.writeable
+    assert not whole.times_s.flags.writeable
+
+
 def test_a_ball_that_comes_to_the_tool_stops_it_where_it_is_met():
     to = line([0.9, 0.1, 1.6], [0.9, 0.1, 0.9])
     motion = ikde.run_track(plan_with({"ball": to}))
@@ -289,8 +338,13 @@ def test_other_methods_do_not_know_what_moves():
         ([0, np.inf], [pose([0, 0, 0])] * 2, "times_s[1]: expected a later time than 0 s, got inf"),
         ([0], [pose([0, 0, 0])], "times_s: expected a pose a time, two at least, got 1 and 1"),
         ([0, 1, 2], [pose([0, 0, 0])] * 2, "times_s: expected a pose a time, two at least, got 3 and 2"),
-        ([0, 1], [pose([0, 0, 0]), pose([0, 0, 0], UP, np.pi)], "poses[1]: half a turn from the orientation before it"),
-        ([0, 1], [pose([0, 0, 0]), np.zeros((3, 4))], "poses[1]: expected a rotation"),
+        ([0, 1], [pose([0, 0, 0]), pose([0, 0, 0], UP, np.pi)], "T_world_object[1]: half a turn from the"),
+        ([0, 1], [pose([0, 0, 0]), np.zeros((3, 4))], "T_world_object[1]: expected a rotation"),
+        ([0, 1], [[0, 0, 0], [0, 0, np.nan]], "T_world_object[1]: expected a rotation and a place of finite numbers"),
+        ([0, 1], [[0, 0], [0, 0]], "T_world_object[0]: expected a pose [4, 4], got shape (2,)"),
+        ([0, 1], 3, "T_world_object: expected poses [K, 4, 4] or places [K, 3] in m, got 3"),
+        ([[0, 1]], [[0, 0, 0]] * 2, "times_s: expected times [K] in s, got shape (1, 2)"),
+        (["a", 1], [[0, 0, 0]] * 2, "times_s: expected numbers, got ['a', 1]"),
     ],
 )
 def test_what_is_no_motion_is_one_line(times, poses, words):
