@@ -45,34 +45,79 @@ class Tries:
 
 
 def try_in_world(problem: Problem, probe: Probe, blocking: Iterable[tuple[str, str]]) -> str | None:
-    """All that was found to help against obstacles: one left out, less margin, a base that may leave its range.
+    """All that was found to help against obstacles: one left out, less margin, a base that may leave its range; and
+    against what the robot holds, if that may touch something.
 
-    None where no obstacle blocked, or nothing helped.
+    None where neither blocked, or nothing helped.
     """
-    names = {obstacle.name for obstacle in problem.collision.obstacles}
+    names, blocking = {obstacle.name for obstacle in problem.collision.obstacles}, list(blocking)
     blockers = [name for _, name in blocking if name in names][:REMOVED]
-    if not blockers:
+    touches = list_touches(problem.collision, blocking)[:REMOVED]
+    if not (blockers or touches):
         return None
     is_pose = probe.target.kind == "pose"
     if is_pose and find_still_arm(problem.robot, problem.lower, problem.upper) is not None:
-        return "; ".join(_try_branches(problem, probe.target, blockers)) or None
+        return "; ".join(_try_branches(problem, probe.target, blockers, touches)) or None
     tries, hints = Tries(probe), list[str | None]()
-    hints.append(_try_removing(problem, tries, blockers[:1]))
-    hints.append(_try_less_margin(problem, tries))
-    hints.append(_try_base(problem, tries))
+    if blockers:
+        hints.append(_try_removing(problem, tries, blockers[:1]))
+        hints.append(_try_less_margin(problem, tries))
+        hints.append(_try_base(problem, tries))
+    hints.append(_try_touching(problem, tries, touches))
     if not any(hints):
         hints.append(_try_removing(problem, tries, blockers[1:]))
     helpful = [hint for hint in hints if hint]
     return "; ".join([*helpful, *([STOPPED] if tries.is_spent else [])]) if helpful else None
 
 
-def _try_branches(problem: Problem, target: Target, blockers: Iterable[str]) -> Iterator[str]:
+def list_touches(model: CollisionModel, blocking: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """What is held, and what it may not touch but perhaps did, of pairs that blocked: most often first."""
+    held, found = {thing.name: thing.may_touch for thing in model.world.attached}, list[tuple[str, str]]()
+    own = set(model.pairs)
+    for pair in blocking:
+        if pair in own:
+            found += [(a, b) for a, b in (pair, pair[::-1]) if a in held][:1]
+        else:
+            found += [(name, pair[1]) for name, allowed in held.items() if pair[1] not in allowed]
+    return found
+
+
+def let_touch(model: CollisionModel, name: str, other: str) -> CollisionModel:
+    """The same where something that is held may touch something else."""
+    held = tuple(
+        replace(thing, may_touch=(*thing.may_touch, other)) if thing.name == name else thing
+        for thing in model.world.attached
+    )
+    return model.own.in_world(replace(model.world, attached=held), model.margin_m, dict(model.margins_m))
+
+
+def _try_touching(problem: Problem, tries: Tries, touches: Iterable[tuple[str, str]]) -> str | None:
+    """The first thing that is held, and what it touches, with which a short search finds a solution."""
+    for name, other in touches:
+        if not tries.is_spent and tries.find(_let_touch(problem, name, other)) is not None:
+            return _tell_touching(name, other)
+    return None
+
+
+def _let_touch(problem: Problem, name: str, other: str) -> Problem:
+    return replace(problem, collision=let_touch(problem.collision, name, other))
+
+
+def _tell_touching(name: str, other: str) -> str:
+    return f"if {name} may touch {other}: a solution was found"
+
+
+def _try_branches(
+    problem: Problem, target: Target, blockers: Iterable[str], touches: Iterable[tuple[str, str]]
+) -> Iterator[str]:
     """The same where the closed form has all configurations: no search."""
     model, q = problem.collision, judge_branches(problem, Targets.of([target])).q[0]
     q = q[(np.isfinite(q) & (problem.lower <= q) & (q <= problem.upper)).all(axis=-1)]
+    every = q
     gaps_m, own = compute_gaps(model, q) - model.limit_m, len(model.pairs)
     is_free = (gaps_m[:, :own] > 0.0).all(axis=-1)
-    q, of_world = q[is_free], gaps_m[is_free, own:].reshape(-1, len(model.components), len(model.obstacles)).min(axis=1)
+    q, shape = q[is_free], (int(is_free.sum()), len(model.components), len(model.obstacles))
+    of_world = gaps_m[is_free, own:].reshape(shape).min(axis=1)
     names = [obstacle.name for obstacle in model.obstacles]
     for name in blockers:
         others = np.delete(of_world, names.index(name), axis=1)
@@ -85,6 +130,10 @@ def _try_branches(problem: Problem, target: Target, blockers: Iterable[str]) -> 
         less_m = _round_up(float(need_m.min()), most_m)
         if meets(_lower_margins(problem, less_m), target, q[need_m.argmin()]):
             yield _tell_less(less_m)
+    for name, other in touches:
+        if any(meets(_let_touch(problem, name, other), target, row) for row in every):
+            yield _tell_touching(name, other)
+            break
 
 
 def _tell_without(name: str) -> str:
@@ -128,7 +177,7 @@ def _try_less_margin(problem: Problem, tries: Tries) -> str | None:
 def find_largest_margin(model: CollisionModel) -> float:
     """The largest of what the caller keeps from obstacles, m; else of their own."""
     kept = max([model.margin_m, *(margin_m for _, margin_m in model.margins_m)])
-    return kept or max(obstacle.margin_m for obstacle in model.obstacles)
+    return kept or max((obstacle.margin_m for obstacle in model.obstacles), default=0.0)
 
 
 def lower_margins(model: CollisionModel, less_m: float) -> CollisionModel:

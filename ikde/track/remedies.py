@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from ikde.model.collision_model import CollisionModel
-from ikde.solver.remedies import FINEST_M, find_largest_margin, lower_margins
+from ikde.solver.remedies import FINEST_M, find_largest_margin, let_touch, list_touches, lower_margins
 from ikde.track.certify import bound_all
 from ikde.track.follower import Rollout, make_follower
 from ikde.track.trajectory import TrackStop
@@ -13,16 +13,22 @@ HALVINGS = 6  # of what is not known of a margin
 
 
 def advise(rollout: Rollout, stop: TrackStop, end: int) -> TrackStop:
-    """The same stop with what was found to help, if it is at an obstacle and anything helped.
+    """The same stop with what was found to help, if it is at an obstacle, or at what is held, and anything helped.
 
     `end`: the last sample that is asked for.
     """
     model = rollout.follower.collision
-    if stop.pair is None or stop.pair[1] not in {obstacle.name for obstacle in model.obstacles}:
+    if stop.pair is None:
         return stop
-    if stop.pair in model.pairs:  # an obstacle may be called like a component
-        return stop
-    hints = [_try_removing(rollout, stop.pair[1], end), _try_less_margin(rollout, end)]
+    is_own = stop.pair in model.pairs  # an obstacle may be called like a component
+    hints = list[str | None]()
+    if not is_own and stop.pair[1] in {obstacle.name for obstacle in model.obstacles}:
+        hints += [_try_removing(rollout, stop.pair[1], end), _try_less_margin(rollout, end)]
+    hints += [
+        _try_touching(rollout, name, other, end)
+        for name, other in list_touches(model, [stop.pair])
+        if is_own or name == stop.pair[0]
+    ]
     helpful = "; ".join(hint for hint in hints if hint)
     return replace(stop, hint=helpful) if helpful else stop
 
@@ -33,6 +39,12 @@ def _try_removing(rollout: Rollout, name: str, end: int) -> str | None:
     others = model.own.in_world(model.world.remove(name), model.margin_m, dict(model.margins_m))
     last = _certify(rollout, _go_on(rollout, others, end))
     return _tell(f"without {name}", last, rollout, end)
+
+
+def _try_touching(rollout: Rollout, name: str, other: str, end: int) -> str | None:
+    """How much farther it goes if something that is held may touch something else."""
+    last = _certify(rollout, _go_on(rollout, let_touch(rollout.follower.collision, name, other), end))
+    return _tell(f"if {name} may touch {other}", last, rollout, end)
 
 
 def _try_less_margin(rollout: Rollout, end: int) -> str | None:

@@ -122,3 +122,46 @@ def test_what_blocks_is_counted_on_solutions_of_lm_where_that_meets_the_target()
     found = explain._search_often(problem, Probe(target, 0, 0, 0.0))
     assert {NAMES[engine] for engine in found.engine} == {"lm"}
     assert found.counts[:, COLLIDING].all()
+
+
+def test_what_is_held_may_touch_what_it_touches():
+    target = meet(ROBOT, Q, "pose")
+    ahead = ikde.forward(ROBOT, Q)["tip"] @ (0.0, 0.0, 0.19, 1.0)
+    T, world = np.eye(4), world_of(cup=ball((9, 0, 0)), block=ball(ahead[:3], 0.04))
+    T[2, 3] = 0.12
+    world = world.attach("cup", "tip", T_frame_object=T, spheres=[[0.0, 0.0, 0.0, 0.05]])
+    blocked = solve(ROBOT, target, world)
+    assert blocked.stop_reason == "world"
+    assert blocked.hint.endswith("; if cup may touch block: a solution was found")
+    thing = replace(world.attached[0], may_touch=("block",))
+    assert solve(ROBOT, target, replace(world, attached=(thing,))).reached
+
+
+def test_of_an_arm_with_a_closed_form_what_is_held_may_touch_the_robot(ur5, monkeypatch):
+    monkeypatch.setattr(Tries, "find", None)
+    target = meet(ur5, np.array([0.527, -1.176, -0.661, -0.81, 1.301, 0.32]), "pose")
+    spheres, T = [[0.024, 0.242, -0.091, 0.08]], np.eye(4)
+    held = world_of(cup=ball((9, 0, 0))).attach("cup", "tool", T_frame_object=T, spheres=spheres)
+    blocked = solve(ur5, target, held)
+    assert blocked.reason.endswith("2 in collision (forearm-cup in 2)")
+    assert blocked.hint == "if cup may touch forearm: a solution was found"
+    thing = replace(held.attached[0], may_touch=("forearm",))
+    assert solve(ur5, target, replace(held, attached=(thing,))).reached
+
+
+def test_pairs_that_what_is_held_was_in():
+    world = world_of(cup=ball((9, 0, 0)), jar=ball((9, 1, 0)), block=ball((9, 2, 0)), top=ball((9, 3, 0)))
+    world = world.attach("cup", "tip", T_frame_object=np.eye(4), may_touch=("top",))
+    model = CollisionModel.of(ROBOT).in_world(world.attach("jar", "sleeve", T_frame_object=np.eye(4)))
+    blocking = [(ROBOT.name, "block"), ("floor", "cup"), ("floor", "hand"), (ROBOT.name, "top"), ("cup", "jar")]
+    assert module.list_touches(model, blocking) == [
+        ("cup", "block"),
+        ("jar", "block"),
+        ("cup", "floor"),
+        ("jar", "top"),
+        ("cup", "jar"),
+    ]
+    assert ("floor", "cup") in model.pairs
+    changed = module.let_touch(model, "cup", "floor")
+    assert ("floor", "cup") not in changed.pairs
+    assert changed.world.attached[1] == model.world.attached[1]

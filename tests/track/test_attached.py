@@ -1,5 +1,6 @@
 """Tracks of a robot that holds something: it is kept clear of what is around, between samples too, or named."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -51,6 +52,19 @@ def test_what_the_rod_meets_is_named():
     assert not motion.reached
     assert motion.stop.reason == "collision"
     assert "wall" in motion.stop.pair
+    assert motion.stop.hint == "without wall it goes on to the end"  # the arm, too, would touch it
+
+
+def test_what_is_held_may_touch_what_it_meets():
+    p, ahead = make_path().p_world_tool, np.tile([1.0, 0.0, 0.0], (21, 1))
+    wall = {"box": [0.05, 0.02, 0.4], "position": [1.11, 0.13, 1.1]}
+    world, path = carry(wall=wall).remove("board", "back"), ikde.ToolPath.through(p, dt_s=0.02, axis_world_tool=ahead)
+    motion = ikde.follow_path("qiao2021", path, collision=world)
+    assert motion.stop.pair == ("rod", "wall")
+    assert motion.stop.hint.endswith("; if rod may touch wall it goes on to the end")
+    allowed, first = replace(world, attached=(replace(world.attached[0], may_touch=("wall",)),)), motion.reached_points
+    rest = ikde.ToolPath.through(p[first:], dt_s=0.02, axis_world_tool=ahead[first:])
+    assert ikde.follow_path("qiao2021", rest, collision=allowed, start=motion.q[-1]).reached
 
 
 @pytest.mark.parametrize("count", [0, 3])
