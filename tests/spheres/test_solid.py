@@ -41,15 +41,16 @@ def test_a_sheet_has_no_inside() -> None:
     assert sheet.depth(np.array([0.5, 0.5, 0.5])) == pytest.approx(-0.5)
 
 
+@pytest.mark.parametrize("size", [1.0, 1e-6, 1e4])
 @pytest.mark.parametrize("corner", range(3))
-def test_distances_from_one_triangle_are_those_of_its_face_edges_and_corners(corner: int) -> None:
+def test_distances_from_one_triangle_are_those_of_its_face_edges_and_corners(corner: int, size: float) -> None:
     """A right triangle, from every side: what lies over its face, beside each edge, and at each corner."""
-    triangle = Triangles.of(np.roll(np.array([[[0.0, 0, 0], [4, 0, 0], [0, 3, 0]]]), corner, axis=1))
+    triangle = Triangles.of(size * np.roll(np.array([[[0.0, 0, 0], [4, 0, 0], [0, 3, 0]]]), corner, axis=1))
     over = [([1, 1, 2], 2), ([1, 1, -2], 2), ([1, 0, 0.5], 0.5), ([0.01, 2.9, 1], 1)]
     beside = [([2, -1, 0], 1), ([-1, 1, 0], 1), ([3.2, 3.1, 0], 2), ([2, -3, 4], 5), ([3.2, 3.1, 1.5], 2.5)]
     at = [([-3, -4, 0], 5), ([7, -4, 0], 5), ([-3, 7, 0], 5), ([7, -4, 12], 13)]
     points, expected = zip(*over, *beside, *at, strict=True)
-    np.testing.assert_allclose(triangle.distances(np.array(points, dtype=float)), expected, rtol=1e-14)
+    np.testing.assert_allclose(triangle.distances(size * np.array(points)), size * np.array(expected), rtol=1e-13)
 
 
 def test_how_often_a_surface_goes_round_a_point_by_its_solid_angle() -> None:
