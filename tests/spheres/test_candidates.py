@@ -83,3 +83,17 @@ def test_no_triangle_that_is_nearest_and_no_patch_that_is_covered_is_missed() ->
             radii = solid.surface.distances(block) + 0.02
             held = np.flatnonzero((patches.reach(block) <= radii[:, None]).any(axis=0))
             assert set(held) <= set(around.find_patches(0.02))
+
+
+def test_what_is_looked_at_around_points_reaches_just_as_far_as_the_nearest_of_one_may_be() -> None:
+    """Two points 10 mm above and below a middle; what is nearest to the upper one is 29 mm from there."""
+    small = 1e-5 * np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    heights = np.array([-0.01, 0.029, 0.034, 0.045])
+    surface = Triangles.of(np.stack([small + np.array([0.3, 0.2, height]) for height in heights]))
+    patches = make_patches(surface.corners, 0.004)
+    block = np.array([[0.3, 0.2, height] for height in (0.01, 0.0, -0.01)])
+    around = _Around(patches, block)
+    assert around.find_triangles().tolist() == [0, 1]
+    assert surface.distances(block[:1]) == pytest.approx([0.019], abs=1e-5)
+    assert {patches.triangles[k][0] for k in around.find_patches(0.0)} == {0, 1}
+    assert {patches.triangles[k][0] for k in around.find_patches(0.01)} == {0, 1, 2}
