@@ -44,6 +44,9 @@ ikde.Region.any_of(targets, "worst")  # type: ignore[arg-type]
 result = ikde.solve("ur5", (0.4, 0.2, 0.3), {"timeout_s": 1.0}, method="lm")
 result = ikde.solve(Path("my.yaml"), T_world_tool, near=result.q, freeze=["q1"], weights={"q2": 1.0})
 result = ikde.solve(robot, [0.4, 0.2, 0.3], ikde.SolveSettings(method="de", de=ikde.DeSettings(strategy="best/1")))
+moved = ikde.solve("panda", T_world_tool, prefer="manipulability")
+print(moved.preferred.after if moved.preferred else None, ikde.solve_distinct(robot, box, 3, rank="manipulability"))
+ikde.solve(robot, targets[0], prefer="foo")  # type: ignore[arg-type]
 ikde.solve(robot, targets[0], method="foo")  # type: ignore[arg-type]
 ikde.solve_many(robot, targets, method="foo")  # type: ignore[arg-type]
 ikde.solve_distinct(robot, targets[0], 3, rank="foo")  # type: ignore[arg-type]

@@ -19,7 +19,7 @@ from ikde.model.tools import list_chain
 from ikde.model.world import World
 from ikde.solver.forward import forward
 from ikde.solver.grade import confirm
-from ikde.solver.result import SolveResult, is_proof
+from ikde.solver.result import NO_SOLUTION, SolveResult
 from ikde.solver.solve import solve
 
 Row = Mapping[str, Any]
@@ -178,7 +178,7 @@ def _describe(result: SolveResult, robot: str) -> dict[str, Any]:
         "stop_reason": str(result.stop_reason),
         "reason": None if result.reached else result.reason,
         "hint": result.hint,
-        "proved": is_proof(result.reason),
+        "proved": result.reason.startswith(NO_SOLUTION),
         "blockers": dict(blockers.most_common(KEPT_BLOCKERS)),
         "clearance_m": clearance_m if result.reached and clearance_m is not None and np.isfinite(clearance_m) else None,
         "closest_pair": list(result.closest_pair) if result.reached and result.closest_pair else None,

@@ -73,8 +73,16 @@ RankOption = Annotated[
     str,
     of_search(
         metavar="ORDER",
-        autocompletion=offer("motion", "clearance", "limits", "found"),
-        help="Order of several: motion (least from --near, else home), clearance, limits, found.",
+        autocompletion=offer("motion", "clearance", "limits", "manipulability", "found"),
+        help="Order of several: motion (least from --near, else home), clearance, limits, manipulability, found.",
+    ),
+]
+PreferOption = Annotated[
+    str | None,
+    of_search(
+        metavar="WHAT",
+        autocompletion=offer("manipulability", "clearance", "limits", "motion"),
+        help="Move the answer, on its target, for more manipulability, clearance, room to the limits, or less motion.",
     ),
 ]
 MethodOption = Annotated[str, of_search(metavar="NAME", autocompletion=offer("auto", *ENGINES), help=f"{METHODS}.")]
@@ -124,6 +132,7 @@ def solve(
     seed: SeedOption = 0,
     count: CountOption = 1,
     rank: RankOption = "motion",
+    prefer: PreferOption = None,
     method: MethodOption = "auto",
     restarts: RestartsOption = None,
     timeout: TimeoutOption = None,
@@ -144,6 +153,7 @@ def solve(
     from ikde.model.convention import convention_offsets
     from ikde.report.numbers import Units
     from ikde.solver.distinct import check_rank
+    from ikde.solver.objectives import check_prefer
 
     model, units = read_robot(robot, tool), Units(unit, angles)
     start = None if near is None else options.read_q(model.whole, near, unit, angles, convention, "near")
@@ -156,10 +166,13 @@ def solve(
     frozen = options.read_freeze(model, freeze, unit, angles, convention)
     weighed = None if weights is None else parse_weights(model, weights)
     check_rank(rank)
+    check_prefer(checked, prefer)
+    if prefer is not None and count > 1:
+        raise typer.BadParameter("--prefer moves one answer; of several, --rank chooses the first")
     options.check_drawable(plot)
     options.note_unchecked(model, detector)
     question = {"seed": seed, "collision": checked, "near": start, "freeze": frozen, "weights": weighed}
-    results, spent = _search(target, count, settings, rank, question)
+    results, spent = _search(target, count, settings, rank, question | ({"prefer": prefer} if prefer else {}))
     if count == 1:
         _print(model, results[0], units, convention, as_json)
     else:

@@ -10,9 +10,10 @@ from ikde.errors import printable
 from ikde.model.convention import convention_offsets, to_convention
 from ikde.model.robot import Robot
 from ikde.report.geometry import joints_json
-from ikde.report.numbers import Units, count_of, format_fixed, seconds
+from ikde.report.numbers import Units, count_of, format_fixed, seconds, significant
 from ikde.report.render import make_table, plain, render
 from ikde.solver.engine_table import label_engine
+from ikde.solver.preferred import Preferred
 from ikde.solver.result import SolveResult
 
 BAR = 21  # columns of a joint's bar
@@ -57,6 +58,7 @@ def solve_json(robot: Robot, result: SolveResult, convention: str | None = None)
         "solve_seconds": result.solve_seconds,
         "compile_seconds": result.compile_seconds,
         "verified": result.verified,
+        **({} if result.preferred is None else {"preferred": asdict(result.preferred)}),
         **_goal_json(result),
     }
 
@@ -185,6 +187,22 @@ def _tell_goal(result: SolveResult, units: Units) -> str:
     return f"{which}{count_of(result.poses or 0, 'pose')} tried; errors are from the one at {place}"
 
 
+def _tell_preferred(preferred: Preferred, units: Units) -> str:
+    """What the answer was moved for, and how much it has of that: before and after."""
+    words = {
+        "manipulability": ("manipulability", significant),
+        "clearance": ("room beyond what is asked for", units.format_length),
+        "limits": ("room to the joint limits", lambda share: f"{100.0 * share:.3g} % of a range"),
+        "motion": ("motion", significant),
+    }
+    name, show = words[preferred.what]
+    optimum = ", a local optimum" if preferred.settled else ""
+    if not preferred.steps:
+        return f"{name} {show(preferred.after)}{optimum}"
+    steps = count_of(preferred.steps, "step")
+    return f"{name} {show(preferred.before)} -> {show(preferred.after)} in {steps}{optimum}"
+
+
 def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     table = make_table("graded", GRADERS[result.verified])
     table.add_row("position error", units.format_error(result.position_error_m))
@@ -198,6 +216,8 @@ def _grade_table(result: SolveResult, units: Units, timed: bool) -> Any:
     if result.region is not None:
         table.add_row("goal", plain(_tell_goal(result, units)))
     table.add_row("motion", f"{result.motion:.6g} from {'home' if result.near is None else 'near'}, weighted")
+    if result.preferred is not None:
+        table.add_row("preferred", _tell_preferred(result.preferred, units))
     if result.obstacles:
         table.add_row("self-collision", _tell_self(result))
         table.add_row("world", plain(_tell_world(result, units)))

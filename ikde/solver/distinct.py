@@ -21,6 +21,7 @@ from ikde.solver.engine_table import ENGINES, Method
 from ikde.solver.grade import confirm
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights, limit_margin
+from ikde.solver.objectives import choose_measure, measure_manipulability
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.regions import RegionQuestion, RegionSearch
 from ikde.solver.result import SolveResult
@@ -36,7 +37,7 @@ ROUNDS = 4  # as often, if they were too much alike
 NOTHING_ELSE: dict[str, Any] = {"collision": None, "near": None, "freeze": None}
 UNEXPLAINED = BulkOptions(verify="all", explain=False)
 
-Rank = Literal["motion", "clearance", "limits", "found"]
+Rank = Literal["motion", "clearance", "limits", "manipulability", "found"]
 
 
 class DistinctResults(list[SolveResult]):
@@ -79,7 +80,8 @@ def solve_distinct(
         rank: what comes first, and what is kept of many: `"motion"`, the least from `near`, else home
             (`SolveResult.motion`); `"clearance"`, the most room between components, and to obstacles, beyond what is
             asked for (`SolveResult.room_m`); `"limits"`, the largest distance from the joint limits, of the joint
-            that is nearest to one as a share of its range; `"found"`, in the order of the search, the first being that
+            that is nearest to one as a share of its range; `"manipulability"`, the largest of the whole robot's pose,
+            scaled by speed limits (`solve`, `prefer`); `"found"`, in the order of the search, the first being that
             of `solve`. Without a detector there is no clearance to rank by.
         seed: same seed, same bits.
         method: the engine.
@@ -94,6 +96,8 @@ def solve_distinct(
     problem = make_problem(robot, chosen, **{**NOTHING_ELSE, **question})
     if rank == "clearance" and not problem.collision.pairs:
         raise InputError("without a detector no clearance is known to rank by", ("rank",))
+    if rank == "manipulability":
+        choose_measure(robot)
     if isinstance(target, Region):
         return _solve_in_region(RegionQuestion(problem, target, check_seed(seed), 0), count, rank)
     target = read_target(target)
@@ -154,6 +158,7 @@ def sort_solutions(robot: Robot, solutions: list[SolveResult], rank: Rank) -> li
         "motion": lambda result: result.motion,
         "clearance": lambda result: -(result.room_m or 0.0),
         "limits": lambda result: -float(limit_margin(robot.lower, robot.upper, result.q)),
+        "manipulability": lambda result: -float(measure_manipulability(robot, result.q)),
         "found": lambda result: 0.0,
     }
     return sorted(solutions, key=costs[rank])

@@ -15,6 +15,7 @@ from ikde.model.region import Region
 from ikde.model.robot import Pairs
 from ikde.model.target import Target
 from ikde.solver.motion import measure_motion
+from ikde.solver.preferred import Preferred
 from ikde.solver.problem import Problem
 from ikde.solver.settings import SolveSettings
 from ikde.solver.verify import Grade, verify
@@ -239,6 +240,11 @@ class SolveResult:
         return count_blocking_pairs(self._maker.problem.collision.counted, self._counted[BLOCKED:])
 
     @cached_property
+    def preferred(self) -> Preferred | None:
+        """What the answer was moved for (`prefer`), and how much it has of that; None if nothing was preferred."""
+        return None
+
+    @cached_property
     def solve_seconds(self) -> float:
         """Wall time of this search, without compilation; in bulk, very short searches share a call and its time
         in equal parts."""
@@ -326,11 +332,6 @@ def _freeze(values: Floats) -> Floats:
 
 NO_SOLUTION = "no solution, proved"
 """How a reason begins that is a proof, and no other: what follows may hold any name."""
-
-
-def is_proof(reason: str) -> bool:
-    """Whether a reason says that there is no solution, proved by branches or by what is fixed to the tool."""
-    return reason.startswith(NO_SOLUTION)
 
 
 def count_blocking_pairs(pairs: Pairs, counts: Sequence[int] | NDArray[np.int64]) -> dict[tuple[str, str], int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
+from importlib import import_module
 from time import perf_counter
 from typing import Any
 
@@ -20,6 +21,7 @@ from ikde.solver.background import choose_way
 from ikde.solver.engine_table import Method
 from ikde.solver.joints import JointValues
 from ikde.solver.motion import Weights
+from ikde.solver.preferred import Prefer
 from ikde.solver.problem import Freeze, Problem, make_problem
 from ikde.solver.quick import Quick, find_quick
 from ikde.solver.region_rows import solve_goals
@@ -43,6 +45,7 @@ def solve(
     near: JointValues | None = None,
     freeze: Freeze | None = None,
     weights: Weights | None = None,
+    prefer: Prefer | None = None,
 ) -> SolveResult:
     """Find a configuration that meets the target, inside all limits and free of self-collision.
 
@@ -64,6 +67,10 @@ def solve(
         freeze: joints that must not move, with their value in m or rad (None: from `near`, else home).
         weights: of joints, by name, in the motion sqrt(sum (w_j dq_j)^2), per m or rad, 1e-6 to 1e6; left out: 1 /
             range, 1 / (2 pi) for a joint without limits, and 1 / m for a planar base.
+        prefer: what the answer is moved for where the target leaves it free: it stays on its target, inside the limits
+            and free, and ends at a local optimum (`SolveResult.preferred`) of `"manipulability"`, of the whole robot's
+            pose, scaled by speed limits; `"clearance"`, beyond what is asked for; `"limits"`, the smallest share of its
+            range that a joint is from its limits; or `"motion"`, the least from `near`, else home. Not for a `Region`.
 
     Returns:
         The solution, or the best configuration found with the reason, graded by the kernels' grader. `verified` is None
@@ -75,6 +82,9 @@ def solve(
         VerificationError: if kernels and `verify` disagree by more than 1e-11: a bug.
     """
     started = perf_counter()
+    if prefer is not None:
+        asked = {"collision": collision, "near": near, "freeze": freeze, "weights": weights}
+        return _solve_preferred(robot, target, choose_settings(settings, method), prefer, seed, stream, asked)
     if isinstance(target, Region):
         problem = _make_problem(read_robot(robot), choose_settings(settings, method), collision, near, freeze, weights)
         return solve_region(RegionQuestion(problem, target, check_seed(seed), check_stream(stream)))
@@ -102,6 +112,27 @@ def solve(
     result = solve_rows(problem, [target], seed=seed, first_stream=stream, strict=True).row(0)
     waited_s = perf_counter() - started - result.compile_seconds
     return change_result(result, solve_seconds=max(waited_s, result.solve_seconds))
+
+
+def _solve_preferred(
+    robot: RobotLike,
+    target: GoalLike,
+    chosen: SolveSettings,
+    prefer: Prefer,
+    seed: int,
+    stream: int,
+    asked: dict[str, Any],
+) -> SolveResult:
+    """What `solve` finds, moved for what is preferred."""
+    robot = read_robot(robot)
+    if isinstance(target, Region):
+        raise InputError("an answer is moved for an exact target; this one is a region", ("prefer",))
+    if prefer == "motion" and asked["near"] is None:
+        asked["near"] = robot.home
+    problem = make_problem(robot, chosen, **asked)
+    import_module("ikde.solver.objectives").check_prefer(problem.collision, prefer)  # others do not wait for these
+    result = solve(robot, target, chosen, seed=seed, stream=stream, **asked)
+    return import_module("ikde.solver.prefer").move_to_preferred(problem, result, prefer)
 
 
 def solve_many(

@@ -391,5 +391,5 @@ def test_weights_decide_what_moves_and_the_motion_is_stated(cli, qiao):
 
 
 def test_an_order_that_is_none_is_refused_also_of_one_solution(refuse):
-    expected = "rank: expected one of motion, clearance, limits, found, got 'nonsense'"
+    expected = "rank: expected one of motion, clearance, limits, manipulability, found, got 'nonsense'"
     assert expected in refuse(*SOLVE, "--rank", "nonsense")

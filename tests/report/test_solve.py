@@ -2,7 +2,7 @@
 
 import json
 import re
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ import pytest
 import ikde
 from ikde.report.numbers import Units, count_of
 from ikde.report.solve import BAR, Spent, format_solutions, format_solve, solutions_json, solve_json
+from ikde.solver.preferred import Preferred
 from ikde.solver.result import change_result
 from tests.endless_robot import ENDLESS
 from tests.flat_settings import flat_settings
@@ -184,3 +185,21 @@ def test_rejected_attempts_are_counted(qiao, result):
 
 def test_a_reason_with_brackets_is_shown_as_it_is(qiao, result):
     assert "see [1]" in format_solve(qiao, change_result(result, reason="see [1] and [/]"), Units())
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("manipulability", "manipulability 0.100 -> 0.250 in 3 steps, a local optimum"),
+        ("clearance", "room beyond what is asked for 100 mm -> 250 mm in 3 steps, a local optimum"),
+        ("limits", "room to the joint limits 10 % of a range -> 25 % of a range in 3 steps, a local optimum"),
+        ("motion", "motion 0.100 -> 0.250 in 3 steps, a local optimum"),
+    ],
+)
+def test_what_was_preferred_is_told_before_and_after(qiao, result, what, words):
+    preferred = Preferred(what=what, before=0.1, after=0.25, steps=3, settled=True)
+    moved = change_result(result, preferred=preferred)
+    assert words in " ".join(format_solve(qiao, moved, MM_DEG, width=200).split())
+    assert solve_json(qiao, moved)["preferred"] == asdict(preferred)
+    stopped = change_result(result, preferred=replace(preferred, steps=0, settled=False))
+    assert "local optimum" not in format_solve(qiao, stopped, MM_DEG, width=200)

@@ -12,6 +12,7 @@ from ikde.solver.distinct import are_distinct
 from ikde.solver.families import FAMILIES
 from tests.problems import CHEAP, QUICK, TARGET, are_apart, assert_true_to_its_figures
 from tests.targets import free_q, make_target
+from tests.tiny_robot import tiny_robot
 
 
 @pytest.mark.parametrize("method", ["auto", "memetic", "de"])
@@ -118,6 +119,15 @@ def test_the_largest_clearance_comes_first(qiao):
     )
 
 
+def test_the_most_manipulable_comes_first(qiao):
+    found = ikde.solve_distinct(qiao, TARGET, 6, rank="manipulability", seed=3)
+    figures = [float(ikde.analyze(qiao, result.q).scaled["whole"]["pose"].manipulability) for result in found]
+    assert figures == sorted(figures, reverse=True)
+    assert figures[0] > figures[-1]
+    with pytest.raises(InputError, match="is always 0: fewer than three joints move it"):
+        ikde.solve_distinct(tiny_robot(), TARGET, 2, rank="manipulability")
+
+
 def test_an_arm_without_a_base_gives_its_families(rng):
     """A pose of a UR5 well inside its reach has several of the eight families, each of which is found."""
     robot = ikde.load_robot("ur5")
@@ -127,7 +137,7 @@ def test_an_arm_without_a_base_gives_its_families(rng):
 
 
 def test_an_unknown_rank_is_refused(qiao):
-    with pytest.raises(InputError, match="rank: expected one of motion, clearance, limits, found"):
+    with pytest.raises(InputError, match="rank: expected one of motion, clearance, limits, manipulability, found"):
         ikde.solve_distinct(qiao, TARGET, 2, rank="best")
 
 
