@@ -69,6 +69,8 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.track.moving import ObjectMotion as ObjectMotion
     from ikde.track.path import ToolPath as ToolPath
     from ikde.track.run import run_track as run_track
+    from ikde.track.servo import Servo as Servo
+    from ikde.track.servo_result import ServoStep as ServoStep
     from ikde.track.settings import ContinuationSettings as ContinuationSettings
     from ikde.track.settings import OptimizedSettings as OptimizedSettings
     from ikde.track.settings import TypicalSettings as TypicalSettings
@@ -89,6 +91,8 @@ _HOME = {
     "run_track": "ikde.track.run",
     "follow_path": "ikde.track.follow_path",
     "ObjectMotion": "ikde.track.moving",
+    "Servo": "ikde.track.servo",
+    "ServoStep": "ikde.track.servo_result",
     "ToolPath": "ikde.track.path",
     "MotionLimits": "ikde.track.limits",
     "ContinuationSettings": "ikde.track.settings",

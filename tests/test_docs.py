@@ -154,6 +154,14 @@ def test_a_python_example_of_a_track_follows_its_path(text, tmp_path, monkeypatc
     assert names["motion"].reached
 
 
+def test_the_example_of_a_servo_is_held_by_its_wall():
+    names = {}
+    exec(compile(PYTHON["servo.md"][0].values[0], "example", "exec"), names)
+    step = names["step"]
+    assert (step.held_by.kind, step.held_by.names[1], step.stop_is_free) == ("object", "wall", True)
+    assert 0.0 < step.clearance_m < 1e-3
+
+
 def test_the_example_of_a_urdf_is_imported_solved_and_saved(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (urdf,), (text,) = find_blocks("your_robot.md", "xml"), PYTHON["your_robot.md"]

@@ -25,9 +25,13 @@ NO_TEST_OF_ITS_OWN = {
     "io/target.py": "tests/cli/test_solve.py makes every kind of target",
     "io/robots.py": "tests/io/test_robot_file.py and tests/robots",
     "kernels/arrays.py": "tuples, and `read_only`; tests/model/test_pack.py fills them",
+    "kernels/servo.py": "tests/track/test_servo.py takes its steps, compiled and not",
+    "kernels/servo_parts.py": "parts of kernels/servo.py; tests/track/test_servo.py",
+    "kernels/servo_room.py": "tuples and numbers of codes; tests/track/test_servo.py fills them",
     "model/robot.py": "dataclasses; tests/model/test_validate.py and tests/robots",
     "solver/preferred.py": "a dataclass; tests/solver/test_prefer.py",
     "solver/result.py": "a dataclass; tests/solver/test_solve.py",
+    "track/servo_result.py": "dataclasses; tests/track/test_servo.py reads all of them",
     "spheres/shapes.py": "a dataclass; tests/io/urdf_import/test_cover_links.py",
 }
 

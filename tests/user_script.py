@@ -120,6 +120,12 @@ room_m: float | None = float(among_obstacles.certificate.room_m.min()) if among_
 ikde.follow_path(robot, path, method="foo")  # type: ignore[arg-type]
 ikde.follow_path(robot, path, method="optimized", settings=ikde.OptimizedSettings())
 ikde.follow_path("ur5", path, method="typical", settings=ikde.TypicalSettings())
+servo = ikde.Servo("ur5", robot.home, limits=ikde.MotionLimits.of(robot), world=world)
+taken: ikde.ServoStep = servo.step([0.4, 0.2, 0.3], 0.01)
+taken = servo.step(ikde.Target((0.4, 0.2, 0.3)), dt_s=0.01)
+held_by: str = taken.held_by.text if taken.held_by else f"{taken.error_m} {taken.clearance_m} {taken.q_stop}"
+servo.world = world.move("lamp", np.eye(4))
+servo = ikde.Servo.from_state(robot, servo.state, world=world)
 stop: ikde.TrackStop | None = motion.stop
 ends = stop is not None and stop.reason is ikde.TrackStopReason.SPEED_LIMIT
 surface = ikde.check_surface(robot, robot.home)

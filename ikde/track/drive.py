@@ -37,8 +37,8 @@ def pack_drive(
     return DriveArrays(
         base=base,
         others=others,
-        largest=_by_step(largest, base, others),
-        change=_shares(_by_step(change, base, others), _by_step(largest, base, others)),
+        largest=by_step(largest, base, others),
+        change=_shares(by_step(change, base, others), by_step(largest, base, others)),
         half_track=half_track,
         wheel_travel=wheel_travel,
         centre_body=tree.frame_body[centre],
@@ -60,7 +60,7 @@ def _wheels_of(limits: MotionLimits, wheels: Wheels | None, dt_s: float) -> tupl
     return wheels.half_track_m, np.inf if fastest is None else float(fastest * wheels.radius_m * dt_s)
 
 
-def _by_step(values: Floats, base: Ints, others: Ints) -> Floats:
+def by_step(values: Floats, base: Ints, others: Ints) -> Floats:
     """Values by coordinate [N] as values by entry of a step [D]: a base drives with the lower of those of x and y."""
     if base[0] < 0:
         return values[others]

@@ -13,6 +13,7 @@ from ikde.solver.warmup import Stage
 from ikde.track.follow_path import METHODS, follow_plan
 from ikde.track.path import ToolPath
 from ikde.track.plan import TrackPlan
+from ikde.track.servo import Servo
 from ikde.track.spec import TrackMethod
 from ikde.track.trajectory import Trajectory
 
@@ -46,8 +47,9 @@ def run_track(
 
 
 def list_track_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
-    """What tracks compile, a stage a method: kernels are the same for either drive and every kind of path."""
+    """What tracks compile, a stage a method, and servos: kernels are the same for each drive and kind of path."""
     tool = compute_frames(robot, robot.home)[robot.tool]
     path = ToolPath.through(np.tile(tool[:3, 3], (3, 1)), dt_s=0.02)  # the robot stands still at home
     plan = TrackPlan.of(robot, path, drive="omnidirectional", collision=collision)
-    return [Stage(name=f"track, {method}", run=partial(run_track, plan, method=method)) for method in METHODS]
+    tracks = [Stage(name=f"track, {method}", run=partial(run_track, plan, method=method)) for method in METHODS]
+    return [*tracks, Stage(name="servo", run=partial(Servo, robot, robot.home, collision=collision))]

@@ -103,4 +103,4 @@ def test_a_track_then_compiles_nothing(qiao, drive):
 
 def test_every_method_has_a_stage():
     names = [stage.name for stage in list_track_stages(ikde.load_robot("ur5"))]
-    assert names == ["track, continuation", "track, optimized", "track, typical"]
+    assert names == ["track, continuation", "track, optimized", "track, typical", "servo"]
