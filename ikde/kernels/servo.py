@@ -53,8 +53,8 @@ from ikde.kernels.servo_rows import add_cuts, constrain_stop, fit_ranges, keep_c
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.kernels.stopping import PROVED, brake_step, make_way, stop_factor
 
-ROUNDS, SETTLED = 6, 1e-3  # of one step; shares by which a round may still change it
-ENOUGH_M = 1e-8  # of the tool's error: no further round
+ROUNDS, SETTLED = 5, 1e-3  # of one step; shares by which a round may still change it
+ENOUGH_M, LITTLE = 1e-8, 0.01  # of the tool's error, and a share of what was taken away of it: no further round
 TRUSTED, GOOD, FAIR = 10.0, 0.3, 0.8  # where a round leaves a good share of the error, the next is damped less
 HALVINGS = 4  # of what a step has beyond braking, until it is proved
 STAYING = 0.999  # share of the error that a step leaves, above which nothing brings the tool nearer
@@ -163,24 +163,29 @@ def search_step(robot, collision, drive, track, target, weights, q, radii, work,
     far = far + 0.5 if has_goal else far
     wide, entry = look_farther(track, find_far_reach(track, drive, radii, far, servo.last)), np.int64(-1)
     near, ease, is_met, wins, count = np.int64(0), 0.0, True, True, np.int64(0)
-    trust, before, change, cuts = 1.0, math.inf, math.inf, np.int64(0)
+    trust, before, change, cuts, first_m = 1.0, math.inf, math.inf, np.int64(0), 0.0
     for round_ in range(ROUNDS):
         if round_ > 0:
             far, entry = stop_factor(drive, step)
         stop_drive = stretch(drive, servo.largest, far)
         take_drive_step(stop_drive, q, step, servo.q_end)
-        count = constrain_stop(robot, collision, drive, stop_drive, wide, q, servo.q_end, step, far, entry, work, servo)
+        near_by = wide if round_ < 2 else track
+        count = constrain_stop(
+            robot, collision, drive, stop_drive, near_by, q, servo.q_end, step, far, entry, work, servo
+        )
         if round_ == 0:
             near = note_near(work, servo, count)
         take_drive_step(drive, q, step, servo.q_end)
         rows, error_m, _, _ = aim(robot, drive, track, target, q, servo.q_end, step, work)
         if round_ > 0:
-            if is_met and (error_m <= ENOUGH_M or change < SETTLED):
+            is_done = round_ > 1 and before - error_m < LITTLE * (first_m - error_m)
+            if is_met and (error_m <= ENOUGH_M or change < SETTLED or is_done):
                 break
-            share = error_m / before
+            share = error_m / max(before, 1e-12)
             trust = TRUSTED * trust if share < GOOD else (trust if share < FAIR else 1.0)
         before = error_m
         if round_ == 0:
+            first_m = error_m
             prefer(robot, collision, drive, track, target, weights, q, count, rows, work, servo)
             aim(robot, drive, track, target, q, servo.q_end, step, work)
             if has_goal:

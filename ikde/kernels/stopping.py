@@ -20,8 +20,8 @@ from ikde.kernels.jit import counting_kernel, inline_kernel, kernel
 from ikde.kernels.obstacles import CLOUD, KIND, OWNER, is_apart, solid_gap
 from ikde.kernels.spheres import compute_bounds, compute_centres
 
-LEVELS = 7  # ends of pieces that are held at once: a way is halved six times at most
-SMALLEST = 1.0 / 32.0  # of a way: pieces are not halved below it
+LEVELS = 6  # ends of pieces that are held at once: a way is halved four times at most
+SMALLEST = 1.0 / 16.0  # of a way: pieces are not halved below it
 SAMPLES = 8  # of a way, at which what is in contact is measured
 ROUNDING = 5e-13  # m, rad: ranges are twice as far from their ends
 SAME_M = 1e-9  # m: depths that differ by less are the same

@@ -83,12 +83,12 @@ def test_the_edge_of_reach_is_slid_along_without_shaking(ur5):
 
 def test_what_is_moved_into_the_robot_is_named_and_it_only_moves_out(ur5):
     servo = Servo(ur5, ELBOW_UP, limits=limits_of(ur5, has_acceleration=False))
-    x, y, z = tool_at(ur5, ELBOW_UP)
-    wall = wall_before(ur5, ELBOW_UP, 0.04)
-    servo.world = wall
-    steps = walk(servo, [[x, y, z]] * 80)
+    p = tool_at(ur5, ELBOW_UP)
+    ball = {"position": tool_at(ur5, ELBOW_UP, 0.0, 0.0, -0.06).tolist(), "sphere": {"radius": 0.08}}
+    servo.world = ikde.read_world({"obstacles": {"ball": ball}}).world
+    steps = walk(servo, [p] * 80)
     depths = [step.contact.depth_m if step.contact else 0.0 for step in steps]
-    assert steps[0].contact.pair[1] == "wall"
+    assert steps[0].contact.pair[1] == "ball"
     assert depths[0] > 0.02
     assert (np.diff(depths) <= 1e-9).all()
     assert depths[-1] == 0.0
