@@ -1,4 +1,4 @@
-"""Covers of random meshes, judged by points; `python -m benchmarks.covers` judges 300."""
+"""Covers of random meshes, judged by points; `python -m benchmarks.covers` judges 210."""
 
 from pathlib import Path
 
