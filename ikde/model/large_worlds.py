@@ -7,7 +7,7 @@ Caches of a few dozen entries suit worlds of a few solids. A cloud of a million 
 from threading import Lock
 from typing import Any, TypeVar
 
-MOST_POINTS = 5_000_000
+MAX_POINTS = 5_000_000
 """In clouds that were packed since caches were emptied last."""
 Cached = TypeVar("Cached")
 
@@ -27,7 +27,7 @@ class Kept:
     def note(self, points: int) -> None:
         """A world with so many points is packed: if that is too much, forget those before it."""
         with self._lock:
-            is_full = points > 0 and self._points + points > MOST_POINTS
+            is_full = points > 0 and self._points + points > MAX_POINTS
             self._points = points if is_full else self._points + points
         if is_full:
             for cache in self._caches:

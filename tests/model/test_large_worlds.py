@@ -7,7 +7,7 @@ from ikde.model.large_worlds import Kept
 
 
 def test_caches_are_emptied_when_too_many_points_were_packed(monkeypatch):
-    monkeypatch.setattr(module, "MOST_POINTS", 100)
+    monkeypatch.setattr(module, "MAX_POINTS", 100)
     kept, made = Kept(), []
 
     @kept.add
