@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ikde.errors import InputError, nearest, quoted
 from ikde.kernels.arrays import CollisionArrays, Floats, read_only
 from ikde.kernels.flat_arguments import HEADER, SOLID_COLUMNS
-from ikde.model.arguments import find_matrix
+from ikde.model.arguments import Pose, find_matrix
 from ikde.model.collision_model import CollisionModel
 from ikde.model.numbers import read_numbers
 from ikde.model.robot import WORLD
@@ -25,7 +26,7 @@ POSES = "T_world_object"
 POSE = slice(1, 13)  # columns of a packed solid: its axes and its place
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class ObjectMotion:
     """Poses of an obstacle at moments; between them it moves straight and turns at constant speed on the shortest way.
 
@@ -45,18 +46,18 @@ class ObjectMotion:
     T_world_object: Floats
     """[K, 3, 4] rotation and m."""
 
-    def __post_init__(self) -> None:
-        times = read_numbers(self.times_s, ("times_s",))
+    def __init__(self, times_s: ArrayLike, T_world_object: ArrayLike | Iterable[ArrayLike | Pose]) -> None:
+        times = read_numbers(times_s, ("times_s",))
         if times.ndim != 1:
             raise InputError(f"expected times [K] in s, got shape {times.shape}", ("times_s",))
-        poses = _read_poses(self.T_world_object)
+        poses = _read_poses(T_world_object)
         if len(times) != len(poses) or len(times) < 2:
             raise InputError(f"expected a pose a time, two at least, got {len(times)} and {len(poses)}", ("times_s",))
         for (k,) in np.argwhere(~(np.diff(times) > 0.0) | ~np.isfinite(times[1:]))[:1]:
             raise InputError(
                 f"expected a later time than {times[k]:g} s, got {times[k + 1]:g}", ("times_s", int(k) + 1)
             )
-        object.__setattr__(self, "times_s", read_only(times.copy()))
+        object.__setattr__(self, "times_s", read_only(times))
         object.__setattr__(self, "T_world_object", read_only(poses))
         try:
             slerp("pose", poses[:, :, :3], np.arange(len(poses), dtype=float))
