@@ -314,6 +314,7 @@ def draw(
     target: "Target | None" = None,
     *,
     region: "Region | None" = None,
+    alternative: int | None = None,
     as_json: bool = False,
 ) -> None:
     """Draw a configuration if a path is given, and say so."""
@@ -322,5 +323,5 @@ def draw(
     from ikde.plot.pose import plot_pose, save_figure
     from ikde.scene.drawn_pose import draw_pose
 
-    save_figure(plot_pose(draw_pose(collision, q, target=target, region=region)), path)
+    save_figure(plot_pose(draw_pose(collision, q, target=target, region=region, alternative=alternative)), path)
     print_written(path, as_json=as_json)

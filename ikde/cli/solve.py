@@ -178,7 +178,9 @@ def solve(
     else:
         _print_several(model, results, units, convention, as_json, **spent)
         _note_fewer(results, count)
-    options.draw(plot, checked, results[0].q, results[0].target, region=results[0].region, as_json=as_json)
+    best = results[0]
+    shown = {"region": best.region, "alternative": best.alternative}
+    options.draw(plot, checked, best.q, best.target, **shown, as_json=as_json)
     raise typer.Exit(ExitCode.OK if len(results) == count and results[0].reached else ExitCode.NOT_REACHED)
 
 

@@ -14,6 +14,7 @@ from ikde.plot.images import any_letters, show_as_text
 from ikde.plot.style import find_eye, set_box
 from ikde.plot.world import draw_obstacles
 from ikde.scene.drawn_pose import AXIS_COLORS, COLORS, DrawnPose, DrawnRobot, Mark, Role
+from ikde.scene.drawn_region import Outline
 
 MESH = 24  # facets around a sphere
 MARGINS = (0.0, 0.03, 0.95, 0.92)  # left, bottom, width, height; a layout engine would draw everything twice
@@ -55,9 +56,8 @@ def plot_pose(pose: DrawnPose, *, size_in: tuple[float, float] = (9.0, 8.0), vie
     draw_obstacles(axes, pose.obstacles)
     for mark in pose.marks:
         _draw_mark(axes, mark)
-    for number, line_m in enumerate(pose.region_m):
-        label = "_nolegend_" if number else "region: any pose in it will do"
-        axes.plot(*line_m.T, color=COLORS[Role.REGION], linewidth=1.6, zorder=9, label=label)
+    for outline in pose.region:
+        _draw_goal(axes, outline)
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=pose.title)
     box_m = pose.compute_box()
     half_m = 0.51 * float(np.ptp(box_m, axis=0).max())
@@ -103,6 +103,16 @@ def save_figure(figure: Any, path: Path) -> None:
     except ValueError as error:
         raise FileError(path, f"cannot be drawn: {error}") from None
     write_named(path, drawn.getbuffer())
+
+
+def _draw_goal(axes: Any, outline: Outline) -> None:
+    """Of a goal with freedom: what was reached before its alternatives, and where the base may stand on the floor."""
+    color = COLORS[Role.BASE if outline.is_base else Role.REGION]
+    look = {"linewidth": 0.8, "alpha": 0.6} if outline.is_faint else {"linewidth": 1.6}
+    look |= {"linestyle": "--"} if outline.is_base else {}
+    for number, line_m in enumerate(outline.lines_m):
+        label = "_nolegend_" if number or not outline.text else outline.text
+        axes.plot(*line_m.T, color=color, zorder=9, label=label, **look)
 
 
 def _draw_axes(axes: Any, Ts_world_frame: Floats, *, length_m: float, dashes: Sequence[str], width: float) -> None:

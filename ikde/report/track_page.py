@@ -168,8 +168,10 @@ def _make_clearance(motion: TrackSummary) -> Number:
     if not motion.collision.obstacles or motion.closest_pair is None or motion.closest_place is None:
         return Number(length(clearance_m), "smallest clearance at samples", certain)
     asked_m = motion.collision.limit_m + motion.collision.extra_m(motion.closest_place)
-    where = " and ".join(motion.closest_pair) + (f", {length(asked_m)} asked for" if asked_m else "")
-    return Number(length(clearance_m), "least to spare at samples", "; ".join(filter(None, (where, certain))))
+    apart = f" {length(clearance_m)} apart, {length(asked_m)} asked for" if asked_m else ""
+    where = " and ".join(motion.closest_pair) + apart
+    spare = length(clearance_m - asked_m)
+    return Number(spare, "least to spare at samples", "; ".join(filter(None, (where, certain))))
 
 
 def _tell_black(motion: TrackSummary) -> str:

@@ -19,7 +19,7 @@ from ikde.model.robot import WORLD, Robot
 from ikde.model.target import Target
 from ikde.model.tree import build_tree
 from ikde.scene.drawn_near import draw_near, reach_obstacle
-from ikde.scene.drawn_region import draw_region
+from ikde.scene.drawn_region import Outline, draw_region
 from ikde.scene.drawn_world import DrawnObstacle
 from ikde.solver.plain import compute_components, compute_frames, compute_gaps, compute_sphere_gaps
 
@@ -113,23 +113,29 @@ class DrawnPose:
     """About the world's z axis, of the base."""
     obstacles: tuple[DrawnObstacle, ...] = ()
     """What of them is near."""
-    region_m: tuple[Floats, ...] = ()
-    """Outlines [n, 3] of a goal with freedom."""
+    region: tuple[Outline, ...] = ()
+    """Of a goal with freedom."""
 
     def compute_box(self) -> Floats:
         """Lower and upper corner [2, 3] in m around robot and marks, and what is drawn of obstacles."""
         solids = [solid for obstacle in self.obstacles for solid in obstacle.solids]
-        parts = [self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks), *self.region_m]
+        parts = [self.robot.compute_box(np.eye(3)), *(mark.points_m for mark in self.marks)]
+        parts += [line for outline in self.region for line in outline.lines_m]
         points = np.concatenate([*parts, *(part for solid in solids for part in (*solid.polygons_m, solid.points_m))])
         return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 def draw_pose(
-    collision: CollisionModel, q: Floats, *, target: Target | None = None, region: Region | None = None
+    collision: CollisionModel,
+    q: Floats,
+    *,
+    target: Target | None = None,
+    region: Region | None = None,
+    alternative: int | None = None,
 ) -> DrawnPose:
     """The robot at `q` [N] with the spheres that are compared, the closest pair, its tool's axes, and the target.
 
-    Of a goal with freedom, its outlines, too.
+    Of a goal with freedom, its outlines, too, the alternative that was reached before the others.
     """
     robot, gaps_m = collision.robot, compute_gaps(collision, q)
     Ts_world = compute_frames(robot, q)
@@ -147,7 +153,7 @@ def draw_pose(
         Ts_world_frame=Ts_world[robot.tool][None],
         marks=tuple(marks),
         heading_rad=heading_rad,
-        region_m=() if region is None else draw_region(region),
+        region=() if region is None else draw_region(region, alternative),
     )
     if not collision.obstacles:
         return pose

@@ -1,26 +1,66 @@
 """The outlines of a goal with freedom: its box, cone or turns, where it is looked from, and the floor of a base."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ikde.kernels.arrays import Floats
-from ikde.model.region import Region, RegionPart
+from ikde.model.region import Region, RegionPart, has_freedom
 from ikde.model.rotation import rotation_about, rotation_with_z
 
 LENGTH_M, RADIUS_M = 0.15, 0.1  # of what shows directions, and turns
 STEPS, RAYS = 48, 8
 CORNERS = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])
+ANY = "region: any pose in any of them will do"
 Lines = list[Floats]
 """Polylines [n, 3] in m."""
 
 
-def draw_region(region: Region) -> tuple[Floats, ...]:
-    """Outlines [n, 3] in m, world frame, of all alternatives and of where a base may stand."""
-    lines = [line for part in region.parts for line in _draw_part(part)]
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Outline:
+    """Lines of a goal with freedom that belong together."""
+
+    lines_m: tuple[Floats, ...]
+    """Polylines [n, 3] in m, world frame."""
+    text: str
+    """What they are; empty of lines that only lead to others."""
+    is_faint: bool = False
+    """An alternative that was not reached, or no part of the region."""
+    is_base: bool = False
+    """Where the base may stand."""
+
+
+def draw_region(region: Region, alternative: int | None = None) -> tuple[Outline, ...]:
+    """Outlines of all alternatives, of them the one that was reached, and of where a base may stand."""
+    parts, outlines = region.parts, list[Outline]()
+    chosen = [*range(len(parts))] if alternative is None else [alternative]
+    text = "region: any pose in it will do"
+    if len(parts) > 1:
+        text = ANY if alternative is None else f"region: alternative {alternative + 1} of {len(parts)}"
+    if any(map(has_freedom, parts)):
+        lines = [line for place in chosen for line in _draw_part(parts[place])]
+        outlines.append(Outline(lines_m=tuple(lines), text=text))
+    if others := [line for place, part in enumerate(parts) if place not in chosen for line in _draw_part(part)]:
+        outlines.append(Outline(lines_m=tuple(others), text="other alternatives", is_faint=True))
+    if leading := [line for place in chosen for line in _lead_to_point(parts[place])]:
+        outlines.append(Outline(lines_m=tuple(leading), text="", is_faint=True))
     if region.base is not None:
-        for polygon in (region.base.corners, *region.base.holes):
-            closed = np.concatenate([polygon, polygon[:1]])
-            lines.append(np.column_stack([closed, np.zeros(len(closed))]))
-    return tuple(lines)
+        closed = [np.concatenate([polygon, polygon[:1]]) for polygon in (region.base.corners, *region.base.holes)]
+        floor = tuple(np.column_stack([edge, np.zeros(len(edge))]) for edge in closed)
+        outlines.append(Outline(lines_m=floor, text="where the base may stand", is_base=True))
+    return tuple(outlines)
+
+
+def _lead_to_point(part: RegionPart) -> Lines:
+    """A cross where the tool is to look, and lines of sight from there."""
+    if part.rule != "look_at":
+        return []
+    point, (low, _, angle) = part.target.p_world_tool, part.numbers.tolist()
+    lines = [np.array([point - 0.2 * RADIUS_M * axis, point + 0.2 * RADIUS_M * axis]) for axis in np.eye(3)]
+    if angle < 0.5 * np.pi:
+        near = point + low * _circle(rotation_with_z(-part.target.axis_world_tool), angle)
+        lines += [np.array([point, near[k]]) for k in range(0, STEPS, STEPS // RAYS)]
+    return lines
 
 
 def _draw_part(part: RegionPart) -> Lines:

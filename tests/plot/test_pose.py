@@ -128,3 +128,16 @@ def test_a_figure_is_written_through_a_link_and_never_in_part(tmp_path, qiao):
     (tmp_path / "folder.svg").mkdir()
     with pytest.raises(FileError, match="no ordinary file"):
         save_figure(plot_frames(draw_pose(CollisionModel.of(qiao, "none"), qiao.home)), tmp_path / "folder.svg")
+
+
+def test_a_region_is_drawn_with_what_its_lines_are(qiao):
+    region = ikde.Region.any_of([ikde.Region.box(TARGET, 0.1), ikde.Region.look_at((1, 0, 0), (0.3, 0.6))])
+    region = region.with_base([(0, 0), (2, 0), (2, 2)])
+    pose = draw_pose(CollisionModel.of(qiao), qiao.home, target=TARGET, region=region, alternative=1)
+    axes = plot_pose(pose).axes[0]
+    assert labels(axes)[-3:] == ["region: alternative 2 of 2", "other alternatives", "where the base may stand"]
+    drawn = {line.get_label(): line for line in axes.lines}
+    reached, others, floor = (drawn[label] for label in labels(axes)[-3:])
+    assert reached.get_linewidth() > others.get_linewidth()
+    assert (reached.get_color(), floor.get_color()) == (COLORS[Role.REGION], COLORS[Role.BASE])
+    assert floor.get_linestyle() == "--"

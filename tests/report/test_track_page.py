@@ -173,4 +173,6 @@ def test_what_has_least_to_spare_is_said_with_what_it_was_asked_for(qiao):
     motion = make_among(qiao, 0.06)
     number = make_page(motion).lead[-1].items[2]
     assert motion.closest_pair[1] in OBSTACLES
-    assert number.note.startswith(f"{' and '.join(motion.closest_pair)}, 60 mm asked for; ")
+    apart_mm = 1e3 * motion.grade.clearance_m
+    assert number.note.startswith(f"{' and '.join(motion.closest_pair)} {apart_mm:.3g} mm apart, 60 mm asked for; ")
+    assert number.value == f"{apart_mm - 60.0:.3g} mm"
