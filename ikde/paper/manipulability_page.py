@@ -255,8 +255,9 @@ def _explain_found(data: Manipulability) -> Text:
         "**What lengths allow.** A search for lengths at which the printed angles have the largest value of their "
         "figure. Alone, each optimum can be had or nearly had with some lengths, most of them absurd; with lengths "
         "that a robot may have only that of Figure 4, and only by (7) as printed. **No lengths were found that give "
-        f"all three**: at best one of them is {printed[0]} below the largest of its figure ({rigid[0]} for the rigid "
-        f"arm), with believable lengths {printed[1]} ({rigid[1]}). Found by search, no proof. And one optimum is two "
+        f"all three**: with the best set the worst of them is {printed[0]} below the largest of its figure ({rigid[0]} "
+        f"for the rigid arm), with believable lengths {printed[1]} ({rigid[1]}). Found by search at θ1 = 0, no proof; "
+        "tops that are not the largest of their figure do not count. And one optimum is two "
         "equations for five lengths, and nothing tells l3 from l4: it leaves a family, so the lengths of `leobot` stay "
         "calibrated."
     )

@@ -58,7 +58,7 @@ def test_the_text_counts_and_says_that_a_search_is_no_proof(data, blocks):
     assert "Of 9 claims 2 hold as they stand" in texts[0]
     assert "8 of 9 of those are whole steps of 1.5 deg" in texts[1]
     (found,) = [text for text in texts if text.startswith("**What lengths allow.**")]
-    assert "Found by search, no proof." in found
+    assert "Found by search at θ1 = 0, no proof" in found
     all_three = [row for row in data.found if all(figure.is_sought for figure in row.figures)]
     for row in all_three:
         assert f"{100 * max(figure.below for figure in row.figures):.0f} %" in found
