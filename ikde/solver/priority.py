@@ -29,6 +29,7 @@ IDLE = 0.1  # weight of directions that a level does not need, as a share of the
 ROUNDS = 100
 SETTLED = 1e-11  # of a multiplier, or of how fast a step nears a bound
 STEEP = 1e-9  # slope below which a level cannot change a bound
+NEARLY = 1e-6  # by which a bound may be missed where rounding adds up: more is no answer
 INSIDE = 1e-8  # by which a bound may be missed; whatever needs it exactly cuts that off
 
 
@@ -129,8 +130,9 @@ def solve_levels(levels: Sequence[Level], bounds: Bounds | None = None, softest:
         smallest.append(float(s[-1]) if len(s) and len(s) == len(matrix) else 0.0)
         damped.append(bool((s[:rank] < softest).any()))
         holding.append(holds)
-    if bounds is not None and is_bound and free.shape[1]:
-        x = _rest(bounds, x, free)
+    if bounds is not None and is_bound:
+        x = _rest(bounds, x, free) if free.shape[1] else x
+        within = _is_inside(bounds, x, NEARLY)
     return Speeds(x, tuple(ranks), tuple(smallest), tuple(damped), tuple(holding), within)
 
 
@@ -140,9 +142,9 @@ def _invert(s: Floats, softest: float) -> Floats:
     return np.where(s > RANK, np.minimum(s / safe, 1.0) / safe, 0.0)
 
 
-def _is_inside(bounds: Bounds, x: Floats) -> bool:
+def _is_inside(bounds: Bounds, x: Floats, within: float = INSIDE) -> bool:
     values = bounds.rows @ x
-    return bool((values >= bounds.lower - INSIDE).all() and (values <= bounds.upper + INSIDE).all())
+    return bool((values >= bounds.lower - within).all() and (values <= bounds.upper + within).all())
 
 
 def _rest(bounds: Bounds, x: Floats, free: Floats) -> Floats:
@@ -168,6 +170,8 @@ def _stay_inside(
     """
     slopes, values = bounds.rows @ open_, bounds.rows @ x
     steep = np.flatnonzero(np.linalg.norm(slopes, axis=1) > STEEP)
+    if not len(steep):  # what is outside stays there, whatever this level does
+        return open_[:, : len(along)] @ along, ()
     box = Bounds(slopes[steep], (bounds.lower - values)[steep], (bounds.upper - values)[steep])
     start = _find_start(box, weights, along)
     if start is None:

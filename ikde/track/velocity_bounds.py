@@ -86,10 +86,10 @@ def _list_joints(robot: Robot, limits: MotionLimits, motion: Motion, held_by_for
     room = np.full((2, size), np.inf)
     if limits.ranges:
         room[0], room[1] = motion.q - robot.lower, robot.upper - motion.q
-    ends = _find_ends(speed, acceleration, room, motion.dt_s, motion.before)
-    shown = motion.mapping.any(axis=1) & ((ends[0] > -FREE) | (ends[1] < FREE))
-    joints, names = np.flatnonzero(shown), np.array(robot.joint_names, dtype=object)
-    return _Rows(names[joints], joints, np.eye(size)[joints], *(part[joints] for part in ends))
+    lower, upper, low, high = _find_ends(speed, acceleration, room, motion.dt_s, motion.before)
+    some = np.flatnonzero(motion.mapping.any(axis=1) & ((lower > -FREE) | (upper < FREE)))
+    names = np.array(robot.joint_names, dtype=object)[some]
+    return _Rows(names, some, np.eye(size)[some], lower[some], upper[some], low[some], high[some])
 
 
 def _list_forward(limits: MotionLimits, motion: Motion, base: Ints) -> _Rows:

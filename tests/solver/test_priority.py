@@ -174,6 +174,7 @@ def test_bounds_that_no_speeds_keep_are_said_to_be_broken():
     for rows, lower, upper in (
         (np.eye(2), [1.0, 0.0], [0.0, 1.0]),
         ([[1.0, 0.0], [1.0, 0.0]], [0.0, 2.0], [1.0, 3.0]),
+        (np.zeros((1, 2)), [1.0], [2.0]),
     ):
         speeds = solve_levels([level], Bounds(np.array(rows), np.array(lower), np.array(upper)))
         assert not speeds.within

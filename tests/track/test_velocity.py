@@ -147,12 +147,12 @@ def test_through_a_stretched_arm_joint_speeds_stay_bounded():
     peaks, ends = {}, {}
     for softest in (0.05, 0.0):
         limits = MotionLimits(ranges=False, speed=np.full(6, 50.0))
-        _, speeds, _ = follow(ARM, q0, draw_out, 400, limits=limits, softest=softest, dt_s=0.02)
+        _, speeds, _ = follow(ARM, q0, draw_out, 300, limits=limits, softest=softest, dt_s=0.02)
         peaks[softest], ends[softest] = np.abs(speeds).max(), speeds[80]
     assert peaks[0.0] > 40.0
     assert peaks[0.05] <= 2.0
     np.testing.assert_allclose(ends[0.05], ends[0.0], atol=1e-9)
-    _, speeds, result = follow(ARM, q0, draw_out, 400, dt_s=0.02)
+    _, speeds, result = follow(ARM, q0, draw_out, 300, dt_s=0.02)
     assert np.abs(speeds).max() <= 2.0
     assert result.tasks[0].damped
     assert not result.tasks[0].met
@@ -234,3 +234,45 @@ def test_bad_input_is_one_line(given, words):
     whole = {"q": ARM.home, "tasks": VelocityTask.tool(twist=[0, 0, 0.1]), **given}
     with pytest.raises(InputError, match=f"^{words}"):
         velocity(ARM, **whole)
+
+
+def draw_task(rng, robot):
+    """Any task, of any size, in part or whole."""
+    common = {"gain": float(rng.choice([0.0, 0.5, 50.0])), "share": float(rng.choice([0.0, 0.3, 1.0, 1.0]))}
+    frame = robot.frames[rng.integers(len(robot.frames))].name
+    p = rng.uniform(-2, 2, 3)
+    kind = rng.integers(5)
+    if kind == 0:
+        return VelocityTask.tool(p, frame=frame, **common)
+    if kind == 1:
+        R = rotation_about(np.array([0.6, 0.0, 0.8]), rng.uniform(0, np.pi))
+        return VelocityTask.tool(ikde.Target(p, R_world_tool=R), max_speed=0.3, **common)
+    if kind == 2:
+        return VelocityTask.tool(ikde.Target(p, axis_world_tool=rng.standard_normal(3)), twist=np.ones(6), **common)
+    if kind == 3 and robot is not ARM:
+        return VelocityTask.base(rng.standard_normal(3), **common)
+    return VelocityTask.joints({name: float(rng.normal()) for name in robot.joint_names[2:]}, **common)
+
+
+@pytest.mark.parametrize("robot", [ARM, TWO_WHEELS, MECANUM], ids=["ur5", "qiao2021", "ur5e_mecanum"])
+def test_whatever_is_asked_limits_are_kept(robot):
+    """Also in singular poses, at ends of ranges, and with joints that may not move."""
+    rng, size = np.random.default_rng(7), len(robot.joints)
+    for k in range(40):
+        q = np.round(rng.uniform(*robot.drawn) / (np.pi / 2)) * np.pi / 2 if k % 2 else rng.uniform(*robot.drawn)
+        q = np.clip(q, robot.lower, np.where(rng.random(size) < 0.2, q, robot.upper))
+        q = np.where(np.isfinite(robot.upper) & (rng.random(size) < 0.2), robot.upper, np.minimum(q, robot.upper))
+        speed = np.where(rng.random(size) < 0.2, 0.0, rng.uniform(0.1, 3.0, size))
+        limits = MotionLimits.of(robot, speed=speed, acceleration=rng.uniform(0.5, 10.0, size))
+        before, tasks = 0.3 * rng.standard_normal(size), [draw_task(rng, robot) for _ in range(3)]
+        result = velocity(robot, q, tasks, limits=limits, before=before if k % 3 else None, dt_s=0.02)
+        free = (
+            slice(2, None) if robot is TWO_WHEELS else slice(None)
+        )  # of two wheels the speed along the heading counts
+        assert (np.abs(result.q_dot) <= speed + 1e-7)[free].all()
+        assert (q + 0.02 * result.q_dot <= robot.upper + 1e-8).all()
+        assert (q + 0.02 * result.q_dot >= robot.lower - 1e-8).all()
+        if k % 3:
+            excess = np.abs(result.q_dot - before) - 0.02 * limits.acceleration
+            too_fast = {name for name, value in zip(robot.joint_names, excess, strict=True) if value > 1e-6}
+            assert too_fast <= set(result.broken)
