@@ -36,6 +36,7 @@ from ikde.kernels.servo_room import (
     HELD_BY,
     HELD_VALUE,
     IS_BRAKING,
+    IS_FREE,
     IS_PROVED,
     MAX_KEPT,
     MEMORY,
@@ -56,10 +57,10 @@ from ikde.kernels.stopping import PROVED, brake_step, make_way, stop_factor
 ROUNDS, SETTLED = 5, 1e-3  # of one step; shares by which a round may still change it
 ENOUGH_M, LITTLE = 1e-8, 0.01  # of the tool's error, and a share of what was taken away of it: no further round
 TRUSTED, GOOD, FAIR = 10.0, 0.3, 0.8  # where a round leaves a good share of the error, the next is damped less
-HALVINGS = 4  # of what a step has beyond braking, until it is proved
+HALVINGS = 3  # of what a step has beyond braking, until it is proved
 STAYING = 0.999  # share of the error that a step leaves, above which nothing brings the tool nearer
 WORSE_M = 1e-7  # by which a step may leave a larger error than braking: what the null space costs
-FARTHER_M = 0.5  # what is near is looked for as far as the stop may be, at most
+FARTHER_M = 0.25  # what is near is looked for as far as the stop may be, at most
 EASED = 0.9  # of what is kept above the safe distance, where nothing else is possible
 # Entries of the numbers that stay from step to step.
 P_REACH, P_MARGIN, P_LENGTH, P_HALF_TRACK, P_WHEEL, P_FAR, P_BODY, P_CENTRE, P_WEIGHTS = 0, 1, 2, 3, 4, 5, 6, 7, 10
@@ -156,10 +157,10 @@ def has_change(drive):
 
 @counting_kernel
 def search_step(robot, collision, drive, track, target, weights, q, radii, work, servo, out_codes):
-    """The best step [D] into `servo.step`, and what holds it; returns how many places are nearer than they may be."""
+    """The best step [D] into `servo.step`, and what holds it."""
     step, size = servo.step, servo.step.size
+    has_goal = has_change(drive)
     far, entry = stop_factor(drive, servo.last)
-    has_goal = entry >= 0 or has_change(drive)
     far = far + 0.5 if has_goal else far
     wide, entry = look_farther(track, find_far_reach(track, drive, radii, far, servo.last)), np.int64(-1)
     near, ease, is_met, wins, count = np.int64(0), 0.0, True, True, np.int64(0)
@@ -199,7 +200,7 @@ def search_step(robot, collision, drive, track, target, weights, q, radii, work,
         is_met = pull(work, rows, error_m / trust, count, step)
         if is_met:
             name_active(work, servo, count, out_codes)
-        if not is_met:
+        else:
             cuts, wins, ease = np.int64(0), False, EASED * (track.margin - collision.safe_distance)
         change = 0.0
         for k in range(size):
@@ -207,7 +208,6 @@ def search_step(robot, collision, drive, track, target, weights, q, radii, work,
             work.preferred[k] = step[k]
     far, _ = stop_factor(drive, step)
     fit_ranges(drive, track.ranges, q, far, servo)
-    return near
 
 
 @counting_kernel
@@ -239,15 +239,15 @@ def choose_step(robot, collision, world, has_world, drive, track, target, radii,
 
 
 @counting_kernel
-def find_step(robot, collision, drive, track, target, weights, radii, q, work, servo, out_codes):
+def find_step(robot, collision, drive, track, target, weights, radii, q, was_free, work, servo, out_codes):
     """The step [D] into `servo.step`, and why it is no better into `out_codes`."""
     world = unpack_world(collision.world)
     has_world = world.solids.shape[0] > 0
     way = make_way(robot, collision, q.size, servo.step.size, MAX_KEPT)
-    kept, is_worse, near = np.int64(0), False, np.int64(0)
+    kept, is_worse = np.int64(0), False
     if target.kind[0] >= 0:
-        near = search_step(robot, collision, drive, track, target, weights, q, radii, work, servo, out_codes)
-        kept = find_kept(robot, collision, world, drive, q, near, way, servo)
+        search_step(robot, collision, drive, track, target, weights, q, radii, work, servo, out_codes)
+        kept = find_kept(robot, collision, world, has_world, drive, q, way, servo)
         is_worse = choose_step(
             robot, collision, world, has_world, drive, track, target, radii, q, kept, way, work, servo, out_codes
         )
@@ -255,10 +255,13 @@ def find_step(robot, collision, drive, track, target, weights, radii, q, work, s
         for k in range(servo.step.size):
             servo.step[k] = servo.brake[k]
     if out_codes[IS_PROVED] == 0:
-        doubt, is_inside = try_step(
-            robot, collision, world, has_world, drive, track, radii, q, servo.brake, kept, way, servo
-        )
-        out_codes[IS_BRAKING], out_codes[IS_PROVED] = 1, 1 if doubt == PROVED and is_inside else 0
+        out_codes[IS_BRAKING] = 1
+        doubt, is_inside = np.int64(PROVED), True  # braking goes along what the step before has proved
+        if not was_free:
+            doubt, is_inside = try_step(
+                robot, collision, world, has_world, drive, track, radii, q, servo.brake, kept, way, servo
+            )
+        out_codes[IS_PROVED] = 1 if doubt == PROVED and is_inside else 0
         if out_codes[DOUBT] == PROVED:
             out_codes[DOUBT] = doubt
     if out_codes[DOUBT] != PROVED:
@@ -311,7 +314,8 @@ def servo_step(
     if kind >= 0:
         before, _, _ = measure_error(robot, drive, track, target, q, servo.step, work, servo)
         out_numbers[ERROR_BEFORE] = before
-    find_step(robot, collision, drive, track, target, weights, radii, q, work, servo, out_codes)
+    find_step(robot, collision, drive, track, target, weights, radii, q, memory[IS_FREE] > 0.0, work, servo, out_codes)
+    out[out.size - MEMORY + IS_FREE] = out_codes[IS_PROVED]
     write_motion(drive, q, dt, servo, out)
     error_m, position, orientation = measure_error(robot, drive, track, target, q, servo.step, work, servo)
     out_numbers[ERROR], out_numbers[POSITION_ERROR], out_numbers[ORIENTATION_ERROR] = error_m, position, orientation

@@ -11,7 +11,8 @@ from ikde.kernels.drive import take_drive_step
 from ikde.kernels.flat_arguments import unpack_world
 from ikde.kernels.jit import counting_kernel, inline_kernel, leaf_kernel
 from ikde.kernels.nullspace import MAX_SHARE, avoid_contacts, avoid_limits, limit_preferred, start_preferred
-from ikde.kernels.obstacles import OWNER
+from ikde.kernels.obstacles import BOUND, OWNER
+from ikde.kernels.obstacles import PLACE as PLACE_OF
 from ikde.kernels.servo_room import BOX, HELD, HELD_BY, HELD_SIDE, HELD_WHY, MAX_KEPT, NOTHING, ROW
 from ikde.kernels.servo_rows import set_wide_box
 from ikde.kernels.stopping import (
@@ -142,30 +143,52 @@ def measure_place(collision, centres, place):
     return least + collision.safe_distance
 
 
+@inline_kernel
+def is_near(collision, way, component, x, y, z, reach):
+    """Whether a point is within `reach` of the sphere about a component, in slot 0."""
+    bounds = way.bounds[0]
+    dx, dy, dz = bounds[component, 0] - x, bounds[component, 1] - y, bounds[component, 2] - z
+    limit = collision.bounds[component, 3] + reach
+    return dx * dx + dy * dy + dz * dz <= limit * limit
+
+
 @counting_kernel
-def find_kept(robot, collision, world, drive, q, near, way, servo):
+def find_kept(robot, collision, world, has_world, drive, q, way, servo):
     """What is in contact at `q` [N], as the proof names it; returns how many."""
-    kept, pairs = np.int64(0), collision.pairs.shape[0]
-    if near == 0:
-        return kept
+    kept, pairs, solids = np.int64(0), collision.pairs.shape[0], world.solids.shape[0]
     place_way(robot, collision, drive, q, servo.brake, 0.0, 0, way)
-    for i in range(near):
-        place = servo.near[i]
-        if place < pairs:
-            if kept < MAX_KEPT and measure_kept(world, collision, way.centres[0], place) <= collision.safe_distance:
-                way.kept[kept] = place
-                kept += 1
+    for pair in range(pairs):
+        a, b = collision.pairs[pair, 0], collision.pairs[pair, 1]
+        x, y, z = way.bounds[0, b, 0], way.bounds[0, b, 1], way.bounds[0, b, 2]
+        reach = collision.bounds[b, 3] + collision.safe_distance
+        if kept == MAX_KEPT or not is_near(collision, way, a, x, y, z, reach):
             continue
-        obstacles, solids = world.asked.shape[1], world.solids.shape[0]
-        component, owner = (place - pairs) // obstacles, (place - pairs) % obstacles
+        if measure_kept(world, collision, way.centres[0], pair) <= collision.safe_distance:
+            way.kept[kept] = pair
+            kept += 1
+    for component in range(collision.components.shape[0] if has_world else 0):
         for s in range(solids):
-            key = pairs + component * solids + s
-            if int(world.solids[s, OWNER]) != owner or kept == MAX_KEPT:
+            asked = world.asked[component, int(world.solids[s, OWNER])]
+            x, y, z = world.solids[s, PLACE_OF], world.solids[s, PLACE_OF + 1], world.solids[s, PLACE_OF + 2]
+            if asked == -math.inf or kept == MAX_KEPT:
                 continue
+            if not is_near(collision, way, component, x, y, z, world.solids[s, BOUND] + asked):
+                continue
+            key = pairs + component * solids + s
             if measure_kept(world, collision, way.centres[0], key) <= 0.0:
                 way.kept[kept] = key
                 kept += 1
     return kept
+
+
+@inline_kernel
+def place_of(collision, world, key):
+    """The place in the table of clearances of what the proof names."""
+    pairs, solids = collision.pairs.shape[0], world.solids.shape[0]
+    if key < pairs:
+        return np.int64(key)
+    component, s = (key - pairs) // solids, (key - pairs) % solids
+    return np.int64(pairs + component * world.asked.shape[1] + int(world.solids[s, OWNER]))
 
 
 @counting_kernel
@@ -180,7 +203,7 @@ def try_step(robot, collision, world, has_world, drive, track, radii, q, step, k
         return np.int64(PROVED), is_inside
     rotation = measure_way(robot, drive, radii, step, far, way)
     if kept > 0 and not gets_no_deeper(robot, collision, world, drive, q, servo.goal, kept, way):
-        return servo.near[0], is_inside
+        return place_of(collision, world, way.kept[0]), is_inside
     return prove_way(robot, collision, world, has_world, drive, q, servo.goal, rotation, kept, way), is_inside
 
 
@@ -192,7 +215,8 @@ def find_goal(drive, track, q, rows, error_m, count, work, servo):
     """
     set_wide_box(drive, track.ranges, q, work)
     for k in range(servo.step.size):
-        servo.goal[k] = servo.around[k] = servo.lead[k] = servo.tried[k] = 0.0
+        servo.goal[k] = servo.around[k] = servo.step[k]
+        servo.lead[k] = 0.0
     pull(work, rows, error_m / FAR_TRUST, 0, servo.goal)
     if count > 0:
         pull(work, rows, error_m / FAR_TRUST, count, servo.around)

@@ -16,7 +16,7 @@ from ikde.kernels.world_contacts import make_world_contacts
 MAX_KEPT = 32  # in contact
 CUTS = 24  # rows of earlier rounds that are held on to
 ROWS = MAX_CONSTRAINTS + CUTS
-MEMORY = 19  # of a target: its kind, its pose [3, 4], its speed [6]
+MEMORY, IS_FREE = 20, 19  # of a target: its kind, its pose [3, 4], its speed [6]; and if the stop is proved free
 
 # Why a bound of the box is where it is.
 SPEED, ACCELERATION, RANGE, APPROACH = range(4)

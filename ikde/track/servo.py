@@ -15,6 +15,7 @@ from ikde.kernels.servo_room import (
     CODES,
     ERROR,
     IS_BRAKING,
+    IS_FREE,
     IS_PROVED,
     MEMORY,
     NEAREST,
@@ -120,6 +121,7 @@ class Servo:
     def world(self, world: World) -> None:
         model = self._collision
         self._set_model(model.own.in_world(world, model.margin_m, dict(model.margins_m)))
+        self._memory = _unproved(self._memory)
 
     @property
     def rotation_length_m(self) -> float:
@@ -132,14 +134,14 @@ class Servo:
 
         `q` [N], the `speeds` of the last step, and its `target` with how fast that moved (-1: there was none).
         """
-        return {"q": self._q.tolist(), "speeds": self._speeds.tolist(), "target": self._memory.tolist()}
+        return {"q": self._q.tolist(), "speeds": self._speeds.tolist(), "target": _unproved(self._memory).tolist()}
 
     @state.setter
     def state(self, state: Mapping[str, Sequence[float]]) -> None:
         _check_state(state)
         q = _read_q(self._robot, state["q"], self._limits)  # type: ignore[arg-type]
         speeds = _read_row(state["speeds"], "speeds", self._size)
-        self._q, self._speeds, self._memory = q, speeds, _read_row(state["target"], "target", MEMORY)
+        self._q, self._speeds, self._memory = q, speeds, _unproved(_read_row(state["target"], "target", MEMORY))
 
     @classmethod
     def from_state(cls, robot: RobotLike, state: Mapping[str, Sequence[float]], **options: Any) -> Self:
@@ -266,6 +268,13 @@ def _read_q(robot: Robot, q: JointValues, limits: MotionLimits) -> Floats:
         message = f"{robot.joint_names[k]} stands at {row[k]:.6g}, outside {robot.lower[k]:.6g} .. {robot.upper[k]:.6g}"
         raise InputError(message, ("q", robot.joint_names[k]))
     return np.clip(row, robot.lower, robot.upper)
+
+
+def _unproved(memory: Floats) -> Floats:
+    """The same of a servo whose stop is not known to be free."""
+    other = memory.copy()
+    other[IS_FREE] = 0.0
+    return other
 
 
 def _check_state(state: object) -> None:
