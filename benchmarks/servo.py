@@ -108,7 +108,7 @@ def count_frozen(tools: np.ndarray, targets: np.ndarray, every: int = 5) -> int:
         is_far = np.linalg.norm(some - goals, axis=1).min() > FAR_M
         moves = np.linalg.norm(goals - goals[0], axis=1).max() > MOVED_M
         is_frozen = is_still and is_far and moves
-        count, k = count + is_frozen, k + (span if is_frozen else 1)
+        count, k = count + int(is_frozen), k + (span if is_frozen else 1)
     return count
 
 

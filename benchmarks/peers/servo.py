@@ -5,7 +5,8 @@
 
 A UR5 among 20 boxes and cylinders follows targets of 10 ms, a step of each library a target. Accelerations are not
 limited, since neither keeps any. mink keeps its collision limit against all of the world, Pink its self-collision
-barrier, with the solids among its pairs. Plain numpy grades all alike: speeds, ranges, collisions at every step.
+barrier, with the solids among its pairs. Plain numpy grades all alike: speeds, ranges, collisions at every step. Times
+are of the processor.
 """
 
 import argparse
@@ -124,16 +125,15 @@ def summarise(rows: list[dict[str, Any]]) -> dict[str, Any]:
     errors, angles, seconds = (
         np.concatenate([row[key] for row in rows]) for key in ("errors_m", "angles_rad", "seconds")
     )
-    counts = {
-        key: sum(row[key] for row in rows) for key in ("colliding", "too_fast", "outside", "frozen", "unanswered")
-    }
+    names = ("colliding", "too_fast", "outside", "frozen", "unanswered")
+    counts = {name: int(sum(row[name] for row in rows)) for name in names}
     return {
         "steps": len(errors),
         "position_error_mm": {f"p{p}": round(1e3 * float(np.percentile(errors, p)), 4) for p in (50, 95)},
         "orientation_error_rad": {f"p{p}": round(float(np.percentile(angles, p)), 5) for p in (50, 95)},
         "least_clearance_mm": round(1e3 * min(row["least_m"] for row in rows), 4),
         **counts,
-        "us": {f"p{p}": round(1e6 * float(np.percentile(seconds, p)), 1) for p in (50, 99)},
+        "us_of_processor": {f"p{p}": round(1e6 * float(np.percentile(seconds, p)), 1) for p in (50, 99)},
     }
 
 
