@@ -29,7 +29,7 @@ from tests.track.servo_walks import draw_walk, draw_world, find_offences, limits
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "servo.json"
-DT_S, STEPS, EVERY, CERTIFIED = 0.01, 1000, 20, 10
+DT_S, STEPS, EVERY, CERTIFIED, WRITTEN = 0.01, 1000, 20, 10, 20
 KINDS = ("pose", "position", "axis")
 CASES: tuple[tuple[str, Drive, bool], ...] = (
     ("ur5", "omnidirectional", True),
@@ -144,6 +144,20 @@ def summarise(rows: list[tuple[Walk, dict[str, Any]]]) -> dict[str, Any]:
     }
 
 
+def tell(rows: list[tuple[Walk, dict[str, Any]]]) -> dict[str, Any]:
+    """The record of the walks so far."""
+    record: dict[str, Any] = {"machine": describe(), "dt_s": DT_S, "all": summarise(rows), "cases": {}}
+    for name, drive, has_acceleration in CASES:
+        some = [
+            (walk, row)
+            for walk, row in rows
+            if (walk.robot.name, walk.drive, walk.limits.acceleration is not None) == (name, drive, has_acceleration)
+        ]
+        label = f"{name}, {drive}{'' if has_acceleration else ', any acceleration'}"
+        record["cases"] |= {label: summarise(some)} if some else {}
+    return record
+
+
 def main() -> None:
     """Run the walks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -154,25 +168,15 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=RESULTS)
     options = parser.parse_args()
     began, rows = time.perf_counter(), []
-    for seed in range(options.first, options.first + options.walks):
+    last = options.first + options.walks - 1
+    for seed in range(options.first, last + 1):
         walk = draw(seed, options.steps)
         rows.append((walk, follow(walk, options.oracle, certifies=seed % CERTIFIED == 0)))
         if rows[-1][1]["offences"] or seed % 50 == 49:
             print(f"[{time.perf_counter() - began:.0f} s] walk {seed}: {rows[-1][1]['offences']}", flush=True)
-    record = {"machine": describe(), "dt_s": DT_S, "all": summarise(rows), "cases": {}}
-    for name, drive, has_acceleration in CASES:
-        label = f"{name}, {drive}{'' if has_acceleration else ', any acceleration'}"
-        some = [
-            row
-            for row in rows
-            if row[0].robot.name == name
-            and row[0].drive == drive
-            and (row[0].limits.acceleration is not None) == has_acceleration
-        ]
-        if some:
-            record["cases"][label] = summarise(some)
-    options.out.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    print(json.dumps(record["all"], indent=1))
+        if seed % WRITTEN == WRITTEN - 1 or seed == last:
+            options.out.write_text(json.dumps(tell(rows), indent=1) + "\n", encoding="utf-8")
+    print(json.dumps(tell(rows)["all"], indent=1))
 
 
 if __name__ == "__main__":

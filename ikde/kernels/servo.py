@@ -22,6 +22,7 @@ from ikde.kernels.servo_parts import (
     measure_error,
     measure_place,
     name_active,
+    name_worst,
     prefer,
     pull,
     try_step,
@@ -201,6 +202,7 @@ def search_step(robot, collision, drive, track, target, weights, q, radii, work,
         if is_met:
             name_active(work, servo, count, out_codes)
         else:
+            name_worst(work, servo, found, out_codes)
             cuts, wins, ease = np.int64(0), False, EASED * (track.margin - collision.safe_distance)
         change = 0.0
         for k in range(size):

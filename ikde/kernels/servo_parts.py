@@ -129,6 +129,16 @@ def name_active(work, servo, count, out_codes):
             out_codes[HELD], out_codes[HELD_BY] = ROW, servo.row[number - 2 * size]
 
 
+@inline_kernel
+def name_worst(work, servo, count, out_codes):
+    """The row that is farthest from being met, where no step meets all of them."""
+    least = math.inf
+    for i in range(count):
+        if work.constraints.slack[i] < least:
+            least = work.constraints.slack[i]
+            out_codes[HELD], out_codes[HELD_BY] = ROW, servo.row[i]
+
+
 @counting_kernel
 def measure_place(collision, centres, place):
     """Distance of what stands at a place in the table of clearances, less what it asks for beyond the safe one, m."""
