@@ -60,8 +60,8 @@ def draw(seed: int, steps: int, case: tuple[str, Drive, bool] | None = None) -> 
     name, drive, has_acceleration = CASES[seed % len(CASES)] if case is None else case
     robot, rng = ikde.load_robot(name), np.random.default_rng(seed)
     world = draw_world(robot, robot.home, rng, 20, kinds=("box", "cylinder"))
-    kind, is_hard = KINDS[seed // len(CASES) % len(KINDS)], seed % EVERY == 0
-    into = world.obstacles[int(rng.integers(20))].T_world_obstacle[:, 3] if is_hard and seed % (2 * EVERY) else None
+    kind, is_hard = KINDS[seed // len(CASES) % len(KINDS)], seed % EVERY == seed // EVERY % len(CASES)
+    into = world.obstacles[int(rng.integers(20))].T_world_obstacle[:, 3] if is_hard and seed // EVERY % 2 else None
     away_m = 1.5 if is_hard and into is None else 0.0
     targets = draw_walk(robot, robot.home, rng, steps, DT_S, kind=kind, away_m=away_m, into=into)
     limits = limits_of(robot, has_acceleration)
