@@ -45,9 +45,8 @@ def find_prepared(problem: Problem, kind: str) -> Prepared:
 
 def pack_block(problem: Problem, kind: str, seeds: SeedArrays | None = None) -> Block:
     """All that stays from target to target, as `solve_target` takes it."""
-    numbers, whole, *pool = _pack_head(problem, kind, seeds)
-    numbers, whole = append_world(numbers, whole, int(whole[3]), problem.collision.arrays.world)
-    return numbers, whole, *pool
+    numbers, whole, pool, pool_T = _pack_head(problem, kind, seeds)
+    return *append_world(numbers, whole, int(whole[3]), problem.collision.arrays.world), pool, pool_T
 
 
 def _pack_head(problem: Problem, kind: str, seeds: SeedArrays | None) -> Block:
