@@ -13,7 +13,7 @@ import typer
 from ikde.cli.exit_codes import ExitCode
 from ikde.cli.options import AngleUnit, JsonOption, LengthUnit, note_unchecked, read_q, repeat_command
 from ikde.cli.output import Working, layout, print_json, print_result, print_written, working
-from ikde.cli.world_options import AttachOption, MarginOption, Pick, WorldOption, place_in_world
+from ikde.cli.world_options import AttachOption, MarginOption, Pick, WorldOption, note_held, place_in_world
 
 if TYPE_CHECKING:
     from ikde.track.plan import TrackPlan
@@ -65,6 +65,8 @@ def track(
     begin = None if start is None else read_q(plan.robot, start, unit, angles, convention, "start")
     picked = Pick(attach, plan.start if begin is None else begin)
     placed = place_in_world(plan.collision, world, margin, unit, picked)
+    if attach is None and world is None:
+        note_held(placed, Pick(q=plan.start))
     with in_track_file(plan):
         plan = replace(plan, collision=placed, world_file=plan.world_file if world is None else str(world))
         plan = plan.with_changes(method=method, drive=drive, seed=seed, start=begin)  # type: ignore[arg-type]

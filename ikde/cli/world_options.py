@@ -97,9 +97,15 @@ def _pick_up(collision: "CollisionModel", world: "World", pick: Pick) -> "World"
 
 def _note_held(model: "CollisionModel", pick: Pick) -> None:
     """Say how what was picked up is compared."""
+    if pick.text is not None:
+        note_held(model, pick)
+
+
+def note_held(model: "CollisionModel", pick: Pick) -> None:
+    """Say of all that is held how it is compared, and how far it is from what holds it."""
     from ikde.report.numbers import count_of
 
-    for thing in model.world.attached if pick.text is not None else ():
+    for thing in model.world.attached:
         out_mm = 1e3 * (thing.protrusion_m or 0.0)
         spheres = f"{count_of(len(thing.spheres), 'sphere')}, up to {out_mm:.3g} mm beyond it"
         print_note(f"ikde: {thing.frame} holds {thing.name}, {_tell_distance(thing, pick)}: {spheres}")

@@ -183,12 +183,14 @@ def _tell_black(motion: TrackSummary) -> str:
 def tell_obstacles(motion: TrackSummary) -> str:
     """What is drawn of a world, and what the ring is; nothing without one."""
     count = len(motion.collision.obstacles)
+    held = ", ".join(thing.name for thing in motion.collision.world.attached)
+    held = f" What the robot holds is brown: {verbatim(held)}." if held else ""
     if not count:
-        return ""
+        return held
     shown = f"The {MAX_OBSTACLES} nearest of {count:,} obstacles are" if count > MAX_OBSTACLES else "Obstacles are"
     moved = "; those that move are drawn where they are at each moment" * bool(motion.trajectory.moving)
     ring = "; the green ring is where there is the least room" if motion.closest_obstacle is not None else ""
-    return f" {shown} grey, violet where anything is too near{moved}{ring}."
+    return f" {shown} grey, violet where anything is too near{moved}{ring}.{held}"
 
 
 def _list_sections(motion: TrackSummary) -> list[Section]:

@@ -119,6 +119,12 @@ def test_what_moves_and_does_not_fit_options_is_named_in_the_file(refuse, spec, 
     assert f"{spec}:{number} → {line}" in refuse("track", spec, *options)
 
 
+def test_what_the_file_picks_up_is_said_with_its_distance(cli, spec, tmp_path):
+    (tmp_path / "far.yaml").write_text("obstacles: {ball: {sphere: {radius: 0.05}, position: [9, 0, 0]}}")
+    spec.write_text(f"{SPEC}world: far.yaml\nattached: {{ball: tool}}\n")
+    assert re.search(r"ikde: tool holds ball, 8.17e.03 mm away at home: 1 sphere, up to ", cli("track", spec).err)
+
+
 def test_a_margin_that_makes_it_always_touch_is_refused(refuse, spec, tmp_path):
     (tmp_path / "floor.yaml").write_text("obstacles: {floor: {half_space: {}, position: [0, 0, -0.1]}}")
     spec.write_text(SPEC + "world: floor.yaml\n")

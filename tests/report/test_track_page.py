@@ -1,6 +1,7 @@
 """The page of a track: self-contained, with its figures and the robot moving."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 
@@ -176,3 +177,12 @@ def test_what_has_least_to_spare_is_said_with_what_it_was_asked_for(qiao):
     apart_mm = 1e3 * motion.grade.clearance_m
     assert number.note.startswith(f"{' and '.join(motion.closest_pair)} {apart_mm:.3g} mm apart, 60 mm asked for; ")
     assert number.value == f"{apart_mm - 60.0:.3g} mm"
+
+
+def test_what_the_robot_holds_is_named_with_its_colour():
+    things = (SimpleNamespace(name="can"), SimpleNamespace(name="lid"))
+    held = SimpleNamespace(obstacles=(), world=SimpleNamespace(attached=things))
+    motion = SimpleNamespace(collision=held, closest_obstacle=None, trajectory=SimpleNamespace(moving={}))
+    assert tell_obstacles(motion) == " What the robot holds is brown: can, lid."
+    held.obstacles = ("shelf",)
+    assert tell_obstacles(motion).endswith(" where anything is too near. What the robot holds is brown: can, lid.")

@@ -109,6 +109,13 @@ def test_the_first_alternative_that_is_reached_is_named(ur5, goal):
     assert ikde.solve(ur5, Region.any_of([far, (0, 0, 9)])).stop_reason is StopReason.OUT_OF_REACH
 
 
+def test_alternatives_that_are_proved_out_of_reach_are_not_tried_again(ur5, goal):
+    region = Region.any_of([Region.box((3.0, 0.0, 0.0), 0.1), Region.box(goal, (0.3, 0.0, 0.0))])
+    result = ikde.solve(ur5, region, {"restarts": 4}, collision=ball(goal, (0, 0, 0), 0.2))
+    assert not result.reached
+    assert result.poses == 1 + 4
+
+
 def test_many_alternatives_have_a_budget_together():
     auto, slow = ikde.SolveSettings(), ikde.SolveSettings(method="memetic")
     counts = [regions._find_budget(auto, count) for count in (1, 4, 10, 100)]

@@ -8,8 +8,10 @@ import pytest
 import ikde
 from ikde.model.base_motion import find_wheels, step_base
 from ikde.model.collision_model import CollisionModel
+from ikde.track import certify_world
 from ikde.track.certify import bound_all, certify, list_kept_m
 from ikde.track.certify_world import bound_world, compute_room, find_middle, measure_steps, reach_radii
+from tests.three_joints import ROBOT
 
 DENSE = 100
 SOLIDS = (
@@ -141,3 +143,12 @@ def test_without_a_segment_there_is_nothing_to_bound(qiao, samples):
     model = CollisionModel.of(qiao).in_world(ikde.load_world({"obstacles": {"ball": ball}}))
     q = np.tile(qiao.home, (samples, 1))
     assert bound_all(model, q, "differential").shape == (0, len(model.all_pairs))
+
+
+def test_radii_are_those_of_the_whole_motion(monkeypatch):
+    seen, radii = [], certify_world.reach_radii
+    monkeypatch.setattr(certify_world, "reach_radii", lambda model, most: seen.append(most) or radii(model, most))
+    wall = ikde.load_world({"obstacles": {"wall": {"box": [0.1, 2, 2], "position": [3, 0, 0]}}})
+    q = np.array([[0.1, -0.5, 0.1], [0.1, 0.2, 0.3], [-0.4, 0.1, 0.2]])
+    certify_world.bound_world(CollisionModel.of(ROBOT).in_world(wall), q, "omnidirectional")
+    assert seen[0].tolist() == [0.4, 0.5, 0.3]
