@@ -113,6 +113,7 @@ def measure_gradient(robot: Robot, q: Floats, choice: MeasureChoice, what: Measu
     scale = _row_scale(choice)[:, None] * _column_scale(robot, choice)
     jacobian = frame_jacobian(robot, q, robot.tool)
     U, S, Vt = np.linalg.svd(((jacobian @ by) * scale)[..., rows, :][..., columns], full_matrices=False)
+    S = np.where(ROUNDING * S[..., :1] > S, 0.0, S)
     slope = np.zeros((*q.shape[:-1], 6, by.shape[-1]))
     slope[..., np.ix_(rows, columns)[0], np.ix_(rows, columns)[1]] = U @ (
         _by_values(S, len(rows), what)[..., None] * Vt

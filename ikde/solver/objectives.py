@@ -1,14 +1,13 @@
 """What may be preferred of all that meets a target, as figures with gradients: for `solve`, and for ranking."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from typing import NamedTuple, get_args
 
 import numpy as np
 
 from ikde.errors import InputError, quoted
 from ikde.kernels.arrays import Floats, Ints
-from ikde.model.actuators import actuator_names
 from ikde.model.collision_model import CollisionModel
 from ikde.model.robot import Robot
 from ikde.solver.measures import MeasureChoice, measure, measure_gradient
@@ -19,7 +18,8 @@ from ikde.solver.problem import Problem
 
 NEAR_M, NEAR_SPHERES_M = 0.1, 0.02  # beyond the smallest gap: of pairs, and of their spheres, that are raised with it
 DIFFERENCE = 1e-6  # m or rad, of the gradients of gaps
-SINGULAR = 1e-300  # a manipulability has no logarithm below it
+TRIED = 8  # random configurations: a robot that is singular in each is always
+SINGULAR = 1e-9  # of the largest singular value, to the power of their number: below it a manipulability counts as that
 
 
 class Objective(NamedTuple):
@@ -43,18 +43,22 @@ def check_prefer(collision: CollisionModel, prefer: str | None) -> None:
         raise InputError("without a detector no clearance is known to prefer", ("prefer",))
 
 
+@lru_cache(maxsize=64)
 def choose_measure(robot: Robot) -> MeasureChoice:
     """Which manipulability counts where one figure is asked for: of the whole robot's pose, scaled by speed limits.
 
-    Of a robot that moves by fewer than six, whose manipulability of a pose is 0, that of the translation.
+    Of a robot that is singular then in each of some random configurations, that of the translation.
 
     Raises:
-        InputError: for one of fewer than three.
+        InputError: if that is 0 in each of them as well.
     """
-    count = len(actuator_names(robot, "twist"))
-    if count < 3:
-        raise InputError(f"the manipulability of {robot.name} is always 0: fewer than three joints move it", ())
-    return MeasureChoice(rows="pose" if count >= 6 else "translation")
+    q = np.random.default_rng(0).uniform(*robot.drawn, (TRIED, len(robot.joints)))
+    for rows in ("pose", "translation"):
+        choice = MeasureChoice(rows=rows)
+        found = measure(robot, q, choice)
+        if (found.smallest > SINGULAR * found.singular_values[:, 0]).any():
+            return choice
+    raise InputError(f"the manipulability of {robot.name} is 0 in each of {TRIED} random configurations")
 
 
 def measure_manipulability(robot: Robot, q: Floats) -> Floats:
@@ -88,8 +92,10 @@ def _show_manipulability(robot: Robot, q: Floats) -> float:
 
 
 def _climb_manipulability(robot: Robot, choice: MeasureChoice, q: Floats) -> tuple[Floats, Floats]:
-    """Its logarithm, so that steps are shares of it."""
-    here = max(float(measure(robot, q, choice).manipulability), SINGULAR)
+    """Its logarithm, so that steps are shares of it; one that is 0 wherever the robot is has no slope but rounding."""
+    found = measure(robot, q, choice)
+    largest = max(float(found.singular_values[0]), SINGULAR) ** len(found.singular_values)
+    here = max(float(found.manipulability), SINGULAR * largest)
     return np.array([np.log(here)]), measure_gradient(robot, q, choice, "manipulability")[None] / here
 
 

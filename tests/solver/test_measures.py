@@ -40,13 +40,15 @@ def test_gradients_are_those_of_central_differences(name, rng):
         for what in WHAT:
             here = float(getattr(measure(robot, q, choice), what))
             gradient = measure_gradient(robot, q, choice, what)
-            if not np.isfinite(here):  # two columns for three rows
+            if not np.isfinite(here):  # too few columns, or some that never move the tool otherwise
                 assert np.isnan(gradient).any()
                 continue
             f = {k: getattr(of, what) for k, of in around.items()}
             expected = (8.0 * (f[1] - f[-1]) - (f[2] - f[-2])) / (12.0 * STEP)
             scale = max(here, np.abs(expected).max())
-            np.testing.assert_allclose(gradient, expected, rtol=0, atol=1e-6 * scale, err_msg=f"{choice} {what}")
+            np.testing.assert_allclose(
+                gradient, expected, rtol=0, atol=1e-6 * scale + 1e-12, err_msg=f"{choice} {what}"
+            )
 
 
 def test_yoshikawa_s_and_the_determinant_stand_under_their_own_names(qiao, rng):

@@ -12,11 +12,13 @@ from ikde.solver.objectives import check_prefer, choose_measure, make_objective,
 from ikde.solver.problem import make_problem
 from ikde.solver.settings import SolveSettings
 from tests.conftest import random_q
+from tests.random_robots import make_frame, make_robot
 from tests.targets import free_q
 from tests.three_joints import ROBOT
 from tests.tiny_robot import tiny_robot
 
 STEP = 1e-6
+PLANAR = (("a", "world"), ("b", "a"), ("c", "b"))
 
 
 def problem_of(robot):
@@ -53,10 +55,19 @@ def test_an_arm_of_few_joints_counts_its_translation():
     assert choose_measure(ROBOT).rows == "translation"
 
 
+def test_what_is_always_singular_has_none():
+    """Three joints in a plane never move the tool out of it; a planar arm on a base that turns never rolls it."""
+    frames = [make_frame(name, parent, (0.4, 0, 0), joint=name, axis=(0, 0, 1)) for name, parent in PLANAR]
+    robot = make_robot({name: "revolute" for name, _ in PLANAR}, [*frames, make_frame("tool", "c", (0.4, 0, 0))])
+    with pytest.raises(InputError, match="the manipulability of made is 0 in each of 8 random configurations"):
+        choose_measure(robot)
+    assert choose_measure(ikde.load_robot("leobot")).rows == "translation"
+
+
 def test_what_can_have_none_is_refused(qiao):
     with pytest.raises(InputError, match="prefer: expected one of"):
         check_prefer(CollisionModel.of(qiao), "beauty")
     with pytest.raises(InputError, match="prefer: without a detector"):
         check_prefer(CollisionModel.of(qiao, "none"), "clearance")
-    with pytest.raises(InputError, match="is always 0: fewer than three joints move it"):
+    with pytest.raises(InputError, match="the manipulability of made is 0 in each of 8 random configurations"):
         check_prefer(CollisionModel.of(tiny_robot()), "manipulability")
