@@ -188,6 +188,8 @@ def test_the_clock_stands_still_when_nothing_compiles(qiao):
 
 
 ONE_SIGNATURE = """
+import sys
+
 import ikde
 from ikde.solver.settings import BulkOptions
 from ikde.kernels.grade_many import grade_many
@@ -195,6 +197,7 @@ from ikde.kernels.evolution import solve_lanes
 from tests.flat_settings import flat_settings
 from tests.random_robots import random_robot
 
+NEAR = "--near" in sys.argv
 settings = flat_settings(population=8, generations=5, restarts=2)
 for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
     p = ikde.forward(robot, robot.home)[robot.tool][:3, 3]
@@ -203,7 +206,7 @@ for robot in (ikde.load_robot("qiao2021"), random_robot(1), random_robot(2)):
         for detector in (None, "none"):
             for collision in ("reject", "feasibility"):
                 changed = settings.with_changes(de={"collision": collision})
-                ikde.solve(robot, target, changed, collision=detector, near=robot.home)
+                ikde.solve(robot, target, changed, collision=detector, near=robot.home if NEAR else None)
                 ikde.solve(robot, target, settings, collision=detector, freeze=robot.joint_names[:1])
     ikde.solve_many(robot, [pose, pose], settings, bulk=BulkOptions(threads=2))
 print(len(solve_lanes.compiled.signatures), len(grade_many.compiled.signatures))
@@ -211,7 +214,8 @@ print(len(solve_lanes.compiled.signatures), len(grade_many.compiled.signatures))
 
 
 @needs_compiler
-def test_kernels_called_from_the_host_have_one_signature():
-    command = [sys.executable, "-W", "error", "-c", ONE_SIGNATURE]
+@pytest.mark.parametrize("near", ["", pytest.param("--near", marks=pytest.mark.slow)])  # that compiles 30 s
+def test_kernels_called_from_the_host_have_one_signature(near):
+    command = [sys.executable, "-W", "error", "-c", ONE_SIGNATURE, near]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
     assert done.stdout.split() == ["1", "1"], done.stderr
