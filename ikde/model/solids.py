@@ -12,7 +12,7 @@ from ikde.kernels.arrays import Floats, Ints
 from ikde.model.hull import make_hull
 from ikde.model.numbers import is_number, read_numbers
 from ikde.model.robot import MAX_MAGNITUDE
-from ikde.model.rotation import TOLERANCE, is_rotation
+from ikde.model.rotation import TOLERANCE, is_rotation, straighten
 from ikde.model.value import ByFields
 
 SolidKind = Literal["sphere", "box", "cylinder", "capsule", "cone", "half_space", "hull", "cloud"]
@@ -118,7 +118,7 @@ def make_columns(heights_m: ArrayLike, cell_m: float, base_m: float = 0.0) -> li
 
 
 def read_pose(T: ArrayLike, where: tuple[str | int, ...]) -> Floats:
-    """A pose [3, 4] from [4, 4] or [3, 4], read-only; rotation and m."""
+    """A pose [3, 4] from [4, 4] or [3, 4], read-only; rotation and m. Of rounded numbers the nearest rotation."""
     if T is IDENTITY:
         return IDENTITY
     pose = read_numbers(T, where)
@@ -130,6 +130,7 @@ def read_pose(T: ArrayLike, where: tuple[str | int, ...]) -> Floats:
         raise InputError("expected a rotation and a place of finite numbers", where)
     if not all(abs(value - one) <= TOLERANCE for value, one in zip(last, (0.0, 0.0, 0.0, 1.0), strict=False)):
         raise InputError(f"expected the last row 0 0 0 1, got {last}", where)
+    pose[:, :3] = straighten(pose[:, :3])
     return _frozen(pose)
 
 

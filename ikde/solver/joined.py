@@ -66,10 +66,10 @@ def append_world(numbers: Floats, whole: Ints, model: int, world: Floats) -> tup
 
 
 def cut_world(numbers: Floats, whole: Ints) -> tuple[Floats, Ints]:
-    """The block of a grader (`flatten_grader`) without its world."""
+    """The block of a grader (`flatten_grader`) without its world: a copy, as a view does not hold what was joined."""
     other = whole.copy()
     other[SIZE] = 0
-    return numbers[: len(numbers) - int(whole[SIZE])], other
+    return numbers[: len(numbers) - int(whole[SIZE])].copy(), other
 
 
 def join_answer(numbers: Floats, whole: Ints, world: Floats) -> tuple[Floats, Ints]:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.errors import InputError
+from ikde.model.rotation import measure_skew, rotation_from_rpy
 from ikde.model.solids import KINDS, MAX_CLOUD_POINTS, SIZES, make_columns, make_solid, read_points, read_pose
 
 CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -50,6 +51,18 @@ def test_a_pose_is_a_rotation_without_minus_zero():
     for T in (np.eye(3), 2 * np.eye(4), np.full((4, 4), np.nan), np.diag([1, 1, -1, 1])):
         with pytest.raises(InputError):
             make_solid("sphere", [1], T)
+
+
+def test_a_pose_of_rounded_numbers_becomes_a_rotation():
+    exact = rotation_from_rpy(np.array([0.3, -1.1, 2.0]))
+    T = np.column_stack([exact, [1.0, 2.0, 3.0]])
+    assert read_pose(T, ()).tobytes() == T.tobytes()
+    for rounded in (T.astype(np.float32), np.round(T, 7)):
+        pose = read_pose(rounded, ())
+        assert measure_skew(rounded[:, :3]) > 1e-9
+        assert measure_skew(pose[:, :3]) < 1e-14
+        assert abs(pose[:, :3] - exact).max() < 1e-7
+        assert read_pose(pose, ()).tobytes() == pose.tobytes()
 
 
 def test_columns_of_one_height_are_one_box():

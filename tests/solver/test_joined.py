@@ -40,6 +40,15 @@ def test_an_array_is_taken_again_once_nothing_holds_it(small):
     assert not len(joins)
 
 
+def test_a_block_without_its_world_stays_when_the_whole_is_taken_again(small):
+    joins, world = Joins(), np.arange(5.0)
+    world.setflags(write=False)
+    sizes = np.full(7, len(world))
+    head, other = cut_world(joins.join(np.zeros(2), world), sizes)
+    assert joins.join(np.full(2, 7.0), world).tolist() == [7.0, 7.0, *range(5)]
+    assert (head.tolist(), other[module.SIZE]) == ([0.0, 0.0], 0)
+
+
 def test_what_may_be_written_to_and_small_worlds_are_copied(small):
     joins = Joins()
     assert joins.join(np.zeros(1), np.ones(3)).tolist() == [0.0, 1.0, 1.0, 1.0]
