@@ -41,6 +41,7 @@ def analyze(
     """
     from typing import cast
 
+    from ikde.errors import InputError
     from ikde.model.actuators import By
     from ikde.report.analysis import analysis_json, format_analysis
     from ikde.report.numbers import Units
@@ -48,7 +49,10 @@ def analyze(
 
     model = read_whole(robot, tool)
     values = options.read_q(model, q, unit, angles, convention)
-    analysis = analyze_configuration(model, values, by=cast(By, by), length_m=radian)
+    try:
+        analysis = analyze_configuration(model, values, by=cast(By, by), length_m=radian)
+    except InputError as error:
+        raise InputError(error.message, ("radian",) if error.where == ("length_m",) else error.where) from None
     options.check_drawable(plot)
     if as_json:
         print_json(analysis_json(analysis, convention))

@@ -62,7 +62,7 @@ def _finite(value: float | Floats) -> float | None:
 def format_analysis(analysis: Analysis, units: Units, *, color: bool = False, width: int = 100) -> str:
     """An analysis for the terminal: measures by part, what each column adds, and the room to the joint limits."""
     robot = analysis.robot
-    head = f"robot {plain(robot.name)}, tool {plain(robot.tool)}, moved by its {_describe(analysis.by)}"
+    head = f"robot {plain(robot.name)}, tool {plain(robot.tool)}, moved by its {_describe(analysis)}"
     scale = f"at the speed limits of all, a radian counted as {units.format_length(analysis.length_m)}"
     outside = f"[yellow]outside the limits[/]: {plain(', '.join(analysis.outside_limits))}"
     tables = [
@@ -75,9 +75,10 @@ def format_analysis(analysis: Analysis, units: Units, *, color: bool = False, wi
     return render(head, *([outside] if analysis.outside_limits else []), *tables, color=color, width=width)
 
 
-def _describe(by: str) -> str:
+def _describe(analysis: Analysis) -> str:
+    """What moves it; without a base these are the joints in each case."""
     words = {"joints": "joints", "twist": "base's twist and joints", "actuators": "wheels and joints"}
-    return words[by]
+    return words[analysis.by if "base" in analysis.scaled else "joints"]
 
 
 def _measure_table(parts: ByPart, title: str) -> Any:

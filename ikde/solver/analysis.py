@@ -162,9 +162,10 @@ def _measure_limits(robot: Robot, q: Floats, place: int) -> LimitMargin:
 
 
 def split_jacobian(analysis: Analysis) -> dict[str, Floats]:
-    """The scaled Jacobian by part: its columns of all, of the arm's and of the base's [6, n], m/s and rad/s."""
+    """The scaled Jacobian [6, n] by part: of all columns, and of the arm and the base if there is one, m/s, rad/s."""
     robot, base = analysis.robot, find_planar_base(analysis.robot)
     joints = [name for place, name in enumerate(robot.joint_names) if place not in base]
     is_arm = np.array([name in joints for name in analysis.names])
-    parts: dict[str, Floats] = {"whole": analysis.jacobian, "arm": analysis.jacobian[:, is_arm]}
-    return parts if is_arm.all() else parts | {"base": analysis.jacobian[:, ~is_arm]}
+    whole: dict[str, Floats] = {"whole": analysis.jacobian}
+    parts = {"arm": analysis.jacobian[:, is_arm], "base": analysis.jacobian[:, ~is_arm]}
+    return whole if is_arm.all() else whole | parts

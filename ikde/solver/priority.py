@@ -121,7 +121,7 @@ def solve_levels(levels: Sequence[Level], bounds: Bounds | None = None, softest:
             found = _stay_inside(bounds, x, open_, np.r_[weights, np.full(open_.shape[1] - rank, idle)], along)
             if found is not None:
                 (step, holds), is_bound = found, True
-            elif _is_inside(bounds, x):
+            elif _is_inside(bounds, x, NEARLY):
                 step = np.zeros(size)  # so little room is left that rounding takes it
             else:
                 bounds, within = None, False

@@ -232,12 +232,22 @@ def _read_weights(robot: Robot, weights: Mapping[str, float] | None) -> Floats:
 
 
 def _clip(robot: Robot, q_dot: Floats, named: NamedBounds) -> Floats:
-    """Joints exactly inside: what the solver's tolerance may leave is cut off, of all but a base."""
-    q_dot, held = q_dot.copy(), named.joints >= 0
-    if (base := find_planar_base(robot))[0] >= 0:
+    """Speeds exactly inside: what the solver's tolerance may leave is cut off; a base on two wheels is slowed down.
+
+    So is one that a wheel's limit holds: along its own direction, wherever standing still is inside.
+    """
+    q_dot, held, base = q_dot.copy(), named.joints >= 0, find_planar_base(robot)
+    is_free = base[0] < 0 or usual_drive(robot) != "differential"
+    if not is_free:
         held &= ~np.isin(named.joints, base)
     places = named.joints[held]
     q_dot[places] = np.clip(q_dot[places], named.bounds.lower[held], named.bounds.upper[held])
+    if base[0] >= 0:
+        values = named.rows_by_joint[~held] @ q_dot
+        ends = np.where(values > 0.0, named.bounds.upper[~held], named.bounds.lower[~held])
+        over = (np.abs(values) > np.abs(ends)) & (ends * values >= 0.0)
+        over &= (np.abs(ends) > MET) | (np.abs(values) > MET)  # a trace of speed at an end of a range stops nothing
+        q_dot[base] *= np.min(ends[over] / values[over], initial=1.0)
     return q_dot
 
 

@@ -25,7 +25,7 @@ def test_text_and_a_picture(cli, tmp_path):
 
 def test_what_is_wrong_is_one_line(refuse, tmp_path):
     assert "by: expected one of joints, twist, actuators, got 'wheels'" in refuse("analyze", "--by", "wheels")
-    assert "length_m: expected a number above 0" in refuse("analyze", "--radian", "0")
+    assert "radian: expected a number above 0" in refuse("analyze", "--radian", "0")
     picture = tmp_path / "ellipsoids.xyz"
     refuse("analyze", "--plot", picture)
     assert not picture.exists()

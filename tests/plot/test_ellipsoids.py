@@ -27,8 +27,8 @@ def test_each_part_has_its_ellipsoid_at_scale(qiao):
     assert np.ptp(flat[:, 2]) < 1e-12
 
 
-def test_an_arm_without_a_base_has_two():
+def test_an_arm_without_a_base_is_drawn_once():
     robot = ikde.load_robot("panda")
     parts = split_jacobian(ikde.analyze(robot, robot.home))
     figure = plot_ellipsoids(draw_pose(CollisionModel.of(robot), robot.home), np.zeros(3), parts)
-    assert [text.get_text() for text in figure.axes[1].get_legend().get_texts()] == ["whole", "arm"]
+    assert [text.get_text() for text in figure.axes[1].get_legend().get_texts()] == ["whole"]

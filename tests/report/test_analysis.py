@@ -38,4 +38,6 @@ def test_text_names_what_it_counts_with(qiao):
     outside[4] = 9.0
     assert "outside the limits: q2" in format_analysis(ikde.analyze(qiao, outside), Units())
     stretched = ikde.analyze("ur5", [0.0, -1.2, 0.0, -1.0, 1.0, 0.0])
-    assert "singular" in format_analysis(stretched, Units())
+    text = format_analysis(stretched, Units())
+    assert "singular" in text
+    assert text.startswith("robot ur5, tool tool, moved by its joints")

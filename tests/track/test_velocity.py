@@ -276,3 +276,24 @@ def test_whatever_is_asked_limits_are_kept(robot):
             excess = np.abs(result.q_dot - before) - 0.02 * limits.acceleration
             too_fast = {name for name, value in zip(robot.joint_names, excess, strict=True) if value > 1e-6}
             assert too_fast <= set(result.broken)
+
+
+def test_what_rounding_spoils_stays_inside_too():
+    """A task of 1500 m/s, hardly damped: what it leaves is no reason to give up any limit."""
+    q = np.zeros(9)
+    q[[1, 2, 4, 5]] = -2.1513906773774876, 0.6696076883281812, -1.9510870951242982, 1.8500539326433945
+    twist = -1532.59969377, -833.35807543, -1346.23749888, -1499.50178147, 986.59920788, -382.54355083
+    drive = VelocityTask.base((1.20746242, -0.17357238, -0.13241101), gain=10.0)
+    result = velocity(MECANUM, q, [VelocityTask.tool(twist=twist, gain=0.001), drive], dt_s=10.0, softest=0.001)
+    assert (np.abs(result.q_dot) <= MotionLimits.of(MECANUM).speed).all()
+
+
+def test_a_base_is_exactly_inside_its_limits():
+    """On two wheels along its own direction; one that may go anywhere in each of its joints."""
+    leobot, rng = ikde.load_robot("leobot"), np.random.default_rng(3)
+    for robot in (MECANUM, leobot):
+        speed = MotionLimits.of(robot).speed
+        for _ in range(20):
+            q = np.clip(rng.uniform(-1, 1, len(robot.joints)), robot.lower, robot.upper)
+            result = velocity(robot, q, VelocityTask.tool(twist=1e4 * rng.standard_normal(3)), softest=0.001)
+            assert (np.abs(result.q_dot) <= speed + 1e-15).all()
