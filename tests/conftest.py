@@ -30,6 +30,8 @@ LATE = {
     "kernels": 1,
     **dict.fromkeys(("batch", "bench", "cli", "paper", "report", "solver", "track"), 2),
     **dict.fromkeys(("test_batch_file.py", "test_docs.py", "test_regrade.py", "test_track_file.py"), 2),
+    **dict.fromkeys(("test_api.py", "test_arguments.py", "test_collision_model.py", "test_fuzz_files.py"), 2),
+    **dict.fromkeys(("test_pack_world.py", "test_shelves.py", "test_tools.py"), 2),
 }
 LEFT_OUT = pytest.StashKey[int]()
 
