@@ -5,6 +5,7 @@ import pytest
 
 import ikde
 from ikde.kernels import step_constraints as kernels
+from ikde.kernels.flat_arguments import unpack_world
 from ikde.kernels.step_constraints import MAX_SOLIDS
 from ikde.kernels.world_contacts import choose_place, set_normal
 from ikde.model.collision_model import CollisionModel
@@ -70,7 +71,7 @@ def test_the_nearest_are_kept(rng):
 
 def test_deep_in_a_ball_there_is_a_way_out(qiao, rng):
     world = ikde.load_world({"obstacles": {"ball": {"sphere": {"radius": 0.5}, "position": [0, 0, 5]}}})
-    packed = CollisionModel.of(qiao).in_world(world).arrays.world
+    packed = plain(unpack_world)(CollisionModel.of(qiao).in_world(world).arrays.world)
     normal = np.empty(3)
     plain(set_normal)(packed, 0, 0.0, 0.3, 5.0, -0.2, normal)
     np.testing.assert_allclose(normal, [0, 1, 0], atol=1e-6)
