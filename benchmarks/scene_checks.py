@@ -1,6 +1,6 @@
 """The check of a configuration among obstacles, free or not: ikde's beside that of Pinocchio with coal.
 
-    IKDE_COMPILE=wait python -m benchmarks.scene_checks FOLDER ... [--every 20] [--rounds 5] [--out FILE]
+    .venv-peers/bin/python -m benchmarks.scene_checks FOLDER ... [--every 20] [--rounds 5] [--out FILE]
 
 Folders as for `benchmarks/scenes.py`. In each scene the same configurations for all: free ones, which have to be looked
 at whole, and uniform random ones of which many collide. All compare the same pairs of spheres, and the spheres of what
@@ -33,8 +33,7 @@ from benchmarks.machine import describe
 from benchmarks.scene_peers import read_problem
 from benchmarks.scenes import read_robot
 from ikde.io.scene_pairs import find_pairs
-from ikde.kernels.flat_arguments import flatten_models
-from ikde.kernels.free_rows import judge_rows
+from ikde.kernels.world import find_obstacle_of
 from ikde.model.collision_model import CollisionModel
 from ikde.model.generate.module import load_module
 from ikde.solver.metrics import compute_metrics
@@ -51,28 +50,34 @@ KERNEL, OWN, LANES, MANY, ONE = (
     "ikde.check_many",
     "ikde.check",
 )
-FREE, FREE_MANY = "ikde.is_free", "ikde.is_free of many"
 TREE, TREES, ALL = "Pinocchio + coal, broad phase", "Pinocchio + coal, a tree a body", "Pinocchio + coal, pair by pair"
 SLOW = {MANY: 1, ONE: 8, TREES: 2, ALL: 2}  # each so manieth configuration
 
 
-def make_own_loop(robot: ikde.Robot) -> Any:
-    """A compiled loop over configurations, of the robot alone, as the search asks."""
+def make_loops(robot: ikde.Robot) -> tuple[Any, Any]:
+    """Compiled loops over configurations: of the robot alone, and in a world, as the search asks."""
     module = load_module(CollisionModel.of(robot), "pose")
     find, make_buffers = module.find_collision, module.make_buffers
+
+    @numba.njit(error_model="numpy")
+    def loop_own(robot, collision, rows, out):
+        buffers = make_buffers(robot, collision, rows.shape[1])
+        for k in range(rows.shape[0]):
+            out[k] = find(robot, collision, rows[k], buffers) < 0
 
     @numba.njit(error_model="numpy")
     def loop(robot, collision, rows, out):
         buffers = make_buffers(robot, collision, rows.shape[1])
         for k in range(rows.shape[0]):
-            out[k] = find(robot, collision, rows[k], buffers) < 0
+            is_free = find(robot, collision, rows[k], buffers) < 0
+            out[k] = is_free and find_obstacle_of(robot, collision, rows[k]) < 0
 
-    return loop
+    return loop_own, loop
 
 
-def list_ways(robot: ikde.Robot, model: CollisionModel, coal: CoalChecker, own_loop: Any) -> Ways:
+def list_ways(robot: ikde.Robot, model: CollisionModel, coal: CoalChecker, loops: tuple[Any, Any]) -> Ways:
     """All in one world."""
-    models, own_models, limit_m = flatten_models(*pack_searched(model)), pack_searched(model.own), model.limit_m
+    models, own_models, limit_m = pack_searched(model), pack_searched(model.own), model.limit_m
     targets = [ikde.Target((0.0, 0.0, 0.0))] * COUNT
     trees = pin.TreeBroadPhaseManager_DynamicAABBTreeCollisionManager(coal.model, coal.geometry, coal.geometry_data)
 
@@ -92,13 +97,11 @@ def list_ways(robot: ikde.Robot, model: CollisionModel, coal: CoalChecker, own_l
         return lambda q: not compute(coal.model, coal.data, *arguments, q, True)
 
     return {
-        KERNEL: run(judge_rows.compiled, models),
-        OWN: run(own_loop, own_models),
+        KERNEL: run(loops[1], models),
+        OWN: run(loops[0], own_models),
         LANES: lambda rows: compute_metrics(model, targets[: len(rows)], rows).clearance_m > limit_m,
         MANY: lambda rows: ~ikde.check_many(robot, rows, model).collision.data,
         ONE: each(lambda q: not ikde.check(robot, q, model).collision),
-        FREE_MANY: lambda rows: ikde.is_free(robot, rows, model),
-        FREE: each(lambda q: ikde.is_free(robot, q, model)),
         TREE: each(collide(coal.manager)),
         TREES: each(collide(trees)),
         ALL: each(collide(coal.geometry, coal.geometry_data)),
@@ -108,7 +111,7 @@ def list_ways(robot: ikde.Robot, model: CollisionModel, coal: CoalChecker, own_l
 def run_robot(folder: Path, every: int, rounds: int) -> tuple[str, dict[str, Any]]:
     """Its name, and microseconds a configuration by way."""
     name, robot, twin = read_robot(folder)
-    own, random, own_loop = CollisionModel.of(robot), np.random.default_rng(SEED), make_own_loop(robot)
+    own, random, loops = CollisionModel.of(robot), np.random.default_rng(SEED), make_loops(robot)
     with tempfile.TemporaryDirectory() as files:
         urdf = Path(files) / "robot.urdf"
         urdf.write_text(ikde.format_urdf(robot))
@@ -120,7 +123,7 @@ def run_robot(folder: Path, every: int, rounds: int) -> tuple[str, dict[str, Any
         problem = read_problem(pair, robot, twin)
         coal.load(problem.solids)
         model = own.in_world(make_solids_world(problem.solids))
-        ways = list_ways(robot, model, coal, own_loop)
+        ways = list_ways(robot, model, coal, loops)
         drawn = random.uniform(*robot.drawn, (40 * COUNT, len(robot.joints)))
         is_free = ways[KERNEL](drawn)
         sets = {"free": drawn[is_free][:COUNT].copy(), "any": drawn[:COUNT].copy()}

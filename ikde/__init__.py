@@ -54,7 +54,6 @@ if TYPE_CHECKING:  # what type checkers and editors see; `tests/test_api.py` hol
     from ikde.solver.distinct import solve_distinct as solve_distinct
     from ikde.solver.families import family as family
     from ikde.solver.forward import forward as forward
-    from ikde.solver.free import is_free as is_free
     from ikde.solver.jacobian import jacobian as jacobian
     from ikde.solver.result import SolveResult as SolveResult
     from ikde.solver.result import StopReason as StopReason
@@ -141,7 +140,6 @@ _HOME = {
     "analyze": "ikde.solver.analysis",
     "Analysis": "ikde.solver.analysis",
     "check_many": "ikde.solver.check",
-    "is_free": "ikde.solver.free",
     "clear_cloud": "ikde.solver.clear_cloud",
     "check_surface": "ikde.paper.surface",
     "CheckResult": "ikde.solver.check",

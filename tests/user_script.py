@@ -68,8 +68,6 @@ checked: ikde.CheckResult = ikde.check(robot, robot.home, detector)
 rows_checked: ikde.CheckResults = ikde.check(robot, [robot.home] * 2)
 by_name: ikde.CheckResult = ikde.check(robot, dict(zip(robot.joint_names, robot.home.tolist(), strict=True)))
 many_checked: ikde.CheckResults = ikde.check_many(robot, [robot.home] * 2)
-one_free: bool = ikde.is_free(robot, robot.home, detector)
-print(one_free, ikde.is_free(robot, [robot.home] * 2).sum())
 grade: ikde.Grade = ikde.verify(robot, (0.4, 0.2, 0.3), result.q, settings={"position_tolerance_m": 1e-3})
 branch: str | None = ikde.family("ur5", robot.home)
 pairs = ikde.CollisionModel.of(robot, detector).left_out_pairs

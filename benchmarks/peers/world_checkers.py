@@ -14,9 +14,10 @@ from protocol import Solid
 
 import ikde
 from ikde.kernels.clearance import find_own_pair
+from ikde.kernels.flat_arguments import unpack_world
 from ikde.kernels.frames import compute_bodies
 from ikde.kernels.spheres import compute_bounds, compute_centres
-from ikde.kernels.world_grid import find_obstacle
+from ikde.kernels.world_grid import find_hit
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.model.solids import make_solid
@@ -95,7 +96,7 @@ def is_free_in_world(robot, collision, q):
     compute_centres(collision, T_world_body, centres)
     if find_own_pair(collision, bounds, centres) >= 0:
         return False
-    return find_obstacle(collision, bounds, centres) < 0
+    return find_hit(unpack_world(collision.world), collision, bounds, centres) < 0
 
 
 def make_solids_world(solids: Sequence[Solid]) -> World:

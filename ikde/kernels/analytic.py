@@ -16,9 +16,9 @@ from ikde.kernels.frames import compute_bodies
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import next_index, seed_stream
 from ikde.kernels.seeds import draw_seed
-from ikde.kernels.tables import find_around, find_collision, make_buffers, unpack_used
+from ikde.kernels.tables import find_collision, make_buffers, unpack_used
 from ikde.kernels.turns import unwind
-from ikde.kernels.world import count_room, count_room_of, find_obstacle_of, stands_in_world
+from ikde.kernels.world import find_obstacle_at, find_obstacle_of, stands_in_world
 
 
 @inline_kernel
@@ -50,10 +50,10 @@ def place_arm(arm, branch, solutions, out_q):
 
 
 @inline_kernel
-def choose_branch(models, arm, ranges, nearest, first, count, solutions, q, rooms, out_counts, out_pairs):
+def choose_branch(models, arm, ranges, nearest, first, count, solutions, q, buffers, out_counts, out_pairs):
     """A branch that is free of collision, the next from `first` on or the nearest to ranges[2]; -1 if all collide.
 
-    `models`: what `find_collision` takes, then the tables of both, for a world; `rooms`: buffers of either.
+    `models`: what `find_collision` takes, then the tables of both, for a world.
     """
     chosen, smallest = -1, np.inf
     for turn in range(count):
@@ -62,9 +62,9 @@ def choose_branch(models, arm, ranges, nearest, first, count, solutions, q, room
         distance = find_distance(ranges, q) if nearest else 0.0
         if distance >= smallest:
             continue
-        pair = find_collision(models[0], models[1], q, rooms[0])
+        pair = find_collision(models[0], models[1], q, buffers)
         if pair < 0 and models[3].world.size > 0:
-            pair = find_obstacle_of(models[2], models[3], q, rooms[1])
+            pair = find_obstacle_of(models[2], models[3], q)
         if pair < 0:
             chosen, smallest = branch, distance
             if not nearest:
@@ -100,8 +100,7 @@ def solve_branches(
     base, an evaluation one branch that exists. An unreached target keeps its last colliding branch.
     """
     joints = out_q.shape[1]
-    around, state = np.empty(joints + count_room_of(robot, tables)), np.empty(1, dtype=np.uint64)
-    q, rooms = around[:joints], (make_buffers(robot, collision, joints), around)
+    q, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
     T_world_body, T_carrier_tool = np.empty((robot.bodies.shape[0], 3, 4)), np.empty((3, 4))
     work, solutions, codes = np.empty((2, ANGLES)), np.empty((BRANCHES, 6)), np.empty(BRANCHES, dtype=np.int64)
     for row in range(rows[0], rows[1]):
@@ -119,7 +118,7 @@ def solve_branches(
             first = next_index(state, count)  # so that another stream shows another branch
             models = robot, collision, robot, tables
             chosen = choose_branch(
-                models, arm, ranges, nearest, first, count, solutions, q, rooms, tallies[0], tallies[1]
+                models, arm, ranges, nearest, first, count, solutions, q, buffers, tallies[0], tallies[1]
             )
             place_arm(arm, max(chosen, 0), solutions, q)
             out_score[row, 0], out_score[row, 1] = 0.0, 0.0 if chosen >= 0 else UNKNOWN_DEPTH
@@ -133,11 +132,7 @@ def solve_branches(
 @kernel
 def make_room(numbers, whole, ranges, carrier):
     """Room for attempts; the carrier's pose and the joints that are frozen are in it already."""
-    joints, T_world_carrier = ranges.shape[1], np.empty((3, 4))
-    around = np.empty(joints + count_room(whole))
-    q = around[:joints]
-    for k in range(joints):
-        q[k] = ranges[0, k]
+    q, T_world_carrier = ranges[0].copy(), np.empty((3, 4))
     for i in range(3):  # in loops: numpy's `eye`, and its copying into slices, took 3 s to compile
         for j in range(4):
             T_world_carrier[i, j] = 1.0 if i == j else 0.0
@@ -156,7 +151,6 @@ def make_room(numbers, whole, ranges, carrier):
         np.empty(BRANCHES, dtype=np.int64),
         np.empty(BRANCHES),
         q,
-        around,
     )
 
 
@@ -206,7 +200,7 @@ def try_branches(block, models, arm, ranges, T_world_tool, seed, stream, attempt
         place_arm(arm, chosen, room.solutions, q)
         pair = find_collision(models[0], models[1], q, buffers)
         if pair < 0 and stands_in_world(block[1]):
-            pair = find_around(block, models[0], models[1], q, buffers, room.around)
+            pair = find_obstacle_at(block[0], block[1], q)
         if pair < 0:
             out_counts[REACHED] = 1
             break

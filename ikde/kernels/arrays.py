@@ -68,10 +68,9 @@ class WorldArrays(NamedTuple):
     """
 
     solids: Floats  # [S, SOLID_COLUMNS] as `kernels/obstacles.py` names them
-    # [BOX_ROWS, at least S], no columns where there are cells: axes, middle, half edges (below 0: no box) and what is
-    # asked for of a box that holds the solid, its middle in the solid's frame; then lowest and highest of all that
-    boxes: Floats
-    balls: Floats  # [C, BALL_COLUMNS] a ball about all that its body carries, in the body, and the body's number or -1
+    spheres: (
+        Floats  # [4, S] middle and radius, with what is asked for, of a sphere that holds the solid; -inf: half-spaces
+    )
     asked: Floats  # [C, O] distance that a component keeps from an obstacle; -inf: they are not compared
     faces: Floats  # [F, 12] of hulls: three corners and the outward normal, in the solid's frame
     points: Floats  # [3, K] of clouds, in the solid's frame, sorted by cell

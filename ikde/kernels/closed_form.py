@@ -39,7 +39,6 @@ class Room(NamedTuple):
     codes: Ints  # [BRANCHES]
     far: Floats  # [BRANCHES] the least is tried first
     q: Floats  # [N]
-    around: Floats  # q, and behind it what `world.count_room` asks for
 
 
 @inline_kernel

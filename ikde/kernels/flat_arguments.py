@@ -30,11 +30,10 @@ Turns = tuple[Floats, Floats, Any, Floats]
 
 
 SOLID_COLUMNS, GRID_COLUMNS = 21, 7  # of a world
-BOX_ROWS, BALL_COLUMNS = 25, 5
-HEADER = 12
-"""Sizes: solids, components, obstacles, faces, points, clouds, cells of clouds, cells, entries, unbounded solids; how
-many pairs of components, the last ones, are those of what is attached, which no written kernel knows; and boxes."""
-ATTACHED_PAIRS, BOXES = 10, 11
+HEADER = 11
+"""Sizes: solids, components, obstacles, faces, points, clouds, cells of clouds, cells, entries, unbounded solids; and
+how many pairs of components, the last ones, are those of what is attached, which no written kernel knows."""
+ATTACHED_PAIRS = 10
 
 
 class Terms(NamedTuple):
@@ -218,10 +217,9 @@ def unpack_world(world):
     """`WorldArrays` as views of one array, which begins with their sizes."""
     solids, components, obstacles, faces = int(world[0]), int(world[1]), int(world[2]), int(world[3])
     points, clouds, cloud_cells, cells = int(world[4]), int(world[5]), int(world[6]), int(world[7])
-    entries, unbounded, boxes = int(world[8]), int(world[9]), int(world[BOXES])
+    entries, unbounded = int(world[8]), int(world[9])
     r = HEADER + SOLID_COLUMNS * solids
-    q = r + BOX_ROWS * boxes
-    a = q + BALL_COLUMNS * components
+    a = r + 4 * solids
     b = a + components * obstacles
     c = b + 12 * faces
     d = c + 3 * points
@@ -234,8 +232,7 @@ def unpack_world(world):
     k = j + cells
     return WorldArrays(
         world[HEADER:r].reshape((solids, SOLID_COLUMNS)),
-        world[r:q].reshape((BOX_ROWS, boxes)),
-        world[q:a].reshape((components, BALL_COLUMNS)),
+        world[r:a].reshape((4, solids)),
         world[a:b].reshape((components, obstacles)),
         world[b:c].reshape((faces, 12)),
         world[c:d].reshape((3, points)),
@@ -248,7 +245,3 @@ def unpack_world(world):
         world[j:k],
         world[k : k + unbounded],
     )
-
-
-cut_models, cut_world = inline_kernel(unpack_models.py_func), inline_kernel(unpack_world.py_func)
-"""The same for kernels that count no references; what calls them must not hand views to a kernel that does."""

@@ -13,9 +13,9 @@ from ikde.kernels.flat_arguments import grades, unpack_answer, unpack_search
 from ikde.kernels.jit import inline_kernel, kernel
 from ikde.kernels.rng import seed_stream
 from ikde.kernels.seeds import draw_seed
-from ikde.kernels.tables import LANES, find_around, find_collision, make_buffers, take_step, take_steps, unpack_used
+from ikde.kernels.tables import LANES, find_collision, make_buffers, take_step, take_steps, unpack_used
 from ikde.kernels.turns import unwind
-from ikde.kernels.world import count_room, stands_in_world
+from ikde.kernels.world import find_obstacle_at, stands_in_world
 
 GO_ON, MET, GIVE_UP = range(3)
 
@@ -78,8 +78,7 @@ def solve_target(
     target = TargetArrays(kinds, T_world_tool)
     robot, collision = unpack_used(numbers, whole)
     ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
-    room, state = np.empty(out_q.size + count_room(whole)), np.empty(1, dtype=np.uint64)
-    q, buffers = room[: out_q.size], make_buffers(robot, collision, out_q.size)
+    q, state, buffers = np.empty(out_q.size), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, out_q.size)
     for attempt in range(first, last):
         seed_stream(seed, stream, attempt, state)
         draw_seed(seeds, target, index, ranges, state, attempt, q)
@@ -91,7 +90,7 @@ def solve_target(
         out_counts[EVALUATIONS] += steps
         pair = find_collision(robot, collision, q, buffers) if verdict == MET else -1
         if verdict == MET and pair < 0 and stands_in_world(whole):
-            pair = find_around((numbers, whole), robot, collision, q, buffers, room)
+            pair = find_obstacle_at(numbers, whole, q)
         if record(descent, verdict, pair, position, orientation, q, out_q, out_score, out_counts, out_pairs):
             return
 
@@ -157,8 +156,7 @@ def solve_targets(
     ranges, descent, seeds = unpack_search(numbers, whole, pool, pool_T)
     joints = out_q.shape[1]
     q, T, errors = np.empty(joints * LANES), np.empty(12 * LANES), np.empty(2 * LANES)
-    room, state = np.empty(joints + count_room(whole)), np.empty(1, dtype=np.uint64)
-    trial, buffers = room[:joints], make_buffers(robot, collision, joints)
+    trial, state, buffers = np.empty(joints), np.empty(1, dtype=np.uint64), make_buffers(robot, collision, joints)
     row, attempt, steps = (
         np.empty(LANES, dtype=np.int64),
         np.empty(LANES, dtype=np.int64),
@@ -183,7 +181,7 @@ def solve_targets(
                 out_counts[index, EVALUATIONS] += steps[lane]
                 pair = find_collision(robot, collision, trial, buffers) if verdict == MET else -1
                 if verdict == MET and pair < 0 and stands_in_world(whole):
-                    pair = find_around((numbers, whole), robot, collision, trial, buffers, room)
+                    pair = find_obstacle_at(numbers, whole, trial)
                 outputs = (out_q[index], out_score[index], out_counts[index], out_pairs[index])
                 done = record(descent, verdict, pair, position, orientation, trial, *outputs)
                 attempt[lane] += 1

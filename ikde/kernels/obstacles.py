@@ -6,13 +6,23 @@ for with a `reach`: beyond it any number above it will do, which lets bounding s
 
 import math
 
-from ikde.kernels.flat_arguments import HEADER, SOLID_COLUMNS, cut_world
-from ikde.kernels.jit import inline_kernel, leaf_kernel
+from ikde.kernels.jit import inline_kernel, kernel
 
 SPHERE, BOX, CYLINDER, CAPSULE, CONE, HALF_SPACE, HULL, CLOUD = range(8)
 KIND, AXES, PLACE, SIZE, BOUND, ASKED, OWNER, FIRST_ROW, COUNT = 0, 1, 10, 13, 16, 17, 18, 19, 20  # columns of a solid
 CELL_ORIGIN, CELL_PITCH, CELL_DIMS = 0, 3, 4  # entries of a grid's row of numbers
 ROUNDING = 1e-6  # m: bounds kept in single precision are cut by it
+
+
+@inline_kernel
+def to_solid(solids, s, x, y, z):
+    """A point of the world in a solid's own frame, m."""
+    dx, dy, dz = x - solids[s, PLACE], y - solids[s, PLACE + 1], z - solids[s, PLACE + 2]
+    return (
+        solids[s, AXES] * dx + solids[s, AXES + 3] * dy + solids[s, AXES + 6] * dz,
+        solids[s, AXES + 1] * dx + solids[s, AXES + 4] * dy + solids[s, AXES + 7] * dz,
+        solids[s, AXES + 2] * dx + solids[s, AXES + 5] * dy + solids[s, AXES + 8] * dz,
+    )
 
 
 @inline_kernel
@@ -83,7 +93,7 @@ def triangle_gap(faces, f, x, y, z):
     return best
 
 
-@leaf_kernel
+@kernel
 def hull_gap(faces, first, count, x, y, z):
     """From a convex hull: its highest plane inside, its nearest triangle outside."""
     highest = -math.inf
@@ -136,7 +146,7 @@ def count_within(points, x, y, z, square):
     return count
 
 
-@leaf_kernel
+@kernel
 def cloud_gap(numbers, starts, points, far, x, y, z, reach, enough):
     """From the nearest point of a cloud [3, K], sorted by cell, if it is within `reach`; else inf.
 
@@ -176,23 +186,19 @@ def cloud_gap(numbers, starts, points, far, x, y, z, reach, enough):
     return math.sqrt(best) if found else math.inf
 
 
-@leaf_kernel
+@kernel
 def solid_gap(world, s, x, y, z, reach, enough):
-    """Signed distance of a point from solid `s` of a packed world, m, if it is within `reach`; else a number above it.
+    """Signed distance of a point from solid `s`, m, if it is within `reach`; else a number above it.
 
-    Of a cloud it may be that of a point which is not the nearest, once it is within `enough`. The row is read where it
-    lies: to cut the world into tables takes 0.1 us.
+    Of a cloud it may be that of a point which is not the nearest, once it is within `enough`.
     """
-    row = HEADER + SOLID_COLUMNS * s
-    dx, dy, dz = x - world[row + PLACE], y - world[row + PLACE + 1], z - world[row + PLACE + 2]
-    limit = reach + world[row + BOUND]
+    solids = world.solids
+    dx, dy, dz = x - solids[s, PLACE], y - solids[s, PLACE + 1], z - solids[s, PLACE + 2]
+    limit = reach + solids[s, BOUND]
     if limit < 0.0 or dx * dx + dy * dy + dz * dz > limit * limit:
-        return math.sqrt(dx * dx + dy * dy + dz * dz) - world[row + BOUND]
-    axes = row + AXES
-    px = world[axes] * dx + world[axes + 3] * dy + world[axes + 6] * dz
-    py = world[axes + 1] * dx + world[axes + 4] * dy + world[axes + 7] * dz
-    pz = world[axes + 2] * dx + world[axes + 5] * dy + world[axes + 8] * dz
-    kind, a, b, c = int(world[row + KIND]), world[row + SIZE], world[row + SIZE + 1], world[row + SIZE + 2]
+        return math.sqrt(dx * dx + dy * dy + dz * dz) - solids[s, BOUND]
+    px, py, pz = to_solid(solids, s, x, y, z)
+    kind, a, b, c = int(solids[s, KIND]), solids[s, SIZE], solids[s, SIZE + 1], solids[s, SIZE + 2]
     gap = pz  # of a half-space
     if kind == BOX:
         gap = box_gap(px, py, pz, a, b, c)
@@ -206,32 +212,20 @@ def solid_gap(world, s, x, y, z, reach, enough):
     elif kind == CONE:
         gap = cone_gap(math.sqrt(px * px + py * py), pz, a, b)
     elif kind == HULL:
-        faces = cut_world(world).faces
-        gap = hull_gap(faces, int(world[row + FIRST_ROW]), int(world[row + COUNT]), px, py, pz)
+        gap = hull_gap(world.faces, int(solids[s, FIRST_ROW]), int(solids[s, COUNT]), px, py, pz)
     elif kind == CLOUD:
-        cut, first, which = cut_world(world), int(b), int(c)
-        starts, far = cut.cloud_starts[first:], cut.cloud_far[first:]
-        gap = cloud_gap(cut.clouds[which], starts, cut.points, far, px, py, pz, reach + a, enough + a) - a
+        first, which = int(b), int(c)
+        starts, far = world.cloud_starts[first:], world.cloud_far[first:]
+        gap = cloud_gap(world.clouds[which], starts, world.points, far, px, py, pz, reach + a, enough + a) - a
     return gap
 
 
 @inline_kernel
 def is_apart(world, s, x, y, z, reach):
     """True if a point is proved to be farther than `reach` from solid `s`; of a cloud its cells alone are asked."""
-    row = HEADER + SOLID_COLUMNS * s
-    if int(world[row + KIND]) != CLOUD:
+    solids = world.solids
+    if int(solids[s, KIND]) != CLOUD:
         return solid_gap(world, s, x, y, z, reach, reach) > reach
-    return is_cloud_apart(world, s, x, y, z, reach)
-
-
-@leaf_kernel
-def is_cloud_apart(world, s, x, y, z, reach):
-    """The same of a cloud."""
-    cut = cut_world(world)
-    solid = cut.solids[s]
-    dx, dy, dz = x - solid[PLACE], y - solid[PLACE + 1], z - solid[PLACE + 2]
-    px = solid[AXES] * dx + solid[AXES + 3] * dy + solid[AXES + 6] * dz
-    py = solid[AXES + 1] * dx + solid[AXES + 4] * dy + solid[AXES + 7] * dz
-    pz = solid[AXES + 2] * dx + solid[AXES + 5] * dy + solid[AXES + 8] * dz
-    first, which, radius = int(solid[SIZE + 1]), int(solid[SIZE + 2]), solid[SIZE]
-    return cloud_bound(cut.clouds[which], cut.cloud_far[first:], px, py, pz) - radius > reach
+    px, py, pz = to_solid(solids, s, x, y, z)
+    first, which, radius = int(solids[s, SIZE + 1]), int(solids[s, SIZE + 2]), solids[s, SIZE]
+    return cloud_bound(world.clouds[which], world.cloud_far[first:], px, py, pz) - radius > reach

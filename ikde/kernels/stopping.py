@@ -176,19 +176,19 @@ def solid_is_apart(world, collision, way, slot, component, s, travel, rotation):
     A, B, half = way.bounds[0], way.bounds[slot], 0.5 * travel
     x, y = 0.5 * (A[component, 0] + B[component, 0]), 0.5 * (A[component, 1] + B[component, 1])
     z = 0.5 * (A[component, 2] + B[component, 2])
-    if is_apart(collision.world, s, x, y, z, collision.bounds[component, 3] + asked + half):
+    if is_apart(world, s, x, y, z, collision.bounds[component, 3] + asked + half):
         return True, False
     P, Q, is_cloud = way.centres[0], way.centres[slot], int(world.solids[s, KIND]) == CLOUD
     for i in range(collision.components[component, FIRST], collision.components[component, LAST]):
         least = collision.radius[i] + asked
         x, y, z = 0.5 * (P[0, i] + Q[0, i]), 0.5 * (P[1, i] + Q[1, i]), 0.5 * (P[2, i] + Q[2, i])
-        middle = solid_gap(collision.world, s, x, y, z, least + half, -math.inf)
+        middle = solid_gap(world, s, x, y, z, least + half, -math.inf)
         if middle > least + half:
             continue
         if is_cloud:
             return False, middle <= least
-        begin = solid_gap(collision.world, s, P[0, i], P[1, i], P[2, i], math.inf, -math.inf)
-        end = solid_gap(collision.world, s, Q[0, i], Q[1, i], Q[2, i], math.inf, -math.inf)
+        begin = solid_gap(world, s, P[0, i], P[1, i], P[2, i], math.inf, -math.inf)
+        end = solid_gap(world, s, Q[0, i], Q[1, i], Q[2, i], math.inf, -math.inf)
         bound = min(middle, 2.0 * middle - max(begin, end))
         if bound - 0.125 * rotation * travel <= least:
             return False, end <= least
@@ -252,7 +252,7 @@ def measure_kept(world, collision, centres, key):
     asked = world.asked[component, int(world.solids[s, OWNER])]
     least = math.inf
     for i in range(collision.components[component, FIRST], collision.components[component, LAST]):
-        gap = solid_gap(collision.world, s, centres[0, i], centres[1, i], centres[2, i], math.inf, -math.inf)
+        gap = solid_gap(world, s, centres[0, i], centres[1, i], centres[2, i], math.inf, -math.inf)
         least = min(least, gap - collision.radius[i])
     return least - asked if asked > -math.inf else math.inf
 

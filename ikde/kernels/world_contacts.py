@@ -77,12 +77,12 @@ def find_world_contacts(collision, bounds, centres, reach, out_gap, out_found, o
             if asked == -math.inf:
                 continue
             x, y, z = bounds[component, 0], bounds[component, 1], bounds[component, 2]
-            if is_apart(collision.world, s, x, y, z, collision.bounds[component, 3] + asked + reach):
+            if is_apart(world, s, x, y, z, collision.bounds[component, 3] + asked + reach):
                 continue
             best, sphere = asked + reach, -1
             for i in range(collision.components[component, FIRST], collision.components[component, LAST]):
                 limit = best + collision.radius[i]
-                gap = solid_gap(collision.world, s, centres[0, i], centres[1, i], centres[2, i], limit, -math.inf)
+                gap = solid_gap(world, s, centres[0, i], centres[1, i], centres[2, i], limit, -math.inf)
                 if gap - collision.radius[i] < best:
                     best, sphere = gap - collision.radius[i], np.int64(i)
             if sphere < 0:
@@ -94,7 +94,7 @@ def find_world_contacts(collision, bounds, centres, reach, out_gap, out_found, o
             out_gap[place], out_found[place, COMPONENT], out_found[place, SPHERE] = best - asked, component, sphere
             out_found[place, PLACE] = pairs + component * obstacles + owner
             x, y, z = centres[0, sphere], centres[1, sphere], centres[2, sphere]
-            set_normal(collision.world, s, x, y, z, best + collision.radius[sphere], out_normal[place])
+            set_normal(world, s, x, y, z, best + collision.radius[sphere], out_normal[place])
     return count
 
 

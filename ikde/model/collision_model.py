@@ -14,7 +14,7 @@ from ikde.model.arguments import RobotLike, read_robot
 from ikde.model.carried import carry
 from ikde.model.detectors import check_detector, list_left_out
 from ikde.model.numbers import is_number
-from ikde.model.pack import pack_balls, pack_collision
+from ikde.model.pack import pack_collision
 from ikde.model.pack_world import WorldPacker, find_fixed_frames
 from ikde.model.robot import MAX_MAGNITUDE, NO_DETECTOR, Detector, LeftOutPair, Pairs, Robot, Spheres
 from ikde.model.spheres import Sphere, expand_rows
@@ -274,8 +274,7 @@ class CollisionModel:
         arrays = pack_collision(self.robot, self.detector, every=True)
         is_fixed = np.array([name in self.fixed_components for name in self.components], dtype=bool)
         reach_m = float(arrays.bounds[:, 3].max())
-        known = self.components, find_fixed_frames(self.robot), reach_m, self._attached_pairs
-        packer = WorldPacker(*known, pack_balls(arrays))
+        packer = WorldPacker(self.components, find_fixed_frames(self.robot), reach_m, self._attached_pairs)
         return arrays, packer, is_fixed
 
     @cached_property

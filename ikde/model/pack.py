@@ -7,10 +7,10 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikde.kernels.arrays import BODY, CollisionArrays, Floats, Indices, Ints, RobotArrays, TargetArrays, read_only
+from ikde.kernels.arrays import CollisionArrays, Floats, Indices, Ints, RobotArrays, TargetArrays, read_only
 from ikde.model.robot import WORLD, Detector, FreeSpheres, Robot
 from ikde.model.rotation import rotation_with_z
-from ikde.model.spheres import Sphere, bound_balls, bounding_sphere, expand_rows
+from ikde.model.spheres import Sphere, bounding_sphere, expand_rows
 from ikde.model.target import Target, Targets
 from ikde.model.tree import Body, build_tree, transform
 
@@ -61,17 +61,6 @@ def pack_collision(robot: Robot, detector: Detector | None, *, every: bool = Fal
         offset=pack_floats([s.offset_m for s in spheres]),
         world=pack_floats([]),
     )
-
-
-def pack_balls(collision: CollisionArrays) -> Floats:
-    """Of each component a ball about all that its body carries, and the body, [C, 5] as in `WorldArrays`; fixed: -1."""
-    table = np.empty((len(collision.components), 5))
-    for body in set(collision.components[:, BODY].tolist()):
-        own = collision.components[:, BODY] == body
-        spheres = np.concatenate([np.arange(int(first), int(last)) for _, first, last in collision.components[own]])
-        centres, radii = collision.p_body_sphere[:, spheres], collision.radius[spheres]
-        table[own] = *bound_balls(centres.T, radii), body if body > 0 else -1
-    return table
 
 
 def _list_rows(robot: Robot, approximation: str, spheres: list[Sphere]) -> list[tuple[int, int, int, int]]:

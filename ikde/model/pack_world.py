@@ -9,7 +9,7 @@ import numpy as np
 
 from ikde.errors import InputError, nearest
 from ikde.kernels.arrays import Floats
-from ikde.kernels.flat_arguments import ATTACHED_PAIRS, BOXES, GRID_COLUMNS, HEADER, SOLID_COLUMNS
+from ikde.kernels.flat_arguments import ATTACHED_PAIRS, GRID_COLUMNS, HEADER, SOLID_COLUMNS, unpack_world
 from ikde.model.cloud_cells import SortedCloud, find_sorted
 from ikde.model.hull import measure_normals
 from ikde.model.large_worlds import KEPT
@@ -18,19 +18,16 @@ from ikde.model.robot import WORLD, Robot
 from ikde.model.solids import IDENTITY, KINDS, Solid
 from ikde.model.tree import build_tree
 from ikde.model.world import Obstacle, World
-from ikde.model.world_boxes import find_boxes, make_boxes, stack_boxes, turn_boxes
 
 GRID_PITCH_M = 0.08  # 149 ns a check in a bookshelf of 21 solids; 4 cm 238, 2 cm 298: the cache is missed
 MIN_FOR_GRID, MAX_CELLS = 30, 2_000_000  # solids
 _EYE = np.eye(4)
-EVERYTHING = 1e12  # m: the radius of a ball that leaves nothing out
 
 
 class PackedObstacle(NamedTuple):
-    """What of an obstacle depends on no other: rows and boxes of its solids, hulls and clouds by solid."""
+    """What of an obstacle depends on no other: rows of its solids [S, 21], its hulls and its clouds, by solid."""
 
     rows: Floats
-    boxes: Floats
     faces: list[tuple[int, Floats]]
     clouds: list[tuple[int, SortedCloud]]
 
@@ -47,20 +44,10 @@ class WorldPacker:
     """Packs worlds for a robot; one that differs from the last by where obstacles are costs what those cost."""
 
     def __init__(
-        self,
-        components: Sequence[str],
-        frames: Mapping[str, Floats],
-        reach_m: float,
-        attached_pairs: int = 0,
-        balls: Floats | None = None,
+        self, components: Sequence[str], frames: Mapping[str, Floats], reach_m: float, attached_pairs: int = 0
     ) -> None:
-        """As `pack_world`; `attached_pairs`: the last pairs of components, which no written kernel knows.
-
-        `balls`: as in `WorldArrays`; None: each component is a body of its own, and nothing is left out by it.
-        """
+        """As `pack_world`; `attached_pairs`: the last pairs of components, which no written kernel knows."""
         self._components, self._frames, self._reach_m = components, frames, reach_m
-        unknown = [[0.0, 0.0, 0.0, EVERYTHING, place] for place in range(len(components))]
-        self._balls = np.reshape(unknown, (-1, 5)) if balls is None else balls
         self._attached_pairs = attached_pairs
         self._parts = PerObstacle(self._pack_obstacle)
         self._last: Packed | None = None
@@ -70,8 +57,7 @@ class WorldPacker:
         key, packed = kept_m.tobytes(), self._parts.list(world.active)
         whole = self._move(world.active, key, packed)
         if whole is None:
-            asked = _list_asked(world, self._components, kept_m)
-            whole = _join_obstacles(packed, asked, self._balls, self._reach_m)
+            whole = _join_obstacles(packed, _list_asked(world, self._components, kept_m), self._reach_m)
             whole[ATTACHED_PAIRS] = self._attached_pairs
             KEPT.note(int(whole[4]))
         whole.setflags(write=False)
@@ -85,15 +71,13 @@ class WorldPacker:
             return None
         whole, solids = last.whole.copy(), int(last.whole[0])
         rows = whole[HEADER : HEADER + SOLID_COLUMNS * solids].reshape(solids, SOLID_COLUMNS)
-        boxes = find_boxes(whole)
+        places = whole[HEADER + SOLID_COLUMNS * solids :][: 3 * solids].reshape(3, solids)
         for place in find_changed(last.obstacles, obstacles) or ():
             if not _differ_by_place(last.obstacles[place], obstacles[place]):
                 return None
             own, first = packed[place].rows, sum(len(part.rows) for part in packed[:place])
             end = first + len(own)
-            rows[first:end, 1:13] = own[:, 1:13]
-            if boxes.size:
-                turn_boxes(boxes[:, first:end], own[:, 1:10], own[:, 10:13])
+            rows[first:end, 1:13], places[:, first:end] = own[:, 1:13], own[:, 10:13].T
         return whole
 
     def _pack_obstacle(self, obstacle: Obstacle) -> PackedObstacle:
@@ -112,8 +96,7 @@ class WorldPacker:
                 faces.append((place, _faces(solid)))
             elif solid.kind == "cloud":
                 clouds.append((place, find_sorted(solid.points)))  # type: ignore[arg-type]
-        table = np.array(rows)
-        return PackedObstacle(table, make_boxes(table, obstacle.solids), faces, clouds)
+        return PackedObstacle(np.array(rows), faces, clouds)
 
 
 def _differ_by_place(one: Obstacle, other: Obstacle) -> bool:
@@ -140,7 +123,7 @@ def pack_world(
     return WorldPacker(components, frames, reach_m).pack(world, kept_m)
 
 
-def _join_obstacles(packed: list[PackedObstacle], asked: Floats, balls: Floats, reach_m: float) -> Floats:
+def _join_obstacles(packed: list[PackedObstacle], asked: Floats, reach_m: float) -> Floats:
     """The whole array; `asked` [C, O], m."""
     faces, points, clouds, starts, far = [], [], [], [], []
     count, widest = 0, np.where(np.isfinite(asked), asked, 0.0).max(axis=0, initial=0.0)
@@ -160,12 +143,10 @@ def _join_obstacles(packed: list[PackedObstacle], asked: Floats, balls: Floats, 
             points.append(by_cell)
             count += by_cell.shape[1]
         first += len(obstacle.rows)
-    has_cells = np.isfinite(solids[:, 16]).sum() >= MIN_FOR_GRID
-    boxes = stack_boxes([] if has_cells else [obstacle.boxes for obstacle in packed], solids[:, 17])
-    parts = [solids, boxes, balls, asked, _stack(faces, 12), _join_points(points), _stack(clouds, GRID_COLUMNS)]
+    parts = [solids, _spheres(solids), asked, _stack(faces, 12), _join_points(points), _stack(clouds, GRID_COLUMNS)]
     parts += [np.concatenate([*starts, np.empty(0)]), np.concatenate([*far, np.empty(0)])]
-    sizes = [len(solids), *asked.shape, len(parts[4]), count, len(clouds), len(parts[7])]
-    return _join(sizes, parts, solids, reach_m, boxes.shape[1])
+    sizes = [len(solids), *asked.shape, len(parts[3]), count, len(clouds), len(parts[6])]
+    return _join(sizes, parts, solids, reach_m)
 
 
 @lru_cache(maxsize=64)
@@ -209,6 +190,12 @@ def _faces(solid: Solid) -> Floats:
     return np.hstack([a, b, c, measure_normals(solid.points, solid.triangles)])
 
 
+def _spheres(solids: Floats) -> Floats:
+    """Middle and radius [4, S] of a sphere that holds each solid and what it asks for; -inf of what has no end."""
+    radius = np.where(np.isfinite(solids[:, 16]), solids[:, 16] + solids[:, 17], -np.inf)
+    return np.vstack([solids[:, 10:13].T, radius])
+
+
 def _list_asked(world: World, components: Sequence[str], kept_m: Floats) -> Floats:
     """Distance [C, O] that components keep from obstacles, m; -inf where they are not compared."""
     asked = kept_m[:, None] + np.array([obstacle.margin_m for obstacle in world.active])
@@ -224,7 +211,7 @@ def _list_asked(world: World, components: Sequence[str], kept_m: Floats) -> Floa
     return asked
 
 
-def _join(sizes: Sequence[int], parts: list[Floats], solids: Floats, reach_m: float, boxes: int) -> Floats:
+def _join(sizes: Sequence[int], parts: list[Floats], solids: Floats, reach_m: float) -> Floats:
     """The whole array, with a grid over the solids if there are many."""
     bounded = np.isfinite(solids[:, 16])
     unbounded = np.flatnonzero(~bounded).astype(float)
@@ -232,9 +219,7 @@ def _join(sizes: Sequence[int], parts: list[Floats], solids: Floats, reach_m: fl
     own = [np.zeros(1), np.empty(0), np.empty(0)]
     if bounded.sum() >= MIN_FOR_GRID:
         grid, own = _make_grid(sizes, parts, solids[bounded], reach_m)
-    whole = _concatenate(sizes, parts, grid, own, unbounded)
-    whole[BOXES] = boxes
-    return whole
+    return _concatenate(sizes, parts, grid, own, unbounded)
 
 
 def _concatenate(
@@ -259,7 +244,7 @@ def _make_grid(
     dims = np.ceil((high - low) / pitch)
     grid, cells = np.array([*low, pitch, *dims]), int(dims.prod())
     blank = [np.zeros(cells + 1), np.empty(0), np.full(cells, np.inf)]
-    world = _concatenate(sizes, parts, grid, blank, np.empty(0))
+    world = unpack_world(_concatenate(sizes, parts, grid, blank, np.empty(0)))
     reach = reach_m + 0.5 * np.sqrt(3.0) * pitch + 1e-6
     counts = np.zeros(cells)
     count_cells(world, reach, counts)

@@ -87,19 +87,6 @@ def bounding_sphere(spheres: list[Sphere]) -> tuple[Floats, float]:
     return middle, radius * (1.0 + 1e-9) + 1e-12
 
 
-def bound_balls(centres: Floats, radii: Floats) -> tuple[float, float, float, float]:
-    """A small ball x, y, z, r about balls [n, 3], [n]: its middle is drawn to the farthest one, by less and less."""
-    middle = 0.5 * ((centres - radii[:, None]).min(axis=0) + (centres + radii[:, None]).max(axis=0))
-    best, smallest = middle, np.inf
-    for step in range(200):
-        far = np.linalg.norm(centres - middle, axis=1) + radii
-        if far.max() < smallest:
-            best, smallest = middle, float(far.max())
-        middle = middle + (centres[far.argmax()] - middle) * 0.5 / (step + 2)
-    x, y, z = best.tolist()
-    return x, y, z, smallest * (1.0 + 1e-9) + 1e-12
-
-
 def approximation_volume_m3(robot: Robot, approximation: str) -> dict[str, float]:
     """Sum of the sphere volumes of each component in m^3 [Qiao2021, Table 2]; overlaps count twice, as there."""
     volumes = dict.fromkeys(robot.components(approximation), 0.0)

@@ -11,7 +11,6 @@ from ikde.model.robot import Robot
 from ikde.model.target import Target
 from ikde.solver.background import WAIT, compile_way
 from ikde.solver.engine_table import ENGINES, SEVERAL
-from ikde.solver.free import CALL, ENGINE, KIND, is_free
 from ikde.solver.plain import compute_frames
 from ikde.solver.settings import BulkOptions, SolveSettings
 from ikde.solver.solve import solve, solve_many
@@ -57,8 +56,6 @@ def list_stages(robot: Robot, collision: CollisionChoice = None) -> list[Stage]:
                 stages[f"{name}, many of {kind}"] = partial(many, [targets[kind]] * SEVERAL, settings)
             else:
                 stages[name] = partial(many, [targets[kind]] * SEVERAL, settings)
-    if collision.pairs:
-        stages[f"{ENGINE}, {CALL} {KIND}"] = partial(is_free, robot, robot.home, collision)
     return [Stage(name=name, run=run) for name, run in stages.items()]
 
 

@@ -16,7 +16,6 @@ from ikde.model.numbers import read_numbers
 from ikde.model.robot import WORLD
 from ikde.model.solids import Solid, read_pose
 from ikde.model.world import Obstacle
-from ikde.model.world_boxes import find_boxes, turn_boxes
 from ikde.solver.plain import compute_components, compute_world_gaps
 from ikde.solver.plain_cloud import find_cloud_gaps
 from ikde.solver.plain_world import measure_solid
@@ -186,12 +185,10 @@ class MovingWorld:
         """Arrays for kernels in which obstacles are where they are at a sample; the next call changes them."""
         count = int(self.whole[0])
         rows = self.whole[HEADER : HEADER + SOLID_COLUMNS * count].reshape(count, SOLID_COLUMNS)
-        boxes = find_boxes(self.whole)
+        places = self.whole[HEADER + SOLID_COLUMNS * count :][: 3 * count].reshape(3, count)
         for mover in self.movers:
-            pose = mover.packed[sample]
-            rows[mover.solids, POSE] = pose
-            if boxes.size:
-                turn_boxes(boxes[:, mover.solids], pose[:, :9], pose[:, 9:])
+            rows[mover.solids, POSE] = mover.packed[sample]
+            places[:, mover.solids] = mover.packed[sample][:, 9:].T
         return self.arrays
 
     def compute_gaps(self, q: Floats, times_s: Floats) -> Floats:

@@ -46,7 +46,7 @@ def test_buffers_fit_the_robot(case):
     assert buffers.step.T_world_body.shape == (len(pack_robot(robot).bodies), 3, 4)
     assert buffers.step.jacobian.shape == (tables.TASK_ROWS, len(robot.joints))
     assert buffers.centres.shape == (3, len(packed.radius))
-    assert buffers.bounds.shape == (len(packed.components), 4)
+    assert buffers.bounds.shape == (len(packed.components), 3)
 
 
 @pytest.mark.parametrize("robot", [case[0] for case in RANDOM[:4]], ids=lambda robot: robot.name)

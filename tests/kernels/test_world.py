@@ -4,7 +4,7 @@ import numpy as np
 
 from ikde.kernels.arrays import DescentArrays
 from ikde.kernels.flat_arguments import flatten_search
-from ikde.kernels.world import count_room, count_room_of, find_obstacle_at, find_obstacle_of, stands_in_world
+from ikde.kernels.world import find_obstacle_at, find_obstacle_of, stands_in_world
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack import pack_robot
 from ikde.solver.engines.pool import no_pool
@@ -27,9 +27,8 @@ def test_behind_a_block_stands_the_world(rng):
     assert stands_in_world.plain(whole)
     for q in rng.uniform(ROBOT.lower, ROBOT.upper, (12, 3)):
         with np.errstate(all="ignore"):
-            hit = find_obstacle_at.plain(numbers, whole, q, np.empty(count_room.plain(whole)))
-            room = np.empty(1 + count_room_of.plain(pack_robot(ROBOT), model.arrays))  # what stands before it stays
-            assert hit == find_obstacle_of.plain(pack_robot(ROBOT), model.arrays, q, room)
+            hit = find_obstacle_at.plain(numbers, whole, q)
+            assert hit == find_obstacle_of.plain(pack_robot(ROBOT), model.arrays, q)
         gaps = compute_world_gaps(model, q, compute_frames(ROBOT, q))
         hits = model.fold(np.append(np.zeros(len(model.pairs), bool), gaps <= model.limit_m))
         assert hits[hit] if hit >= 0 else not hits.any()
@@ -38,6 +37,4 @@ def test_behind_a_block_stands_the_world(rng):
 
 
 def test_without_a_world_there_is_nothing():
-    _, whole = lay_out(OWN)
-    assert not stands_in_world.plain(whole)
-    assert count_room.plain(whole) == count_room_of.plain(pack_robot(ROBOT), OWN.arrays) == 0
+    assert not stands_in_world.plain(lay_out(OWN)[1])

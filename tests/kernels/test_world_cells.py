@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ikde.kernels.flat_arguments import unpack_world
-from ikde.kernels.world_grid import count_obstacles, find_obstacle
+from ikde.kernels.world_grid import count_obstacles, find_hit
 from ikde.model import pack_world as module
 from ikde.model.collision_model import CollisionModel
 from ikde.model.pack_world import find_fixed_frames, pack_world
@@ -35,10 +35,10 @@ def test_what_is_just_near_enough_is_found_from_the_corner_of_a_cell(margin_m, r
         p = grid[:3] + grid[3] * corner - 1e-9 * towards  # in the cell on the other side
         for short_m, is_near in ((1e-7, True), (-1e-7, False)):
             place = p + towards / np.sqrt(3.0) * (R + SMALL + margin_m - short_m)
-            whole = pack([*ends, sphere("it", place, margin_m=margin_m)])
-            assert (unpack_world.plain(whole).grid[:3] == grid[:3]).all()
+            world = unpack_world.plain(pack([*ends, sphere("it", place, margin_m=margin_m)]))
+            assert (world.grid[:3] == grid[:3]).all()
             with np.errstate(all="ignore"):
-                assert (find_obstacle.plain(BALL._replace(world=whole), p[None], p[:, None]) >= 0) == is_near
+                assert (find_hit.plain(world, BALL, p[None], p[:, None]) >= 0) == is_near
 
 
 def test_an_obstacle_of_several_solids_counts_once():

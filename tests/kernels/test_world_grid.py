@@ -5,14 +5,13 @@ import pytest
 
 from ikde.kernels.flat_arguments import unpack_world
 from ikde.kernels.frames import compute_bodies
-from ikde.kernels.placing import place_bounds
 from ikde.kernels.spheres import compute_bounds, compute_centres
 from ikde.kernels.world_grades import measure_world
-from ikde.kernels.world_grid import find_hit, find_obstacle
+from ikde.kernels.world_grid import find_hit
 from ikde.model import pack_world as module
 from ikde.model.collision_model import CollisionModel
-from ikde.model.pack import pack_balls, pack_robot
-from ikde.model.pack_world import WorldPacker, find_fixed_frames
+from ikde.model.pack import pack_robot
+from ikde.model.pack_world import find_fixed_frames, pack_world
 from ikde.model.solids import make_solid
 from ikde.model.world import make_obstacle, make_world
 from ikde.solver.plain import compute_components
@@ -33,9 +32,7 @@ def fewest(request, monkeypatch):
 
 def pack(world, kept=KEPT):
     reach = float(COLLISION.arrays.bounds[:, 3].max())
-    balls = pack_balls(COLLISION.arrays)
-    balls[:, 4] = np.maximum(balls[:, 4], 0)  # what no joint moves is compared here, too
-    return WorldPacker(COMPONENTS, find_fixed_frames(ROBOT), reach, 0, balls).pack(world, kept)
+    return pack_world(world, COMPONENTS, find_fixed_frames(ROBOT), reach, kept)
 
 
 def place(q):
@@ -46,19 +43,6 @@ def place(q):
     compute_bounds.plain(collision, T, bounds)
     compute_centres.plain(collision, T, centres)
     return bounds, centres
-
-
-def find(whole, q):
-    """Component * obstacles + obstacle, by both ways: all placed before, and each when it is asked for."""
-    robot, collision, (bounds, centres) = pack_robot(ROBOT), COLLISION.arrays._replace(world=whole), place(q)
-    T, later = np.empty((len(robot.bodies), 3, 4)), np.full((len(bounds), 4), np.nan)
-    compute_bodies.plain(robot, q, T)
-    place_bounds.plain(collision, T, later)
-    with np.errstate(all="ignore"):
-        hit = find_hit.plain(collision, T, later, np.full(centres.shape, np.nan))
-        again = find_obstacle.plain(collision, bounds, centres)
-    assert again == (len(collision.pairs) + hit % int(whole[2]) if hit >= 0 else -1)
-    return hit
 
 
 def plain_gaps(world, q):
@@ -80,11 +64,12 @@ def test_hits_and_distances_are_those_of_comparing_everything(fewest, rng):
     verdicts = []
     for count in (1, 5, 14):
         world = random_world(rng, count, margin_m=0.01, ignore=(COMPONENTS[0],))
-        whole = pack(world)
-        arrays = unpack_world.plain(whole)
+        arrays = unpack_world.plain(pack(world))
         for q in draw(rng, 12):
-            hit, (_, centres), gaps = find(whole, q), place(q), plain_gaps(world, q)
+            bounds, centres = place(q)
+            gaps = plain_gaps(world, q)
             with np.errstate(all="ignore"):
+                hit = find_hit.plain(arrays, COLLISION.arrays, bounds, centres)
                 gap, which = measure_world.plain(arrays, COLLISION.arrays, centres, np.inf)
             assert (hit >= 0) == (gaps.min() <= 0.0)
             assert hit < 0 or gaps.ravel()[hit] <= 0.0
@@ -101,8 +86,10 @@ def test_what_is_asked_for_from_one_obstacle_reaches_as_far_in_cells(fewest, rng
     world = world.add(make_obstacle("other", [make_solid("sphere", [0.002])], T))
     verdicts = []
     for q in draw(rng, 25):
-        hit = find(pack(world, np.zeros(len(COMPONENTS))), q)
+        arrays, (bounds, centres) = unpack_world.plain(pack(world, np.zeros(len(COMPONENTS)))), place(q)
         gaps = plain_gaps(world, q) + KEPT[:, None]
+        with np.errstate(all="ignore"):
+            hit = find_hit.plain(arrays, COLLISION.arrays, bounds, centres)
         assert (hit >= 0) == (gaps.min() <= 0.0)
         verdicts.append(hit >= 0)
     assert 0 < sum(verdicts) < len(verdicts)
@@ -118,8 +105,8 @@ def test_what_is_farther_than_its_reach_is_not_measured(rng):
 
 
 def test_without_an_obstacle_nothing_is_hit():
-    arrays, (_, centres) = unpack_world.plain(pack(make_world([]))), place(ROBOT.home)
-    assert find(pack(make_world([])), ROBOT.home) == -1
+    arrays, (bounds, centres) = unpack_world.plain(pack(make_world([]))), place(ROBOT.home)
+    assert find_hit.plain(arrays, COLLISION.arrays, bounds, centres) == -1
     assert measure_world.plain(arrays, COLLISION.arrays, centres, np.inf) == (np.inf, -1)
 
 
@@ -133,8 +120,10 @@ def test_small_solids_that_are_asked_for_at_a_distance_are_found(fewest, rng, ke
         places = rng.uniform(-1.0, 1.0, (len(solids), 3))
         posed = [np.column_stack([np.eye(3), p]) for p in places]
         world = make_world(make_obstacle(name, [solids[name]], T) for name, T in zip(solids, posed, strict=True))
-        hit = find(pack(world, asked), q)
+        arrays, (bounds, centres) = unpack_world.plain(pack(world, asked)), place(q)
         gaps = plain_gaps(world, q) + (KEPT - asked)[:, None]
+        with np.errstate(all="ignore"):
+            hit = find_hit.plain(arrays, COLLISION.arrays, bounds, centres)
         assert (hit >= 0) == (gaps.min() <= 0.0)
         verdicts.append(hit >= 0)
     assert any(verdicts)

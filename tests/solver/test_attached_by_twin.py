@@ -10,7 +10,7 @@ from ikde.kernels.clearance import judge_centres
 from ikde.kernels.flat_arguments import Terms, flatten_grader, flatten_search
 from ikde.kernels.grade_many import grade_many
 from ikde.kernels.grade_one import grade_one
-from ikde.kernels.world import count_room, count_room_of, find_obstacle_at, find_obstacle_of, stands_in_world
+from ikde.kernels.world import find_obstacle_at, find_obstacle_of, stands_in_world
 from ikde.model.pack import pack_robot, pack_targets
 from ikde.model.world import make_world
 from ikde.solver.engines.pool import no_pool
@@ -63,9 +63,8 @@ def test_what_written_kernels_ask_is_about_what_is_held_too(count, rng):
     own = len(OWN.pairs)
     for q in rng.uniform(ROBOT.lower, ROBOT.upper, (20, 3)):
         with np.errstate(all="ignore"):
-            hit = find_obstacle_at.plain(numbers, whole, q, np.empty(count_room.plain(whole)))
-            room = np.empty(1 + count_room_of.plain(pack_robot(ROBOT), model.arrays))  # what stands before it stays
-            assert hit == find_obstacle_of.plain(pack_robot(ROBOT), model.arrays, q, room)
+            hit = find_obstacle_at.plain(numbers, whole, q)
+            assert hit == find_obstacle_of.plain(pack_robot(ROBOT), model.arrays, q)
         gaps = list_gaps(model, q)
         short = {pair for pair, (gap, asked) in gaps.items() if gap <= asked and pair not in OWN.pairs}
         names = {pair if pair in model.pairs else (ROBOT.name, pair[1]) for pair in short}

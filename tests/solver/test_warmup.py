@@ -10,7 +10,7 @@ def test_every_engine_and_kind_has_a_stage(qiao):
     assert names == [
         *(f"lm, {call} {kind}" for kind in KINDS for call in ("one", "near", "many of")),
         *("analytic, one pose", "analytic, near pose", "analytic"),
-        *("memetic", "de", "check, a yes or no of configurations"),
+        *("memetic", "de"),
     ]
 
 

@@ -19,9 +19,8 @@ OWN_IMPORTS = (
     "from ikde.kernels.arrays import SafeDistance",
     "from ikde.kernels.jit import leaf_kernel",
     "from ikde.kernels.trig import sin_cos",
-    "from ikde.kernels.world import find_obstacle_at",
 )
-TABLE_IMPORT = "from ikde.kernels.tables import find_around, find_collision, make_buffers, unpack_used, use_models"
+TABLE_IMPORT = "from ikde.kernels.tables import find_collision, make_buffers, unpack_used, use_models"
 NO_TABLES = '''def use_models(robot, collision):
     """Straight-line code takes the safe distance only: arrays that are handed on cost a tenth of a search in bulk."""
     return 0, SafeDistance(collision.safe_distance)
@@ -40,12 +39,6 @@ def unpack_used(numbers, whole):
 def make_buffers(robot, collision, joints):
     """Straight-line code needs no buffers."""
     return np.int64(0)
-
-
-@leaf_kernel
-def find_around(block, robot, collision, q, buffers, room):
-    """What of a world is too near at `q` [N]: the tables know, which stand behind the block."""
-    return find_obstacle_at(block[0], block[1], q, room)
 '''
 
 

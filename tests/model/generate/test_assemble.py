@@ -27,7 +27,7 @@ from tests.three_joints import CROWDED, crowd
 
 ROOT = Path(__file__).parents[3]
 each_kind = pytest.mark.parametrize("kind", KINDS)
-OWN = ["use_models", "unpack_used", "make_buffers", "find_around", "take_step", "take_steps", "find_collision"]
+OWN = ["use_models", "unpack_used", "make_buffers", "take_step", "take_steps", "find_collision"]
 
 
 @cache
