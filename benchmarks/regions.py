@@ -31,7 +31,8 @@ from benchmarks.machine import describe
 from benchmarks.scenes import TOOLS, Twin, read_robot, read_yaml, summarise
 from ikde.batch.scenes import make_question
 from ikde.io.scene_pairs import ScenePair, find_pairs, read_request
-from ikde.solver.result import StopReason, is_proof
+from ikde.solver.explain import is_proof
+from ikde.solver.result import StopReason
 
 TOLERANCE_M, TOLERANCE_RAD, ROUNDING = 1e-5, 1e-4, 1e-9
 DENSE_ATTEMPTS = 100

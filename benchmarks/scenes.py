@@ -29,7 +29,7 @@ import ikde
 from benchmarks.machine import describe
 from ikde.batch.scenes import make_question
 from ikde.io.scene_pairs import Request, ScenePair, find_pairs, read_request
-from ikde.solver.result import is_proof
+from ikde.solver.explain import is_proof
 
 TOOLS = {"ur5": "ee_link", "panda": "panda_hand", "fetch": "gripper_link"}
 WARM, REPEATED, CHECKED, MOVED_M = 3, 5, 200, 1e-4

@@ -94,6 +94,11 @@ def reason_from_counts(stop: StopReason, attempts: int, colliding: int, timeout_
     return f"{_count(attempts)} spent"
 
 
+def is_proof(reason: str) -> bool:
+    """Whether a reason says that there is no solution, proved by branches or by what is fixed to the tool."""
+    return reason.startswith(NO_SOLUTION)
+
+
 def reason_from_proof(stop: StopReason) -> str:
     """One line that says it of a pose that is ruled out."""
     return f"{NO_SOLUTION}: {PROVED[stop]}"

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ikde
-from ikde.model.base_motion import wheel_speeds
 from ikde.model.robot import Wheels
+from ikde.model.wheels import wheel_speeds
 from ikde.track.drive import implied_wheel_speed, pack_drive
 from ikde.track.limits import MotionLimits
 

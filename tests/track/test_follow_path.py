@@ -276,7 +276,7 @@ def test_what_is_something_else_is_refused(key):
 
 @pytest.mark.parametrize("method", ["continuation", "typical"])
 def test_a_drive_that_does_not_exist_is_refused(method):
-    with pytest.raises(InputError, match="expected one of differential, omnidirectional, got 'tank'"):
+    with pytest.raises(InputError, match="expected one of differential, omnidirectional, mecanum, got 'tank'"):
         follow_path(robot(), load_task("task1").path, drive="tank", method=method)
 
 
