@@ -28,7 +28,7 @@ Corners = Annotated[list[Point], Field(max_length=MAX_CORNERS)]
 
 
 def _leave_out_null(schema: dict[str, Any]) -> None:
-    """What may be left out may not be null."""
+    """Take null out of the kinds of optional keys: they may be left out, not empty."""
     for entry in schema.get("properties", {}).values():
         kinds = [kind for kind in entry.get("anyOf", ()) if kind.get("type") != "null"]
         if kinds and entry.get("default", kinds) is None:

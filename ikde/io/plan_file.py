@@ -80,7 +80,7 @@ def load_track(source: str | Path | Mapping[str, Any]) -> "TrackPlan":
 
 @contextmanager
 def in_track_file(plan: "TrackPlan") -> Iterator[None]:
-    """What a track file says moves may not fit what a caller wants otherwise: the error names its line and key."""
+    """Errors about obstacles that move name the line and key of the track file that describes them."""
     try:
         yield
     except FileError:

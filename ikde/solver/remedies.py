@@ -71,7 +71,7 @@ def try_in_world(problem: Problem, probe: Probe, blocking: Iterable[tuple[str, s
 
 
 def list_touches(model: CollisionModel, blocking: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    """What is held, and what it may not touch but perhaps did, of pairs that blocked: most often first."""
+    """Pairs of an attached object and something it may not touch, of those that blocked, most often first."""
     held, found = {thing.name: thing.may_touch for thing in model.world.attached}, list[tuple[str, str]]()
     own = set(model.pairs)
     for pair in blocking:
